@@ -65,7 +65,7 @@ class MutabotError(Exception):
     ``exit_code`` is what the command line ends with when the error reaches it.
     """
 
-    exit_code = ExitCode.INTERNAL_ERROR
+    exit_code: int = ExitCode.INTERNAL_ERROR
 
 
 class UsageError(MutabotError):

@@ -95,7 +95,7 @@ class Extension:
             (relative, with ``/``) to their texts. One named ``cell`` gives ``mutabot init`` an option
             ``--cell``. They raise ``mutabot.errors.UsageError`` for a value that they do not know.
         tables: subclasses of ``mutabot.api.processes.Table``, by the table's name in the configuration.
-        commands: sub-commands: functions that typer makes a command of (see ``mutabot.cli.app.Commands``).
+        commands: sub-commands: functions; ``mutabot.cli.parameters`` says what their parameters stand for.
         formats: a function (``mutabot.report.format.Format``) each, by its name.
         sections: functions of ``mutabot.results.results.Results`` that make a section of the results
             document each, of plain data, by its name.

@@ -8,14 +8,14 @@ from typing import Annotated
 
 import typer
 
-from mutabot.api.reports import echo
+from mutabot.api.reports import CommandContext
 
 from .propose import propose
 from .template import start
 
 
 def init(
-    context: typer.Context,
+    context: CommandContext,
     program: Annotated[
         list[Path] | None,
         typer.Argument(metavar="[PROGRAM]...", help="Files or folders of the robot program."),
@@ -24,8 +24,8 @@ def init(
 ) -> None:
     """Draft a configuration and a vocabulary from one run of the tests, or start a project."""
     if template is not None:
-        lines = start(context.obj, program or [], *template)
+        lines = start(context.project, program or [], *template)
     else:
-        lines = propose(context.obj, program or [], tell=lambda text: typer.echo(text, err=True))
+        lines = propose(context.project, program or [], tell=lambda text: context.tell([text]))
     for line in lines:
-        echo(line)
+        context.print(line)

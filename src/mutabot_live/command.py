@@ -11,16 +11,13 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
-from typing import Annotated, Any, Self, Unpack
+from typing import Annotated, Any, Self
 
 import typer
 
-from mutabot.campaign.request import Progress, Request
+from mutabot.api.processes import Request
+from mutabot.api.reports import CommandContext, Progress
 from mutabot.campaign.run import run_campaign
-from mutabot.cli import options
-from mutabot.cli.campaign import show_end
-from mutabot.cli.output import tell
-from mutabot.cli.request import request_of
 from mutabot.report.terminal.console import Pace
 from mutabot.report.texts import legible
 
@@ -179,15 +176,13 @@ Port = Annotated[
 
 
 def live(
-    context: typer.Context,
+    context: CommandContext,
+    request: Request,
     port: Port = None,
-    min_score: options.MinScore = None,
-    json: options.Json = False,
-    executor: tuple[str, str] | None = None,
-    **given: Unpack[options.Running],
+    min_score: float | None = None,
+    json: bool = False,
 ) -> None:
     """Run the campaign and show its report in a browser while it fills, with a button to stop."""
-    request = request_of(context.obj, executor=executor, evidence=True, **given)
-    with Live(request, port or 0, lambda text: tell([f"mutabot: {text}"])) as served:
-        tell([f"mutabot: live at {served.address}"])
-        show_end(request, served.run, min_score, json=json)
+    with Live(request, port or 0, lambda text: context.tell([f"mutabot: {text}"])) as served:
+        context.tell([f"mutabot: live at {served.address}"])
+        context.run_to_end(request, served.run, min_score, json=json)

@@ -18,7 +18,7 @@ from typing import Any
 from mutabot.errors import JournalError
 from mutabot.report.html.folder import Recorded, campaign_data, mutant_page, script
 from mutabot.report.texts import Cleaner, portable
-from mutabot.results.results import MutantResult, Results, results_at
+from mutabot.results.results import MutantResult, Results
 from mutabot.results.stored import StoredEvidence
 
 #: seconds between two looks into the journal, at least; and how many times as long as one takes
@@ -112,7 +112,7 @@ class Pages:
 
     def _read(self) -> tuple[Results | None, Callable[[str], str]]:
         try:
-            stored = results_at(self._journal)
+            stored = Results.read(self._journal)
         except JournalError:  # there is none yet
             return None, Cleaner(None)
         if stored.attempt is not None or not stored.everything:

@@ -15,18 +15,10 @@ from typing import Annotated
 
 import typer
 
-from mutabot.campaign.request import Progress, Request
+from mutabot.api.processes import Request
+from mutabot.api.reports import CommandContext, MutantResult, Outcome, Progress, Results, UsageError
 from mutabot.campaign.run import with_fresh_baseline
-from mutabot.cli import options
-from mutabot.cli.campaign import number_of
-from mutabot.cli.output import progress_shown, tell
-from mutabot.cli.request import request_again
-from mutabot.errors import SelectionError, UsageError
-from mutabot.journal.files import find_journal
-from mutabot.journal.journal import JournalReader
-from mutabot.journal.records import REACHING, Reaching
-from mutabot.model import Diverged, Mutant, Outcome
-from mutabot.results.results import MutantResult, Results, find_mutant, read_results
+from mutabot.model import Mutant
 from mutabot.results.stored import StoredEvidence
 
 from .filming import choose_graphics, film
@@ -56,7 +48,7 @@ def choose(
         round: 0-based; None for the one in which the world was worst.
         test: node id or a part of one; None for the one in which it was worst, else for the one that killed.
 
-    Raises SelectionError for a test that does not run the mutant, UsageError if none does.
+    Raises UsageError for a test that does not run the mutant, and if none does.
     """
     mutant = result.mutant
     outcomes = [one for one in result.outcomes if round is None or one.round == round]
@@ -68,7 +60,7 @@ def choose(
         raise UsageError(f"no test reaches mutant {mutant.number} ({mutant.id}): there is nothing to see")
     name = tests[0] if test is None else _one_of(tests, test)
     original, mutated = evidence.pair(mutant.id, where, name)
-    diverged = _diverged(outcome, name)
+    diverged = next((one for one in outcome.diverged if one.test == name), None) if outcome else None
     return Shown(
         mutant.number,
         mutant.id,
@@ -106,10 +98,9 @@ def _tells(outcome: Outcome) -> tuple[bool, float, int]:
 
 
 def _reached_by(results: Results, result: MutantResult) -> tuple[str, ...]:
-    found: Reaching | None = results.meta.get(REACHING)
-    if found is None:  # an older journal does not say it
+    if not results.reaching.tests:  # an older journal does not say it
         return tuple(dict.fromkeys(one.test.test for one in results.baseline))
-    return found.at(result.mutant.site.id)
+    return results.reached_by(result.mutant)
 
 
 def _telling(outcome: Outcome | None) -> list[str]:
@@ -117,10 +108,6 @@ def _telling(outcome: Outcome | None) -> list[str]:
         return []
     named = [*(one.test for one in outcome.diverged), *(kill.test for kill in outcome.kills)]
     return [*named, outcome.test] if outcome.test is not None else named
-
-
-def _diverged(outcome: Outcome | None, test: str) -> Diverged | None:
-    return next((one for one in outcome.diverged if one.test == test), None) if outcome is not None else None
 
 
 def _one_of(tests: list[str], wanted: str) -> str:
@@ -132,7 +119,7 @@ def _one_of(tests: list[str], wanted: str) -> str:
         return found[0]
     listed = ", ".join((found or tests)[:_LISTED]) + (" …" if len(found or tests) > _LISTED else "")
     problem = f"several tests fit: {listed}" if found else f"no such test runs the mutant; these do: {listed}"
-    raise SelectionError(f"--test {wanted}: {problem}")
+    raise UsageError(f"--test {wanted}: {problem}")
 
 
 Test = Annotated[
@@ -154,42 +141,41 @@ Mcap = Annotated[
 
 
 def motion(
-    context: typer.Context,
-    mutant: options.OneMutant,
+    context: CommandContext,
+    mutant: str,
     *,
-    round: options.Round = None,
+    round: int | None = None,
     test: Test = None,
     video: Video = None,
     rerun: Rerun = False,
     rrd: Rrd = None,
     mcap: Mcap = None,
-    jobs: options.Jobs = None,
+    jobs: int | None = None,
 ) -> None:
     """Show what one mutant of the last campaign did in one test, beside the original.
 
     It is the test and the round that tell most, if --test and --round do not say which. --video runs both and
     films them. The others run nothing: they show the test as the campaign recorded it.
     """
-    path = find_journal(context.obj)
-    sights = list(sights_of(path.parent, rerun=rerun, rrd=rrd, mcap=mcap))
+    sights = list(sights_of(context.journal.parent, rerun=rerun, rrd=rrd, mcap=mcap))
     if video is not None:
         module("pictures.video")
         check(video, ".mp4")
     elif not sights:
         raise UsageError("say how to show it: --video, --rerun, --rrd or --mcap")
-    with JournalReader.open(path) as journal, closing(StoredEvidence(path)) as evidence:
-        results = read_results(journal, earlier=True)
-        result = find_mutant(results, mutant)
-        wanted = None if round is None else number_of(round, results.rounds)
+    results = context.results(earlier=True)
+    result = results.mutant(mutant)
+    wanted = None if round is None else results.round_index(round)
+    with closing(context.recordings()) as evidence:
         shown = choose(results, result, evidence, wanted, test)
     if sights:
         lines = chain(missing_in(shown), (sight(shown) for sight in sights))
-        tell(f"mutabot: {line}" for line in lines)
+        context.tell(f"mutabot: {line}" for line in lines)
     if video is not None:
-        request = request_again(path.parent.parent, results, jobs)
-        with progress_shown() as progress:
+        request = context.request_again(results, jobs)
+        with context.progress() as progress:
             said = list(_film(request, result.mutant, shown, video, progress))
-        tell(f"mutabot: {line}" for line in said)
+        context.tell(f"mutabot: {line}" for line in said)
 
 
 def _film(request: Request, mutant: Mutant, shown: Shown, file: Path, progress: Progress) -> Iterator[str]:

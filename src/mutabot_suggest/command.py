@@ -2,23 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Annotated
 
 import typer
 
-from mutabot.campaign.selection import select
-from mutabot.cli import options
-from mutabot.cli.output import print_json, progress_shown
-from mutabot.cli.request import request_again
-from mutabot.errors import NothingToDoError
-from mutabot.journal.files import find_journal
-from mutabot.model import Verdict
-from mutabot.report.terminal.console import make_console
-from mutabot.report.texts import status_of
-from mutabot.results.results import MutantResult, Results, results_at
-from mutabot.results.suggested import keep_suggestions
+from mutabot.api.reports import CommandContext, MutantResult, Results, Verdict
 
-from .shown import data_of_suggestions, print_suggestions
+from .found import NothingToSuggestError
+from .shown import by_survivor, data_of_suggestions, print_suggestions
 
 #: fresh seeds: each is run
 _MOST_SEEDS = 10_000
@@ -36,12 +28,12 @@ _Seeds = Annotated[
 
 
 def suggest(
-    context: typer.Context,
-    only: options.Only = None,
-    skip: options.Skip = None,
+    context: CommandContext,
+    only: list[str] | None = None,
+    skip: list[str] | None = None,
     seeds: _Seeds = 20,
-    jobs: options.Jobs = None,
-    json: options.Json = False,
+    jobs: int | None = None,
+    json: bool = False,
 ) -> None:
     """Suggest checks that kill survivors.
 
@@ -49,31 +41,31 @@ def suggest(
     """
     from .suggest import suggest as find_checks  # noqa: PLC0415  # it loads much
 
-    path = find_journal(context.obj)
-    results = results_at(path)
-    chosen = _chosen(results, only, skip)
-    request = request_again(path.parent.parent, results, jobs)
-    with progress_shown() as progress:
+    results = context.results()
+    chosen = _chosen(results, only or (), skip or ())
+    request = context.request_again(results, jobs)
+    with context.progress() as progress:
         found = find_checks(request, chosen, progress, seeds=seeds)
-    keep_suggestions(path, results.meta, found)
-    print_json(data_of_suggestions(found)) if json else print_suggestions(make_console(), found)
+    context.keep_suggestions(results, by_survivor(found))
+    context.print_json(data_of_suggestions(found)) if json else print_suggestions(context, found)
 
 
-def _chosen(results: Results, only: list[str] | None, skip: list[str] | None) -> list[MutantResult]:
-    """Return the survivors that were asked for. Raises NothingToDoError if there is none, saying why."""
+def _chosen(results: Results, only: Sequence[str], skip: Sequence[str]) -> list[MutantResult]:
+    """Return the survivors that were asked for. Raises NothingToSuggestError if there is none, saying why."""
     if results.graded and not results.mutants:
-        raise NothingToDoError("graded mutants have no survivors but thresholds: `mutabot thresholds`")
+        raise NothingToSuggestError("graded mutants have no survivors but thresholds: `mutabot thresholds`")
     if not results.mutants:
-        raise NothingToDoError(f"the journal holds no mutants ({results.state}): run `mutabot run` first")
+        raise NothingToSuggestError(
+            f"the journal holds no mutants ({results.state}): run `mutabot run` first"
+        )
     if not results.done:
-        raise NothingToDoError("no mutant has been run yet: continue with `mutabot run`")
-    mutants = select([one.mutant for one in results.mutants], tuple(only or ()), tuple(skip or ()), None)
+        raise NothingToSuggestError("no mutant has been run yet: continue with `mutabot run`")
+    selected = results.selected(only, skip)
     # where no test comes, no check helps
-    reached = (one for one in results.survivors if status_of(one) is not Verdict.NOT_COVERED)
-    survivors = {one.mutant.id: one for one in reached}
+    survivors = [one for one in results.survivors if one.status is not Verdict.NOT_COVERED]
     if not survivors:
-        raise NothingToDoError("no mutant survived: there is no check to suggest")
-    chosen = [survivors[mutant.id] for mutant in mutants if mutant.id in survivors]
+        raise NothingToSuggestError("no mutant survived: there is no check to suggest")
+    chosen = [one for one in selected if one in survivors]
     if not chosen:
-        raise NothingToDoError("none of the mutants that were asked for survived")
+        raise NothingToSuggestError("none of the mutants that were asked for survived")
     return chosen

@@ -1,29 +1,26 @@
-"""Suggestions as the command shows them: on the terminal, and as JSON."""
+"""What was found, as the command shows it: on the terminal, as JSON, and in reports of the campaign."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import asdict
 from typing import Any
 
-from rich.console import Console
-from rich.text import Text
+from mutabot.api.reports import CommandContext, Suggestion
 
-from mutabot.report.document import data_of
-from mutabot.report.sections import Section, plural, suggestion_lines
-from mutabot.report.terminal.console import print_section
-from mutabot.results.suggested import Suggestion, Suggestions, Unsolved
+from .found import Dropped, ProvenCheck, Suggestions, Unsolved
 
 #: lines of a section that are shown; --json has all
 _MOST = 10
 
 
-def print_suggestions(console: Console, found: Suggestions) -> None:
+def print_suggestions(context: CommandContext, found: Suggestions) -> None:
     """Print each check with what it kills and how sure it is, the survivors that are left, and the diff."""
-    killed = {mutant for one in found.suggestions for mutant in one.kills}
+    killed = {mutant for one in found.checks for mutant in one.kills}
     survivors = plural(len(killed) + len(found.unsolved), "survivor")
-    text = f"{plural(len(found.suggestions), 'check')} for {len(killed)} of {survivors}"
-    console.print(Text(text, style="bold"))
-    for number, one in enumerate(found.suggestions, start=1):
-        print_section(console, Section(f"{number}  {one.test}", lines=[*suggestion_lines(one, found)]))
+    context.print(f"{plural(len(found.checks), 'check')} for {len(killed)} of {survivors}")
+    for number, one in enumerate(found.checks, start=1):
+        context.print_section(f"{number}  {one.test}", [*check_lines(one, found)])
     left = [_left(one, found) for one in found.unsolved if not one.never]
     never = [_left(one, found) for one in found.unsolved if one.never]
     dropped = [f"{one.statement}: {one.reason}" for one in found.dropped]
@@ -34,32 +31,82 @@ def print_suggestions(console: Console, found: Suggestions) -> None:
     }
     for name, lines in sections.items():
         if lines:
-            print_section(console, Section(name, lines=lines), _MOST)
+            context.print_section(name, lines, _MOST)
     if found.diff:
-        console.print(f"\n{found.diff.rstrip()}", soft_wrap=True)
+        context.print(f"\n{found.diff.rstrip()}")
+
+
+def check_lines(one: ProvenCheck, found: Suggestions) -> Iterator[str]:
+    """Yield the assertion, what it kills, its tolerance, and its false alarms."""
+    yield one.statement
+    yield f"kills {_kills(one, found)}"
+    seen = f"{plural(one.runs, 'run')} of the original"
+    yield f"{seen} spread {one.spread:.3g}" if one.spread else f"equal in {seen}"
+    yield (
+        f"false alarms: none in {plural(one.fresh, 'new seed')} "
+        f"(so at most {100 * one.unseen:.2g} % of runs, 95 % confidence)"
+    )
+    if one.by_hand:
+        yield "another tool makes this test: add this by hand where it ends:"
+        yield from (f"  {line}" for line in one.by_hand.splitlines())
+
+
+def _kills(one: ProvenCheck, found: Suggestions) -> str:
+    """The mutants by the rounds in which they are killed: ``#7, #9 in all rounds``."""
+    by_rounds: dict[tuple[int, ...], list[int]] = {}
+    for mutant, rounds in one.kills.items():
+        by_rounds.setdefault(tuple(rounds), []).append(found.numbers.get(mutant, 0))
+    parts = []
+    for rounds, numbers in by_rounds.items():
+        several = "s" if len(rounds) > 1 else ""
+        where = f" in round{several} {', '.join(str(round + 1) for round in sorted(rounds))}"
+        if len(rounds) == found.rounds:
+            where = " in all rounds" if found.rounds > 1 else ""
+        parts.append(", ".join(f"#{number}" for number in sorted(numbers)) + where)
+    return "; ".join(parts)
+
+
+def plural(count: int, name: str) -> str:
+    """Return ``1 check``, ``2 checks``."""
+    return f"{count} {name if count == 1 else name + 's'}"
 
 
 def _left(one: Unsolved, found: Suggestions) -> str:
     return f"#{found.numbers.get(one.mutant, 0)} {found.descriptions.get(one.mutant, '')}: {one.reason}"
 
 
+def by_survivor(found: Suggestions) -> dict[str, Suggestion]:
+    """Return what reports say of each survivor by its id: a check that kills it, or why none does."""
+    said = {one.mutant: Suggestion(reason=one.reason) for one in found.unsolved}
+    for one in reversed(found.checks):
+        statement, *notes = check_lines(one, found)
+        said |= dict.fromkeys(one.kills, Suggestion(one.test, statement, tuple(notes)))
+    return said
+
+
 def data_of_suggestions(found: Suggestions) -> dict[str, Any]:
     """Return what ``--json`` prints; docs/suggest.md describes it."""
 
     def mutant(name: str) -> dict[str, Any]:
-        told = found.descriptions.get(name, "")
-        return {"id": name, "number": found.numbers.get(name), "description": told}
+        description = found.descriptions.get(name, "")
+        return {"id": name, "number": found.numbers.get(name), "description": description}
 
-    def kills(one: Suggestion) -> list[dict[str, Any]]:
+    def kills(one: ProvenCheck) -> list[dict[str, Any]]:
         return [
             {"mutant": mutant(name), "rounds": [round + 1 for round in rounds]}
             for name, rounds in one.kills.items()
         ]
 
     return {
-        **data_of.facts(found, "rounds seeds"),
-        "suggestions": [{**data_of(one), "kills": kills(one)} for one in found.suggestions],
+        "rounds": found.rounds,
+        "seeds": found.seeds,
+        "suggestions": [{**_facts(one), "kills": kills(one)} for one in found.checks],
         "diff": found.diff,
-        "unsolved": [{**data_of(one), "mutant": mutant(one.mutant)} for one in found.unsolved],
-        "dropped": data_of(found.dropped),
+        "unsolved": [{**_facts(one), "mutant": mutant(one.mutant)} for one in found.unsolved],
+        "dropped": [_facts(one) for one in found.dropped],
     }
+
+
+def _facts(one: ProvenCheck | Unsolved | Dropped) -> dict[str, Any]:
+    """Its fields, without those that are None."""
+    return {name: value for name, value in asdict(one).items() if value is not None}

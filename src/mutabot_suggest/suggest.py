@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from mutabot.campaign.beginning import open_executor
 from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.run import run_campaign
-from mutabot.errors import MutabotError, NothingToDoError
+from mutabot.errors import MutabotError
 from mutabot.execution.task import Task
 from mutabot.frozen import frozen
 from mutabot.journal.journal import JournalReader
@@ -19,9 +19,9 @@ from mutabot.model import By, Mutant, Verdict
 from mutabot.model.deadline import Limit
 from mutabot.model.events import TestEnd
 from mutabot.results.results import MutantResult
-from mutabot.results.suggested import Dropped, Suggestion, Suggestions, Unsolved
 
 from .checks import ProposedCheck, Trials, candidates, unseen
+from .found import Dropped, NothingToSuggestError, ProvenCheck, Suggestions, Unsolved
 from .project import OTHER, PlaceInTest, SuiteFiles, copy_of, edited, place_of
 from .readings import Measured, is_number, known, measure
 
@@ -126,7 +126,7 @@ def suggest(
         progress: is told.
         seeds: how many fresh seeds are run for the bands, and as many others for the proof.
 
-    Raises NothingToDoError if there is nothing to kill or nothing to look at, and what a campaign raises.
+    Raises NothingToSuggestError if there is nothing to kill or to look at, and what a campaign raises.
     """
     to_kill, never, tests = _sorted_out(chosen)
     nothing = Suggestions(
@@ -148,7 +148,7 @@ def suggest(
     project = SuiteFiles(request)
     places = {test: place for test in tests if (place := place_of(project, test)) is not None}
     if not places:
-        raise NothingToDoError(
+        raise NothingToSuggestError(
             f"no check can be added to the tests of these survivors, such as {next(iter(tests), 'no test')}: "
             "they are neither functions of pytest, nor methods of unittest, nor made by another tool"
         )
@@ -163,7 +163,7 @@ def suggest(
     left = [mutant for name, (mutant, _) in to_kill.items() if name not in killed]
     return replace(
         nothing,
-        suggestions=tuple(_suggestion(one, proof.kills[one], seeds) for one in checks),
+        checks=tuple(_suggestion(one, proof.kills[one], seeds) for one in checks),
         diff=project.diff(texts),
         unsolved=(*(why_unsolved(one, measured, found, proof, refused) for one in left), *never),
         dropped=tuple(Dropped(one.place.node, one.statement, why) for one, why in proof.failed.items()),
@@ -204,13 +204,13 @@ def chosen_of(checks: Sequence[ProposedCheck], kills: Mapping[ProposedCheck, Tri
     return chosen
 
 
-def _suggestion(check: ProposedCheck, trials: Trials, seeds: int) -> Suggestion:
+def _suggestion(check: ProposedCheck, trials: Trials, seeds: int) -> ProvenCheck:
     added = check.addition()
     is_other = check.place.style == OTHER
     kills: dict[str, tuple[int, ...]] = {}
     for mutant, round in sorted(trials):
         kills[mutant] = (*kills.get(mutant, ()), round)
-    return Suggestion(
+    return ProvenCheck(
         test=check.place.node,
         style=check.place.style,
         looks_at=check.reading.text,

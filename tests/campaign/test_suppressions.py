@@ -12,7 +12,7 @@ from mutabot.campaign.run import run_campaign
 from mutabot.cli.app import main
 from mutabot.config.suppressions import FILE, add_acceptances
 from mutabot.errors import ConfigurationError, ExitCode
-from mutabot.results.results import Results, results_at
+from mutabot.results.results import Results
 from tests.campaign.project import Quiet, request_for, write_project
 from tests.campaign.scripted import Script
 
@@ -38,7 +38,7 @@ def project(tmp_path: Path) -> Path:
 
 
 def campaign(project: Path, progress: Quiet | None = None, **changes: object) -> Results:
-    return results_at(run_campaign(request_for(project, **changes), progress or Quiet()))
+    return Results.read(run_campaign(request_for(project, **changes), progress or Quiet()))
 
 
 def accept(project: Path, *tables: str) -> None:
@@ -244,11 +244,11 @@ def test_the_file_is_applied_to_the_last_campaign_without_a_run(
     accept(project, entry(operator="skip", why="any"))
     script.tasks.clear()
     assert run(project, "accept") == ExitCode.FINE
-    assert len(results_at(path).accepted) == 2
+    assert len(Results.read(path).accepted) == 2
     assert script.tasks == []
     (project / FILE).unlink()
     assert run(project, "accept") == ExitCode.FINE
-    assert results_at(path).accepted == []
+    assert Results.read(path).accepted == []
     assert capsys.readouterr().out.endswith("No survivor is accepted\n")
 
 

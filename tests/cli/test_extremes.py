@@ -15,7 +15,7 @@ from pydantic import BaseModel
 from typer.models import OptionInfo
 
 from mutabot.cli.app import app, function_of, main
-from mutabot.cli.options import with_options
+from mutabot.cli.parameters import with_options
 from mutabot.config import options as limits
 from mutabot.config.configuration import Settings, load_configuration
 from mutabot.config.demands import DemandTable

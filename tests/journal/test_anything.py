@@ -26,7 +26,7 @@ from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.mutant import print_mutant
 from mutabot.report.texts import portable
 from mutabot.results.gate import decide
-from mutabot.results.results import find_mutant, read_results
+from mutabot.results.results import read_results
 from mutabot.results.stored import open as open_campaign
 from mutabot.results.thresholds import thresholds_of
 from results import samples
@@ -139,7 +139,7 @@ def read_all(path: Path) -> None:
     console = make_console()
     print_results(console, found)
     for one in found.everything:
-        print_mutant(console, find_mutant(found, one.mutant.id), samples.PROGRAM)
+        print_mutant(console, found.mutant(one.mutant.id), samples.PROGRAM)
 
 
 def written_as(name: str) -> Callable[[Path], None]:

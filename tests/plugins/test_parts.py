@@ -41,14 +41,10 @@ EXTENSION = """
     """
 PARTS = '''
     from dataclasses import dataclass
-    from typing import Unpack
-
     import typer
 
-    from mutabot.api.processes import ExecutorChoice, ProjectFiles, Table
+    from mutabot.api.processes import ExecutorChoice, ProjectFiles, Request, Table
     from mutabot.api.reports import UsageError
-    from mutabot.cli import options
-    from mutabot.cli.request import request_of
 
     class ToyTable(Table):
         files: ProjectFiles = ()
@@ -85,9 +81,8 @@ PARTS = '''
         def preview(cls, request):
             return Preview(request.configuration.tables["toy"])
 
-    def play(context: typer.Context, executor=None, **given: Unpack[options.Running]):
+    def play(request: Request):
         """Play with the campaign, and tell how."""
-        request = request_of(context.obj, executor=executor, **given)
         typer.echo(f"{request.executor} in {request.rounds} rounds")
 
     def count(results):

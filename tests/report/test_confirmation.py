@@ -14,7 +14,6 @@ from mutabot.report.html.folder import campaign_data, mutant_page
 from mutabot.report.terminal.campaign import print_results
 from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.mutant import print_mutant
-from mutabot.results.results import find_mutant
 from report.material import made, stored
 from results import samples
 
@@ -33,7 +32,7 @@ def campaign(folder: Path, **changes: Any) -> Any:
 def on_terminal(found: Any, number: int) -> tuple[str, str]:
     files = io.StringIO(), io.StringIO()
     print_results(make_console(files[0], width=200), found)
-    print_mutant(make_console(files[1], width=200), find_mutant(found, str(number)), None)
+    print_mutant(make_console(files[1], width=200), found.mutant(str(number)), None)
     return files[0].getvalue(), files[1].getvalue()
 
 

@@ -12,7 +12,7 @@ from mutabot.journal.files import WriterLock
 from mutabot.journal.journal import Journal
 from mutabot.model import By, Mutant, Outcome, Verdict
 from mutabot.results.gate import decide
-from mutabot.results.results import Results, find_mutant, read_results
+from mutabot.results.results import Results, read_results
 from tests.results.samples import MUTANTS, OUTCOMES, REVERSE, SKIP, write_journal
 
 
@@ -119,10 +119,10 @@ def test_outcomes_of_mutants_that_are_not_planned_do_not_count(tmp_path: Path) -
 
 def test_a_mutant_is_found_by_number_and_id_or_the_nearest_is_named(tmp_path: Path) -> None:
     found = results(tmp_path, OUTCOMES)
-    assert find_mutant(found, "2").mutant == SKIP
-    assert find_mutant(found, SKIP.id).mutant == SKIP
+    assert found.mutant("2").mutant == SKIP
+    assert found.mutant(SKIP.id).mutant == SKIP
     with pytest.raises(SelectionError, match="numbered 1 to 5"):
-        find_mutant(found, "6")
-    assert find_mutant(found, SKIP.id[:-1]).mutant == SKIP  # a part of it will do
+        found.mutant("6")
+    assert found.mutant(SKIP.id[:-1]).mutant == SKIP  # a part of it will do
     with pytest.raises(SelectionError, match="did you mean"):
-        find_mutant(found, SKIP.id.replace("skip", "skipp"))
+        found.mutant(SKIP.id.replace("skip", "skipp"))

@@ -7,22 +7,27 @@ from typing import TYPE_CHECKING
 from mutabot.lazy import lazily
 
 if TYPE_CHECKING:
-    from mutabot.cli.output import echo
+    from mutabot.campaign.request import Progress
+    from mutabot.cli.context import CommandContext
     from mutabot.errors import MutabotError, UsageError
     from mutabot.model.outcome import Outcome, Verdict
     from mutabot.results.results import MutantResult, Results
+    from mutabot.results.suggested import Suggestion
 
 __all__ = [
+    "CommandContext",
     "MutabotError",
     "MutantResult",
     "Outcome",
+    "Progress",
     "Results",
+    "Suggestion",
     "UsageError",
     "Verdict",
-    "echo",
 ]
 _HOMES = {
-    "mutabot.cli.output": ("echo",),
+    "mutabot.campaign.request": ("Progress",),
+    "mutabot.cli.context": ("CommandContext",),
     "mutabot.errors": (
         "MutabotError",
         "UsageError",
@@ -35,5 +40,6 @@ _HOMES = {
         "MutantResult",
         "Results",
     ),
+    "mutabot.results.suggested": ("Suggestion",),
 }
 __getattr__, __dir__ = lazily(__name__, _HOMES)

@@ -20,9 +20,9 @@ from mutabot.campaign.plan import Plan, draw, make_plan
 from mutabot.campaign.request import CheckReport, ExecutorChoice, Preview, Progress, Request
 from mutabot.campaign.reuse.original import OriginalRuns
 from mutabot.campaign.reuse.snapshot import OpenedFiles
-from mutabot.campaign.selection import refuse_typos, select
 from mutabot.campaign.sharding.shards import part_of
 from mutabot.campaign.suppressions import divided, suppressions_of
+from mutabot.campaign.typos import refuse_typos
 from mutabot.errors import JournalError, NothingToDoError, in_short
 from mutabot.execution.interruption import interruptions_kept
 from mutabot.execution.processes import provide
@@ -35,6 +35,7 @@ from mutabot.model.codec import to_data
 from mutabot.model.events import Remark
 from mutabot.model.mutant import Place
 from mutabot.model.outcome import by_heading
+from mutabot.model.selection import select
 
 if TYPE_CHECKING:
     from mutabot.campaign.baseline.baseline import Baseline

@@ -11,17 +11,16 @@ import typer
 from typer import Option
 
 from mutabot.campaign.suppressions import comments_in, note_accepted
-from mutabot.cli import options
-from mutabot.cli.output import print_json, tell
+from mutabot.cli.context import CommandContext
 from mutabot.config.suppressions import FILE, add_acceptances, read_suppressions
 from mutabot.errors import SelectionError, UsageError
-from mutabot.journal.files import find_journal, is_written
+from mutabot.journal.files import is_written
 from mutabot.journal.journal import Journal
 from mutabot.report.document import accepting_data
 from mutabot.report.sections import Section, accepted_sections, numbered
 from mutabot.report.terminal.console import make_console, print_section, short_place
 from mutabot.report.texts import acceptance_text, state_of
-from mutabot.results.results import MutantResult, Results, find_mutant, results_at
+from mutabot.results.results import MutantResult, Results
 
 _MUTANTS = "Numbers, ids, or unique parts of ids. Without any, list what is accepted."
 _WHY = "Why these may survive. It is written beside each of them."
@@ -29,39 +28,39 @@ _Mutants = Annotated[list[str] | None, typer.Argument(metavar="[MUTANT]...", hel
 _Why = Annotated[str, Option("--why", metavar="TEXT", help=_WHY)]
 
 
-def accept(
-    context: typer.Context, mutant: _Mutants = None, why: _Why = "", json: options.Json = False
-) -> None:
+def accept(context: CommandContext, mutant: _Mutants = None, why: _Why = "", json: bool = False) -> None:
     """Accept survivors, with a reason: they leave the list of survivors and the score.
 
     Writes mutabot-accepted.toml beside the configuration; commit it. Without a mutant, applies that file and
     the comments in the program to the last campaign, and lists what is accepted.
     """
-    path = find_journal(context.obj)
+    path = context.journal
     root, names = path.parent.parent, mutant or []
     if names and not why.strip():
         raise UsageError('say why these may survive: --why "…"')
     if why and not names:
         raise UsageError("--why needs a mutant: `mutabot accept 5 --why …`")
-    results = results_at(path, earlier=True)
-    chosen = list({one.mutant.id: one for one in (find_mutant(results, name) for name in names)}.values())
+    results = context.results(earlier=True)
+    chosen = list({one.mutant.id: one for one in (results.mutant(name) for name in names)}.values())
     _refuse_others(chosen)
     if chosen:
         entries = [(one.mutant.id, _line(results, one)) for one in chosen]
         add_acceptances(root, entries, why.strip(), datetime.date.today())
     if is_written(path):
-        tell([f"{FILE} is written; a campaign is running: `mutabot accept` applies it when that has ended"])
+        context.tell(
+            [f"{FILE} is written; a campaign is running: `mutabot accept` applies it when that has ended"]
+        )
         return
     _apply(path, root, results)
-    found = results_at(path, earlier=True)
+    found = context.results(earlier=True)
     if json:
-        print_json(accepting_data(found))
+        context.print_json(accepting_data(found))
         return
     shown = [*accepted_sections(found, short_place)] or [Section("No survivor is accepted")]
     for section in shown:
         print_section(make_console(), section)
     if chosen:
-        tell([f"\naccepted {numbered([one.mutant.number for one in chosen])}; commit {FILE}"])
+        context.tell([f"\naccepted {numbered([one.mutant.number for one in chosen])}; commit {FILE}"])
 
 
 def _refuse_others(chosen: Sequence[MutantResult]) -> None:

@@ -25,7 +25,8 @@ from mutabot.errors import ExitCode, MutabotError, UsageError, shortened
 from mutabot.execution.interruption import interrupt
 from mutabot.extensions import brought, not_installed
 
-from .options import Version, with_options
+from .options import Version
+from .parameters import with_options
 from .streams import guarded_streams
 
 #: characters of a message about the command line
@@ -82,9 +83,7 @@ SETTINGS: dict[str, Any] = {
 class Commands(TyperGroup):
     """Mutabot's own commands and those of packages.
 
-    A command is a function from which typer can make one. Its parameter ``context`` has the project's folder
-    as ``obj``. With a parameter ``executor`` and ``**given: Unpack[options.Running]`` it has the options of
-    ``run`` and of the executors; ``cli.request.request_of`` makes a request of them.
+    A command is a function; ``cli.parameters`` says what its parameters stand for.
     """
 
     def list_commands(self, ctx: Any) -> list[str]:

@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from functools import wraps
-from inspect import Parameter, signature
 from pathlib import Path
-from typing import Annotated, Any, TypedDict, get_args, get_type_hints
+from typing import Annotated, TypedDict
 
 import typer
 from typer import Option
 
 from mutabot import __version__
 from mutabot.config.options import JOBS, ROUNDS, SEED, VERIFIED
-from mutabot.errors import UsageError
-from mutabot.extensions import ExtensionPart, brought
 
 #: the names of ``campaign.request``, which is not loaded for this, so that `--help` is fast
 ENGINES = ("auto", "fork", "replay")
@@ -83,7 +78,7 @@ MinScore = Annotated[
 
 
 class Setting(TypedDict, total=False):
-    """Options of commands that take a baseline; commands take them as ``**given: Unpack[…]``."""
+    """Options of commands that take a baseline."""
 
     family: Families
     rounds: Rounds
@@ -112,50 +107,13 @@ class Running(Planning, total=False):
     budget: Budget
 
 
-_DEFAULTS: Mapping[str, Any] = {"engine": "auto", "fresh": False}
-#: parameters that stand for the options of all parts of a kind; and what is said when two are chosen
-_OF_PARTS = {
-    "executor": ("executors", "a campaign has one executor"),
-    "template": ("templates", "a project starts from one template"),
-}
+class Shared(TypedDict, total=False):
+    """Options that several commands take by the name of a parameter."""
 
-
-def with_options(function: Callable[..., object]) -> Callable[..., object]:
-    """Make a command of which typer can read the options.
-
-    Its ``**given: Unpack[…]`` becomes the options of a class above. A parameter ``executor`` becomes an
-    option for each executor, and takes which was chosen: its name and the option's value. So does a parameter
-    ``template``: it takes the name, and the files that the template makes of the value.
-    """
-    own = signature(function, eval_str=True)
-    kind = next((name for name in _OF_PARTS if name in own.parameters), "")
-    found = brought(_OF_PARTS[kind][0], Running.__annotations__) if kind else {}
-    names = {f"{kind}_{name.replace('-', '_')}": part for name, part in found.items()}
-
-    @wraps(function)
-    def command(**values: Any) -> object:
-        chosen = [(part, value) for key, part in names.items() if (value := values.pop(key)) is not None]
-        if len(chosen) > 1:
-            raise UsageError(f"{' and '.join(f'--{part.name}' for part, _ in chosen)}: {_OF_PARTS[kind][1]}")
-        for part, value in chosen:
-            values[kind] = part.name, part.load_function()(value) if kind == "template" else value
-        return function(**values)
-
-    parameters = list(_parameters(own.parameters.values(), names))
-    changed: Any = command
-    changed.__signature__ = own.replace(parameters=parameters)
-    changed.__annotations__ = {one.name: one.annotation for one in parameters}
-    return command
-
-
-def _parameters(own: Iterable[Parameter], parts: Mapping[str, ExtensionPart]) -> Iterator[Parameter]:
-    for one in own:
-        if one.kind is one.VAR_KEYWORD:
-            (options,) = get_args(one.annotation)
-            for name, hint in get_type_hints(options, include_extras=True).items():
-                yield Parameter(name, one.KEYWORD_ONLY, default=_DEFAULTS.get(name), annotation=hint)
-        elif one.name not in _OF_PARTS:
-            yield one.replace(kind=one.KEYWORD_ONLY)
-    for key, part in parts.items():
-        option = Option(f"--{part.name}", metavar=part.metavar, help=part.help)
-        yield Parameter(key, Parameter.KEYWORD_ONLY, default=None, annotation=Annotated[str | None, option])
+    only: Only
+    skip: Skip
+    jobs: Jobs
+    json: Json
+    round: Round
+    mutant: OneMutant
+    min_score: MinScore

@@ -8,21 +8,18 @@ from itertools import zip_longest
 from pathlib import Path, PurePosixPath
 from typing import Annotated
 
-import typer
 from typer import Option
 
 from mutabot.cli import options
-from mutabot.cli.output import print_bytes, print_json, show_results, tell
+from mutabot.cli.context import CommandContext
 from mutabot.errors import JournalError, UsageError
-from mutabot.journal.files import find_journal
 from mutabot.report.format import Format, Material, format_of, names
 from mutabot.report.html.folder import Contents, check_folder, write_folder
 from mutabot.report.terminal.campaign import print_thresholds
 from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.mutant import print_mutant
 from mutabot.report.texts import Cleaner, portable
-from mutabot.results.results import Results, find_mutant, results_at
-from mutabot.results.stored import StoredEvidence
+from mutabot.results.results import Results
 from mutabot.results.suggested import kept_suggestions
 from mutabot.results.thresholds import thresholds_of
 
@@ -39,47 +36,44 @@ _Html = Annotated[Path | None, Option("--html", metavar="DIR", help=_HTML)]
 _Prefix = Annotated[str, Option("--prefix", metavar="FOLDER", help=_PREFIX)]
 
 
-def results(context: typer.Context, json: options.Json = False) -> None:
+def results(context: CommandContext, json: bool = False) -> None:
     """List the mutants and scores of the last campaign.
 
     Also of a campaign that was interrupted or still runs.
     """
-    show_results(find_journal(context.obj), json=json, earlier=True)
+    context.show_results(context.journal, json=json, earlier=True)
 
 
 def show(
-    context: typer.Context,
-    mutant: options.OneMutant,
+    context: CommandContext,
+    mutant: str,
     all: options.EveryRound = False,
-    json: options.Json = False,
+    json: bool = False,
 ) -> None:
     """Show the details of one mutant."""
-    path = find_journal(context.obj)
-    found = results_at(path, earlier=True)
-    result = find_mutant(found, mutant)
+    found = context.results(earlier=True)
+    result = found.mutant(mutant)
     is_there = not result.outdated or result.mutant.family in found.meta.get("families", ())
     source = found.source(result.mutant.site.span.file) if is_there else None
     if json:
-        print_json(result)
+        context.print_json(result)
     else:
-        suggestions = kept_suggestions(path, found.meta)
-        print_mutant(make_console(), result, source, suggestions, everything=all)
+        suggestion = kept_suggestions(context.journal, found.meta).get(result.mutant.id)
+        print_mutant(make_console(), result, source, suggestion, everything=all)
 
 
-def thresholds(context: typer.Context, json: options.Json = False) -> None:
+def thresholds(context: CommandContext, json: bool = False) -> None:
     """Show how large a fault must be before the tests notice it."""
-    journal = find_journal(context.obj)
-    results = results_at(journal)
+    results = context.results()
     if not results.ladders:
-        raise JournalError(
-            f"{journal}: the campaign has no graded mutants; `mutabot run --family graded` plants them"
-        )
+        none = "the campaign has no graded mutants; `mutabot run --family graded` plants them"
+        raise JournalError(f"{context.journal}: {none}")
     found = thresholds_of(results)
-    print_json(found) if json else print_thresholds(make_console(), found)
+    context.print_json(found) if json else print_thresholds(make_console(), found)
 
 
 def report(
-    context: typer.Context,
+    context: CommandContext,
     format: _Formats = None,
     output: _Outputs = None,
     html: _Html = None,
@@ -91,18 +85,18 @@ def report(
         raise UsageError(f"say which --format to write: {', '.join(names())}; or --html with a folder")
     if html is not None:
         check_folder(html)
-    journal, folder = find_journal(context.obj), PurePosixPath(prefix)
+    folder = PurePosixPath(prefix)
     if folder.is_absolute() or ".." in folder.parts:
         raise UsageError(f"--prefix {prefix} must be a folder inside the repository, relative to its root")
-    stored = results_at(journal)
+    stored = context.results()
     campaign = portable(stored)
     material = Material(campaign, "" if folder == PurePosixPath() else str(folder))
     for make, file in wanted:
-        _write(make(material), file)
+        _write(context, make(material), file)
     if html is not None:
-        _write_pages(html, campaign, journal, stored.meta.get("root"))
+        _write_pages(context, html, campaign, stored.meta.get("root"))
     if not campaign.is_complete:
-        tell([f"mutabot: the campaign is not complete ({campaign.state}): {campaign.known}"])
+        context.tell([f"mutabot: the campaign is not complete ({campaign.state}): {campaign.known}"])
 
 
 def _wanted(names: Sequence[str], files: Sequence[Path]) -> Iterator[tuple[Format, Path]]:
@@ -122,10 +116,10 @@ def _wanted(names: Sequence[str], files: Sequence[Path]) -> Iterator[tuple[Forma
         yield found, file
 
 
-def _write(text: str, file: Path) -> None:
+def _write(context: CommandContext, text: str, file: Path) -> None:
     data = (text if text.endswith("\n") else f"{text}\n").encode()
     if file == _STANDARD:
-        print_bytes(data)
+        context.print_bytes(data)
         return
     try:
         file.write_bytes(data)
@@ -133,12 +127,11 @@ def _write(text: str, file: Path) -> None:
         raise UsageError(f"the report {file} cannot be written: {error.strerror}") from error
 
 
-def _write_pages(folder: Path, campaign: Results, journal: Path, root: str | None) -> None:
-
+def _write_pages(context: CommandContext, folder: Path, campaign: Results, root: str | None) -> None:
     name = Path(root).name if root else ""
-    with closing(StoredEvidence(journal)) as evidence:
-        suggestions = kept_suggestions(journal, campaign.meta)
+    with closing(context.recordings()) as evidence:
+        suggestions = kept_suggestions(context.journal, campaign.meta)
         written = write_folder(folder, Contents(campaign, name, evidence, Cleaner(root), suggestions))
-    tell([f"mutabot: open {written.page} in a browser ({written.size / 1e6:.1f} MB in its folder)"])
+    context.tell([f"mutabot: open {written.page} in a browser ({written.size / 1e6:.1f} MB in its folder)"])
     if written.without:
-        tell([f"mutabot: {written.without} recordings had no room; their pages say so"])
+        context.tell([f"mutabot: {written.without} recordings had no room; their pages say so"])

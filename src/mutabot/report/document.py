@@ -14,7 +14,7 @@ from mutabot.errors import ExtensionError
 from mutabot.extensions import ExtensionPart, brought
 from mutabot.journal import records
 from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity, Span
-from mutabot.report.texts import state_of, status_of
+from mutabot.report.texts import state_of
 from mutabot.results import ladders, thresholds
 from mutabot.results.results import Encoder, MutantResult, Results
 from mutabot.results.score import Group, RoundScores, Score
@@ -89,7 +89,7 @@ def _mutant(result: MutantResult) -> dict[str, Any]:
     )
     if not result.is_accepted:
         data["accepted"] = None
-    data["status"] = None if status_of(result) is None else state_of(result)
+    data["status"] = None if result.status is None else state_of(result)
     data["kill_rate"] = data_of.facts(result.kill_rate, "killed valid rate=score interval")
     return data if result.lets_through else data | {"distance": None, "worst": None}
 

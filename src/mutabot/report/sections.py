@@ -4,23 +4,21 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from mutabot.errors import in_short
 from mutabot.frozen import frozen
 from mutabot.journal.records import RAN_OVER, REMARKS, SIMULATION, Repeated, Untested
 from mutabot.model import LeftOut, Mutant, Span, Verdict
 from mutabot.model.outcome import NOTHING, by_heading, first_line
-from mutabot.results.divergence import numbers_text
-from mutabot.results.results import MutantResult, Results, unlooked
+from mutabot.results.results import OUTSIDE, Results, unlooked
 from mutabot.results.statistics import Estimate, Interval, false_kills, false_survivors
 from mutabot.results.thresholds import line_of, thresholds_of
 
-from .texts import OUTSIDE, acceptance_text, effect_text, escaped, rounds_text, status_of
+from .texts import acceptance_text, effect_text, escaped, rounds_text
 
 if TYPE_CHECKING:
     from mutabot.results.score import Group
-    from mutabot.results.suggested import Suggestion, Suggestions
 
 PlaceName = Callable[[Span], str]
 #: numbers of mutants that a line gives
@@ -168,13 +166,13 @@ _FEW = 10
 
 def _survivors(results: Results, place: PlaceName) -> Iterator[Section]:
     """Survivors with an effect, the largest first; the numbers of those without one in a line."""
-    idle = [one.mutant.number for one in results.survivors if status_of(one) is Verdict.NOT_COVERED]
+    idle = [one.mutant.number for one in results.survivors if one.status is Verdict.NOT_COVERED]
     if idle:
         yield Section(
             f"{plural(len(idle), 'mutant')} not covered, since no test reaches the place",
             lines=[numbered(idle)],
         )
-    survivors = [one for one in results.survivors if status_of(one) is not Verdict.NOT_COVERED]
+    survivors = [one for one in results.survivors if one.status is not Verdict.NOT_COVERED]
     if not survivors:
         if results.all.total.valid > len(idle) * results.rounds:
             yield Section("No survivors" if results.is_complete else "No survivors so far")
@@ -302,45 +300,6 @@ def _re_runs(what: str, found: Estimate | None, kinds: Sequence[tuple[str, Repea
     if parts:
         text = f"{what.capitalize()}: {'; '.join(parts)}"
         yield Section(text, is_alarm=any(one.changed for _, one in kinds))
-
-
-def suggestion_lines(one: Suggestion, found: Suggestions) -> Iterator[str]:
-    """Yield the assertion, what it kills, its tolerance, and its false alarms."""
-    yield one.statement
-    yield f"kills {_kills(one, found)}"
-    seen = f"{plural(one.runs, 'run')} of the original"
-    yield f"{seen} spread {one.spread:.3g}" if one.spread else f"equal in {seen}"
-    yield (
-        f"false alarms: none in {plural(one.fresh, 'new seed')} "
-        f"(so at most {100 * one.unseen:.2g} % of runs, 95 % confidence)"
-    )
-    if one.by_hand:
-        yield "another tool makes this test: add this by hand where it ends:"
-        yield from (f"  {line}" for line in one.by_hand.splitlines())
-
-
-def _kills(one: Suggestion, found: Suggestions) -> str:
-    """The mutants by the rounds in which they are killed: ``#7, #9 in all rounds``."""
-    by_rounds: dict[tuple[int, ...], list[int]] = {}
-    for mutant, rounds in one.kills.items():
-        by_rounds.setdefault(tuple(rounds), []).append(found.numbers.get(mutant, 0))
-    parts = []
-    for rounds, numbers in by_rounds.items():
-        where = f" in {numbers_text(round + 1 for round in rounds)}"
-        if len(rounds) == found.rounds:
-            where = " in all rounds" if found.rounds > 1 else ""
-        parts.append(", ".join(f"#{number}" for number in sorted(numbers)) + where)
-    return "; ".join(parts)
-
-
-def suggested_check(result: MutantResult, found: Suggestions | None) -> dict[str, Any] | None:
-    """Return the check that was suggested for a mutant, with its notes; None if there is none."""
-    suggestions = found.suggestions if found is not None else ()
-    one = next((one for one in suggestions if result.mutant.id in one.kills), None)
-    if one is None or found is None:
-        return None
-    statement, *notes = suggestion_lines(one, found)
-    return {"code": statement, "test": one.test, "notes": notes}
 
 
 def section_lines(section: Section, at_most: int) -> Iterator[str]:

@@ -13,7 +13,7 @@ from enum import Enum
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from mutabot.journal.records import Reaching, Untested
-from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity, Verdict
+from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity
 from mutabot.model.outcome import first_line
 from mutabot.results.divergence import numbers_text, worst_of
 
@@ -129,36 +129,13 @@ def _mapped(value: Any, change: Callable[[str], str]) -> Any:
     return value
 
 
-#: verdicts outside the score, those first that most need a look; of several rounds the first names the state
-OUTSIDE = (Verdict.ERROR, Verdict.UNSTABLE, Verdict.REFUSED, Verdict.INVALID, Verdict.NO_EFFECT)
-
-
-def status_of(result: MutantResult) -> Verdict | None:
-    """The verdict over all rounds; None if it has not been run. That a survivor is accepted changes nothing.
-
-    - *survived* if any round lets it through: that is what there is to act on;
-    - *not covered* if it is valid in some round, and no test reaches it in any of these;
-    - *killed* if every round in which it is valid kills it, *timeout* if all these only ran out of budget;
-    - else, as no round was valid, the verdict outside the score that most needs a look.
-    """
-    found = {outcome.verdict for outcome in result.outcomes}
-    valid = {verdict for verdict in found if verdict.is_valid}
-    if valid == {Verdict.NOT_COVERED}:
-        return Verdict.NOT_COVERED
-    if result.lets_through:
-        return Verdict.SURVIVED
-    if valid:
-        return Verdict.TIMEOUT if valid == {Verdict.TIMEOUT} else Verdict.KILLED
-    return next((verdict for verdict in OUTSIDE if verdict in found), None)
-
-
 #: the state of an accepted survivor, and of a mutant that has not been run
 ACCEPTED, NOT_RUN = "accepted", "not run"
 
 
 def state_of(result: MutantResult) -> str:
     """The verdict over all rounds, *accepted* or *not run*: what a mutant is counted as."""
-    return ACCEPTED if result.is_accepted else str(status_of(result) or NOT_RUN)
+    return ACCEPTED if result.is_accepted else str(result.status or NOT_RUN)
 
 
 def acceptance_text(result: MutantResult) -> str:
@@ -180,7 +157,7 @@ def rounds_text(result: MutantResult) -> str:
 def reason_of(result: MutantResult) -> str:
     """Why a mutant has its state: its rounds, one line about it, and what a deciding test said."""
     lines = [rounds_text(result), *filter(None, [acceptance_text(result)])]
-    status = status_of(result)
+    status = result.status
     if result.lets_through:
         lines.append(result.why)
     told: set[str] = set()
@@ -220,7 +197,7 @@ def telling(result: MutantResult) -> tuple[int, Diverged | None] | None:
     Of a survivor that is the round that let it through farthest from the original, which ``result.why`` is
     about too; else the first round with its state. None if it has not been run.
     """
-    status = status_of(result)
+    status = result.status
     outcomes = result.survived or [one for one in result.outcomes if one.verdict is status]
     if not outcomes:
         return next(((one.round, None) for one in result.outcomes), None)
@@ -231,7 +208,7 @@ def telling(result: MutantResult) -> tuple[int, Diverged | None] | None:
 
 def short_reason(result: MutantResult) -> str:
     """Why a mutant that has been run has its state, in a line: what the first such round said."""
-    status = status_of(result)
+    status = result.status
     return next(first_line(one.message) for one in result.outcomes if one.verdict is status)
 
 

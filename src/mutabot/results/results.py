@@ -12,13 +12,14 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from mutabot.errors import SelectionError, in_short, unknown_name_text
+from mutabot.errors import SelectionError, UsageError, in_short, unknown_name_text
 from mutabot.frozen import frozen
 from mutabot.journal import records
 from mutabot.journal.files import is_written
 from mutabot.journal.journal import JournalReader
 from mutabot.model import By, LeftOut, Mutant, Outcome, Quantity, Role, Verdict
 from mutabot.model.mutant import fits
+from mutabot.model.selection import select
 from mutabot.model.suppression import Acceptance, Accepted
 from mutabot.results.divergence import change_text, explain, quantity_of, worst_of
 from mutabot.results.score import Group, RoundScores, Score, groups_of
@@ -26,6 +27,8 @@ from mutabot.results.statistics import Confirmed
 
 #: mutants that are named where a text fits several
 _SHOWN = 10
+#: verdicts outside the score, those first that most need a look; of several rounds the first names the state
+OUTSIDE = (Verdict.ERROR, Verdict.UNSTABLE, Verdict.REFUSED, Verdict.INVALID, Verdict.NO_EFFECT)
 
 
 @frozen
@@ -79,6 +82,26 @@ class MutantResult:
     def is_accepted(self) -> bool:
         """Whether any round lets it through, and it is accepted: then it is in no score."""
         return self.lets_through and self.acceptance is not None
+
+    @property
+    def status(self) -> Verdict | None:
+        """The verdict over all rounds, also of an accepted survivor; None if it has not been run.
+
+        - *survived* if any round lets it through: that is what there is to act on;
+        - *not covered* if it is valid in some round, and no test reaches it in any of these;
+        - *killed* if every round in which it is valid kills it, *timeout* if all these only ran out of
+          budget;
+        - else, as no round was valid, the verdict outside the score that most needs a look.
+        """
+        found = {outcome.verdict for outcome in self.outcomes}
+        valid = {verdict for verdict in found if verdict.is_valid}
+        if valid == {Verdict.NOT_COVERED}:
+            return Verdict.NOT_COVERED
+        if self.lets_through:
+            return Verdict.SURVIVED
+        if valid:
+            return Verdict.TIMEOUT if valid == {Verdict.TIMEOUT} else Verdict.KILLED
+        return next((verdict for verdict in OUTSIDE if verdict in found), None)
 
     @property
     def worst(self) -> float:
@@ -197,6 +220,47 @@ class Results:
         baseline = (one.test.test for one in self.baseline)
         return list(dict.fromkeys([*baseline, *self.reaching.tests, *named]))
 
+    @classmethod
+    def read(cls, path: Path, *, earlier: bool = False) -> Results:
+        """Read the last campaign of the journal at a path, and what earlier ones found if ``earlier``.
+
+        Raises JournalError.
+        """
+        with JournalReader.open(path) as journal:
+            return read_results(journal, earlier=earlier)
+
+    def mutant(self, name: str) -> MutantResult:
+        """Return the mutant with this number or id, or the only one that ``--only`` would take by ``name``.
+
+        A part of an id will do. Raises SelectionError, naming the nearest id, or the mutants that it fits.
+        """
+        everything = self.everything
+        for result in everything:
+            if name in (result.mutant.id, str(result.mutant.number)):
+                return result
+        if not everything:
+            raise SelectionError("the journal holds no mutants")
+        if name.isdigit():
+            last = everything[-1].mutant.number
+            raise SelectionError(f"there is no mutant {name}; they are numbered 1 to {last}")
+        found = [one for one in everything if name in one.mutant.id or fits(name, one.mutant)]
+        if len(found) == 1:
+            return found[0]
+        if found:
+            raise SelectionError(_several(name, found))
+        raise SelectionError(unknown_name_text("mutant", name, (one.mutant.id for one in everything)))
+
+    def selected(self, only: Iterable[str], skip: Iterable[str]) -> list[MutantResult]:
+        """Return those of ``mutants`` that ``--only`` and ``--skip`` leave. Raises SelectionError."""
+        chosen = {one.id for one in select([one.mutant for one in self.mutants], only, skip)}
+        return [one for one in self.mutants if one.mutant.id in chosen]
+
+    def round_index(self, number: int) -> int:
+        """Return the 0-based index of the round with this number. Raises UsageError if there is none."""
+        if number > self.rounds:
+            raise UsageError(f"there is no round {number}; the campaign has {self.rounds}")
+        return number - 1
+
     def source(self, file: str) -> str | None:
         """The text of a mutated file at the time of the campaign; None if it was not written down."""
         return self.sources.get(file)
@@ -279,29 +343,6 @@ def killing_tests(outcome: Outcome) -> list[tuple[str, By | None]]:
     return [*first, *((one.test, one.by) for one in outcome.kills)]
 
 
-def find_mutant(results: Results, name: str) -> MutantResult:
-    """The mutant with this number or id, or the only one that ``name`` fits as ``--only`` would take it.
-
-    A part of an id will do. Raises SelectionError, naming the nearest id, or the mutants that it fits.
-    """
-    everything = results.everything
-    for result in everything:
-        if name in (result.mutant.id, str(result.mutant.number)):
-            return result
-    if not everything:
-        raise SelectionError("the journal holds no mutants")
-    if name.isdigit():
-        problem = f"there is no mutant {name}; they are numbered 1 to {everything[-1].mutant.number}"
-        raise SelectionError(problem)
-    found = [one for one in everything if name in one.mutant.id or fits(name, one.mutant)]
-    if len(found) == 1:
-        return found[0]
-    if found:
-        raise SelectionError(_several(name, found))
-    problem = unknown_name_text("mutant", name, (result.mutant.id for result in everything))
-    raise SelectionError(problem)
-
-
 def _several(name: str, found: Sequence[MutantResult]) -> str:
     lines = [f"{one.mutant.number:>6}  {one.mutant.id}" for one in found[:_SHOWN]]
     more = [f"        and {len(found) - _SHOWN} more"] if len(found) > _SHOWN else []
@@ -310,12 +351,6 @@ def _several(name: str, found: Sequence[MutantResult]) -> str:
 
 #: what a campaign says about itself under the name that it has in ``Results``
 _TOLD = {one.name for one in fields(Results)} & (records.FACTS.keys() - records.PLAIN.keys())
-
-
-def results_at(path: Path, *, earlier: bool = False) -> Results:
-    """What the journal at a path holds. Raises JournalError."""
-    with JournalReader.open(path) as journal:
-        return read_results(journal, earlier=earlier)
 
 
 def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:

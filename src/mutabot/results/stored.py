@@ -18,7 +18,7 @@ from mutabot.frozen import frozen
 from mutabot.journal.files import find_journal
 from mutabot.journal.recordings import ORIGINAL, Recordings
 from mutabot.model.codec import shallow
-from mutabot.results.results import Encoder, MutantResult, Results, find_mutant, results_at
+from mutabot.results.results import Encoder, Results
 from mutabot.results.thresholds import Thresholds, thresholds_of
 
 if TYPE_CHECKING:
@@ -110,13 +110,6 @@ class StoredCampaign(Results):
         """The ladders of graded mutants, the loosest first."""
         return thresholds_of(self)
 
-    def mutant(self, name: str) -> MutantResult:
-        """The mutant with this number or id, or the only one that a part of an id fits.
-
-        Raises SelectionError if there is none or more than one.
-        """
-        return find_mutant(self, name)
-
     def rows(self) -> list[dict[str, Any]]:
         """One row per outcome, by column; docs/reports.md has them. ``pandas.DataFrame`` takes this."""
         return list(rows(self))
@@ -130,4 +123,4 @@ def open(path: str | Path = ".") -> StoredCampaign:
     Raises JournalError if there is no journal, or none that this version reads.
     """
     journal = find_journal(Path(path)) if Path(path).is_dir() else Path(path)
-    return StoredCampaign(**shallow(results_at(journal)))
+    return StoredCampaign(**shallow(Results.read(journal)))

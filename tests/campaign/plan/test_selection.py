@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.selection import select
 from mutabot.errors import SelectionError
 from mutabot.faults import brought_providers
 from mutabot.model.mutant import is_like
+from mutabot.model.selection import select
 from mutabot.operators import registry
 from tests.results.samples import BY_TO, LEFT_OUT, MUTANTS, NEGATE, NOISE, REVERSE, SKIP
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.selection import refuse_typos
+from mutabot.campaign.typos import refuse_typos
 from mutabot.cli.app import main
 from mutabot.errors import SelectionError
 from tests.campaign.project import request_for, write_project

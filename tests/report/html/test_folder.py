@@ -15,9 +15,8 @@ from mutabot.errors import UsageError
 from mutabot.journal.files import REPORT_MARK
 from mutabot.report.html import folder as folders
 from mutabot.report.html.folder import check_folder
-from mutabot.results.suggested import Suggestions
+from mutabot.results.suggested import Suggestion
 from report.html import reports
-from report.terminal.test_suggested import CHECK
 from results import samples
 
 ROOT = Path(__file__).parents[3]
@@ -93,8 +92,7 @@ def test_recordings_that_have_no_room_are_counted_and_pages_say_so(tmp_path: Pat
 def test_a_check_is_suggested_where_there_is_one(tmp_path: Path) -> None:
     journal, stored = reports.campaign(tmp_path)
     (second,) = (one.mutant.id for one in stored.mutants if one.mutant.number == 2)
-    check = replace(CHECK, statement="assert box.x < 0.5", test=samples.TEST, kills={second: (0,)})
-    found = Suggestions((check,))
+    found = {second: Suggestion(samples.TEST, "assert box.x < 0.5")}
     reports.write(tmp_path / "report", journal, stored, lambda made: replace(made, suggestions=found))
     assert "box.x \\u003c 0.5" in (tmp_path / "report" / "data" / "mutants" / "2.js").read_text()
     assert '"suggestion":null' in (tmp_path / "report" / "data" / "mutants" / "1.js").read_text()

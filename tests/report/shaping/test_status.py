@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from mutabot.model import By, Outcome, Verdict
-from mutabot.report.texts import rounds_text, status_of
+from mutabot.report.texts import rounds_text
 from mutabot.results.results import MutantResult
 from results import samples
 
@@ -47,7 +47,7 @@ def result(*verdicts: Verdict | None) -> MutantResult:
 def test_the_state_is_what_there_is_to_act_on(
     verdicts: tuple[Verdict | None, ...], status: Verdict | None
 ) -> None:
-    assert status_of(result(*verdicts)) is status
+    assert result(*verdicts).status is status
 
 
 def test_rounds_are_told_by_their_end() -> None:

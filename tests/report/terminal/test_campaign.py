@@ -19,7 +19,7 @@ from mutabot.model import By, Outcome, Span, Verdict
 from mutabot.report.terminal.campaign import print_plan, print_results, print_summary
 from mutabot.report.terminal.console import make_console, mark_of, plain, short_place
 from mutabot.report.terminal.mutant import print_mutant
-from mutabot.results.results import Results, find_mutant, read_results
+from mutabot.results.results import Results, read_results
 from results import samples
 
 WIDTHS = pytest.mark.parametrize("width", [60, 80, 120, 200])
@@ -236,10 +236,10 @@ def test_of_many_survivors_a_run_shows_ten(tmp_path: Path) -> None:
 
 
 def test_what_fits_several_mutants_names_ten_of_them(tmp_path: Path, results: Results) -> None:
-    assert find_mutant(results, "noise").mutant == samples.NOISE
-    assert find_mutant(results, "mission.py:2").mutant == samples.SKIP
+    assert results.mutant("noise").mutant == samples.NOISE
+    assert results.mutant("mission.py:2").mutant == samples.SKIP
     with pytest.raises(SelectionError) as caught:
-        find_mutant(results, "mission.py")
+        results.mutant("mission.py")
     first, *others = str(caught.value).splitlines()
     assert first == "'mission.py' fits 3 mutants; give a number or a whole id:"
     assert others == [f"{one.number:>6}  {one.id}" for one in (samples.REVERSE, samples.SKIP, samples.BY_TO)]
@@ -247,14 +247,14 @@ def test_what_fits_several_mutants_names_ten_of_them(tmp_path: Path, results: Re
     with Journal.open(samples.write_journal(tmp_path / "many.sqlite", mutants=many)) as journal:
         results = read_results(journal)
     with pytest.raises(SelectionError, match="fits 14 mutants") as caught:
-        find_mutant(results, "reverse")
+        results.mutant("reverse")
     assert len(str(caught.value).splitlines()) == 12
     assert str(caught.value).endswith("and 4 more")
 
 
 def test_show_marks_the_call_in_its_source(results: Results) -> None:
     on = console(80)
-    print_mutant(on, find_mutant(results, "3"), samples.PROGRAM)
+    print_mutant(on, results.mutant("3"), samples.PROGRAM)
     lines = written(on).splitlines()
     (source,) = (line for line in lines if line.startswith("> "))
     assert "größe" in source
@@ -262,13 +262,13 @@ def test_show_marks_the_call_in_its_source(results: Results) -> None:
 
 def test_show_gives_the_kill_rate_with_its_interval(results: Results) -> None:
     on = console(100)
-    print_mutant(on, find_mutant(results, "1"), None)
+    print_mutant(on, results.mutant("1"), None)
     assert "in 2 of 2 valid rounds, 95 % interval 34–100 %" in written(on)
 
 
 def test_show_tells_what_changed_and_how_each_round_ended(results: Results) -> None:
     on = console(100)
-    print_mutant(on, find_mutant(results, "1"), None, everything=True)
+    print_mutant(on, results.mutant("1"), None, everything=True)
     text = written(on)
     for words in (
         samples.REVERSE.id,
@@ -298,7 +298,7 @@ def test_rounds_that_ended_alike_are_one_line(tmp_path: Path) -> None:
     path = samples.write_journal(tmp_path / "journal.sqlite", outcomes=outcomes, rounds=8)
     with Journal.open(path) as journal:
         on = console(100)
-        print_mutant(on, find_mutant(read_results(journal), "1"), None, everything=True)
+        print_mutant(on, read_results(journal).mutant("1"), None, everything=True)
     lines = [line.strip() for line in written(on).partition("Rounds\n")[2].partition("\n\n")[0].splitlines()]
     assert lines == [
         "C C C C C S S ·",
@@ -314,7 +314,7 @@ def test_rounds_that_ended_alike_are_one_line(tmp_path: Path) -> None:
 
 def test_one_screen_shows_the_rounds_that_tell_most(results: Results) -> None:
     on = console(100)
-    print_mutant(on, find_mutant(results, "4"), None)
+    print_mutant(on, results.mutant("4"), None)
     text = written(on)
     assert "round 1: S survived" in text
     assert "killed by a check" not in text
@@ -322,7 +322,7 @@ def test_one_screen_shows_the_rounds_that_tell_most(results: Results) -> None:
 
 
 def test_show_tells_where_a_mutant_stayed_away_and_why(results: Results) -> None:
-    mutant = find_mutant(results, "1")
+    mutant = results.mutant("1")
     why = {"the value would leave the range [-1, 1]": 138, "the value would stay the same": 1}
     rounds = tuple(one and replace(one, acted=161, hits=300, away=why) for one in mutant.rounds)
     on = console(100)

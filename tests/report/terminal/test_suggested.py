@@ -9,71 +9,57 @@ import pytest
 
 from mutabot.journal.journal import Journal
 from mutabot.model import Mutant
-from mutabot.report.sections import suggested_check
 from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.mutant import print_mutant
-from mutabot.results.results import MutantResult, find_mutant, read_results
-from mutabot.results.suggested import Suggestion, Suggestions, Unsolved, keep_suggestions, kept_suggestions
+from mutabot.results.results import MutantResult, read_results
+from mutabot.results.suggested import Suggestion, keep_suggestions, kept_suggestions
 from results import samples
 
 CHECK = Suggestion(
-    test="tests/test_box.py::test_arrives",
-    style="pytest",
-    looks_at="tracker.box_position().x",
-    statement="assert tracker.box_position().x == pytest.approx(0.5, abs=0.01)",
-    tolerance=0.01,
-    spread=0.002,
-    runs=22,
-    fresh=20,
-    unseen=0.14,
-    kills={samples.NEGATE.id: (0,)},
+    "tests/test_box.py::test_arrives",
+    "assert tracker.box_position().x == pytest.approx(0.5, abs=0.01)",
+    ("kills #4 in round 1", "22 runs of the original spread 0.002"),
 )
-FOUND = Suggestions((CHECK,), rounds=2, seeds=20, numbers={samples.NEGATE.id: 4})
 
 
 def result_of(folder: Path, mutant: Mutant) -> MutantResult:
     with Journal.open(samples.write_journal(folder / "journal.sqlite")) as journal:
-        return find_mutant(read_results(journal), str(mutant.number))
+        return read_results(journal).mutant(str(mutant.number))
 
 
-def shown(folder: Path, mutant: Mutant, found: Suggestions | None) -> str:
+def shown(folder: Path, mutant: Mutant, found: Suggestion | None) -> str:
     file = io.StringIO()
     print_mutant(make_console(file, width=120), result_of(folder, mutant), None, found)
     return file.getvalue()
 
 
 def test_a_survivor_is_shown_with_the_check_that_kills_it(tmp_path: Path) -> None:
-    text = shown(tmp_path, samples.NEGATE, FOUND)
+    text = shown(tmp_path, samples.NEGATE, CHECK)
     assert "in tests/test_box.py::test_arrives:" in text
-    assert CHECK.statement in text
+    assert CHECK.code in text
     assert "kills #4 in round 1" in text
 
 
 def test_where_none_was_looked_for_it_is_said_how(tmp_path: Path) -> None:
     text = shown(tmp_path, samples.NEGATE, None)
     assert "Add a probe or a test" in text  # nothing differs in this one
-    left = Suggestions(unsolved=(Unsolved(samples.NEGATE.id, "the original itself spreads 5 mm"),))
+    left = Suggestion(reason="the original itself spreads 5 mm")
     assert "None was found: the original itself spreads 5 mm" in shown(tmp_path, samples.NEGATE, left)
-    assert "A check" not in shown(tmp_path, samples.REVERSE, FOUND)
+    assert "A check" not in shown(tmp_path, samples.REVERSE, CHECK)
 
 
 def test_what_is_kept_is_for_its_own_campaign(tmp_path: Path) -> None:
-    journal = tmp_path / "journal.sqlite"
-    assert kept_suggestions(journal, {"started": 1.5}) is None
-    keep_suggestions(journal, {"started": 1.5}, FOUND)
-    assert kept_suggestions(journal, {"started": 1.5}) == FOUND
-    assert kept_suggestions(journal, {"started": 2.5}) is None
+    journal, found = tmp_path / "journal.sqlite", {samples.NEGATE.id: CHECK}
+    assert kept_suggestions(journal, {"started": 1.5}) == {}
+    keep_suggestions(journal, {"started": 1.5}, found)
+    assert kept_suggestions(journal, {"started": 1.5}) == found
+    assert kept_suggestions(journal, {"started": 2.5}) == {}
 
 
-@pytest.mark.parametrize("text", ["", "[]", '{"started": 1.5}', '{"started": 1.5, "found": {"new": 1}}'])
+@pytest.mark.parametrize(
+    "text",
+    ["", "[]", '{"started": 1.5}', '{"started": 1.5, "found": {"new": 1}}', '{"started": 1.5, "found": []}'],
+)
 def test_a_file_of_another_kind_is_left_alone(tmp_path: Path, text: str) -> None:
     (tmp_path / "journal-suggestions.json").write_text(text)
-    assert kept_suggestions(tmp_path / "journal.sqlite", {"started": 1.5}) is None
-
-
-def test_pages_get_the_check_of_each_survivor(tmp_path: Path) -> None:
-    assert suggested_check(result_of(tmp_path, samples.NEGATE), None) is None
-    found = suggested_check(result_of(tmp_path, samples.NEGATE), FOUND)
-    assert found is not None
-    assert (found["code"], found["test"]) == (CHECK.statement, CHECK.test)
-    assert suggested_check(result_of(tmp_path, samples.SKIP), FOUND) is None
+    assert kept_suggestions(tmp_path / "journal.sqlite", {"started": 1.5}) == {}

@@ -23,13 +23,12 @@ from mutabot.journal.files import REPORT_MARK, clear
 from mutabot.model import By
 from mutabot.model.quantity import value_text
 from mutabot.report.document import data_of, finite
-from mutabot.report.sections import suggested_check
 from mutabot.report.terminal.console import mark_of
 from mutabot.report.texts import acceptance_text, effect_text, mapped, state_of
 from mutabot.results.divergence import worst_of
 from mutabot.results.results import MutantResult, Results, killing_tests, unlooked
 from mutabot.results.stored import StoredEvidence
-from mutabot.results.suggested import Suggestions
+from mutabot.results.suggested import Suggestion
 from mutabot.results.thresholds import line_of, thresholds_of
 
 #: facts of a row of the list, by the names that they have in the results document
@@ -123,14 +122,14 @@ class Contents:
         name: what the project is called.
         evidence: its recordings.
         clean: makes texts of recordings fit to leave the machine.
-        suggestions: the checks that were suggested for its survivors; None if none were looked for.
+        suggestions: what was suggested for its survivors, by their ids.
     """
 
     campaign: Results
     name: str
     evidence: StoredEvidence
     clean: Callable[[str], str]
-    suggestions: Suggestions | None = None
+    suggestions: Mapping[str, Suggestion] = field(default_factory=dict)
 
 
 def check_folder(folder: Path) -> None:
@@ -178,8 +177,9 @@ def _write_data(folder: Path, contents: Contents, limit: int) -> int:
     used += (folder / "sources.js").write_bytes(script("sources", sources))
     for result in campaign.mutants:
         number = result.mutant.number
-        check = suggested_check(result, contents.suggestions)
-        page = {**mutant_page(result), "suggestion": check}
+        check = contents.suggestions.get(result.mutant.id, Suggestion())
+        shown = data_of.facts(check, "code test notes") if check.code else None
+        page = {**mutant_page(result), "suggestion": shown}
         file = folder / "mutants" / f"{number}.js"
         used += file.write_bytes(script(f"mutant {number}", page))
     recorded = Recorded(contents.evidence, contents.clean)

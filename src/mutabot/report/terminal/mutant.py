@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from mutabot.model.outcome import end_in_words
-from mutabot.report.sections import Section, between, plural, suggested_check
+from mutabot.report.sections import Section, between, plural
 from mutabot.report.texts import acceptance_text, effect_text, telling
 from mutabot.results.divergence import numbers_text
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from mutabot.journal.records import Replayed
     from mutabot.model import Diverged, Mutant, Outcome, Quantity, Span
     from mutabot.results.results import MutantResult
-    from mutabot.results.suggested import Suggestions
+    from mutabot.results.suggested import Suggestion
 
 #: lines of a message on the one screen; the journal and JSON have more
 _LINES = 8
@@ -31,7 +31,7 @@ def print_mutant(
     console: Console,
     result: MutantResult,
     source: str | None,
-    suggestions: Suggestions | None = None,
+    suggestion: Suggestion | None = None,
     *,
     everything: bool = False,
 ) -> None:
@@ -39,7 +39,7 @@ def print_mutant(
 
     Args:
         source: the text of its file, or None if it is not known.
-        suggestions: checks that were suggested for its campaign; None if none were looked for.
+        suggestion: what was suggested for it; None if nothing was looked for.
         everything: print every round.
     """
     mutant = result.mutant
@@ -50,7 +50,7 @@ def print_mutant(
         text = "\n" + "\n".join(plain(line) for line in lines)
         console.print(Text(text, no_wrap=True, overflow="ellipsis"))
     rounds = _rounds(result, everything=everything)
-    for section in (rounds, *_happened(result), *suggested_sections(result, suggestions)):
+    for section in (rounds, *_happened(result), *suggested_sections(result, suggestion)):
         print_section(console, section)
     if not everything:
         console.print(Text("\nUse --all for every round.", style="dim"))
@@ -176,17 +176,15 @@ def excerpt(source: str, span: Span, *, around: int = 2) -> list[str]:
     ]
 
 
-def suggested_sections(result: MutantResult, found: Suggestions | None) -> Iterator[Section]:
+def suggested_sections(result: MutantResult, found: Suggestion | None) -> Iterator[Section]:
     """Yield the section of a survivor; nothing for other mutants."""
     if not result.is_survivor or result.mutant.ladder:
         return
-    check = suggested_check(result, found)
-    reasons = {one.mutant: one.reason for one in found.unsolved} if found is not None else {}
-    if check is not None:
-        lines = [f"in {check['test']}:", check["code"], *check["notes"]]
+    if found is not None and found.code:
+        lines = [f"in {found.test}:", found.code, *found.notes]
         lines.append("`mutabot suggest` prints it as a diff.")
-    elif result.mutant.id in reasons:
-        lines = [f"None was found: {reasons[result.mutant.id]}"]
+    elif found is not None:
+        lines = [f"None was found: {found.reason}"]
     elif result.indistinguishable:
         add = "Add a probe or a test that would show one, or accept it as an equivalent mutant."
         lines = [f"No measured difference. {add}"]

@@ -1,7 +1,4 @@
-"""Select which of the planned mutants to run.
-
-Typing mistakes in ``--only`` and ``--skip`` that are seen without a plan are told before the baseline.
-"""
+"""Select mutants by the words of ``--only`` and ``--skip``."""
 
 from __future__ import annotations
 
@@ -10,16 +7,11 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mutabot.campaign.faults.providers import operators_of_packages
 from mutabot.errors import SelectionError, nearest_name
-from mutabot.faults import known_families
-from mutabot.languages.registry import program_files
-from mutabot.model.mutant import Role, fits, is_like, means_numbers
-from mutabot.operators import registry
+from mutabot.model.mutant import Mutant, fits, is_like
 
 if TYPE_CHECKING:
-    from mutabot.campaign.request import Request
-    from mutabot.model import LeftOut, Mutant
+    from mutabot.model.outcome import LeftOut
 
 
 def select(
@@ -116,35 +108,3 @@ def nothing_fits(source: str, unknown: Sequence[str], known: Sequence[str]) -> S
         shown = repr(pattern if len(pattern) <= 200 else f"{pattern[:200]}…")
         lines.append(f"{source}: no mutant fits {shown}; {hint}")
     return SelectionError("\n".join(lines))
-
-
-def refuse_typos(request: Request) -> None:
-    """Raise SelectionError for words that cannot fit a mutant of this project, whatever its plan is."""
-    sources = (*request.configuration.program, *request.configuration.oracle)
-    files = program_files(request.root, sources)
-    names = [*registry.names(), *known_families(), *(role.value for role in Role)]
-    mistakes = []
-    for option, words in (("--only", request.only), ("--skip", request.skip)):
-        if unknown := [word for word in words if not _may_fit(word, files, names)]:
-            mistakes.append(str(nothing_fits(option, unknown, [*names, *operators_of_packages(), *files])))
-    if mistakes:
-        raise SelectionError("\n".join(mistakes))
-
-
-def _may_fit(word: str, files: Sequence[str], names: Collection[str]) -> bool:
-    """Whether there may be such a mutant. What holds wild signs, numbers or a list is for the plan to say."""
-    file, colon, _ = word.partition(":")
-    if means_numbers(word) or word.startswith("@") or {"*", "?"} & {*file}:
-        return True
-    if not colon and (word in names or word in operators_of_packages()):
-        return True
-    return any(_is_file(file, known) for known in files)
-
-
-def _is_file(word: str, file: str) -> bool:
-    """Whether a word is a file, its last part, or a folder above it."""
-    return (
-        word == file
-        or file.endswith("/" + word.removeprefix("…/"))
-        or file.startswith(word.rstrip("/") + "/")
-    )

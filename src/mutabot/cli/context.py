@@ -1,0 +1,152 @@
+"""What a command works on, and where its output goes."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import typer
+
+from mutabot.cli.streams import output_failed
+from mutabot.journal.files import find_journal
+from mutabot.report.document import data_of, document, dumps
+from mutabot.report.sections import Section
+from mutabot.report.terminal.campaign import print_results, print_summary
+from mutabot.report.terminal.console import Bar, Lines, leave_pipe, make_console, make_progress, print_section
+from mutabot.results.gate import Decision, decide
+from mutabot.results.results import Results
+from mutabot.results.stored import StoredEvidence
+from mutabot.results.suggested import Suggestion, keep_suggestions
+
+if TYPE_CHECKING:
+    from mutabot.campaign.request import Progress, Request
+    from mutabot.config.configuration import Configuration
+
+
+class CommandContext:
+    """The project that a command works on, and its output.
+
+    Results and JSON go to standard output, progress and remarks to standard error.
+
+    Args:
+        project: the folder that ``-C`` names.
+    """
+
+    def __init__(self, project: Path) -> None:
+        self.project = project
+
+    @cached_property
+    def journal(self) -> Path:
+        """The journal of the project, also from a folder inside it; its folder has all files of mutabot."""
+        return find_journal(self.project)
+
+    def results(self, *, earlier: bool = False) -> Results:
+        """Read the last campaign, and what earlier ones found if ``earlier``. Raises JournalError."""
+        return Results.read(self.journal, earlier=earlier)
+
+    def recordings(self) -> StoredEvidence:
+        """Open what was recorded in the last campaign, to be closed. Raises JournalError."""
+        return StoredEvidence(self.journal)
+
+    def keep_suggestions(self, results: Results, found: Mapping[str, Suggestion]) -> None:
+        """Keep what is suggested for survivors, by their ids, for reports of this campaign.
+
+        Raises UsageError if it cannot be written.
+        """
+        keep_suggestions(self.journal, results.meta, found)
+
+    def request_again(self, results: Results, jobs: int | None) -> Request:
+        """Return the request of the campaign that had these results, with ``jobs`` processes if not None.
+
+        Raises UsageError and ConfigurationError.
+        """
+        from mutabot.cli.request import request_again  # noqa: PLC0415  # it loads what runs campaigns
+
+        return request_again(self.journal.parent.parent, results, jobs)
+
+    def print(self, text: str) -> None:
+        """Print a text. A reader that leaves early does not change the exit code."""
+        self.print_bytes(f"{text}\n".encode(sys.stdout.encoding or "utf-8", errors="replace"))
+
+    def print_bytes(self, data: bytes) -> None:
+        """Print bytes as they are, in UTF-8 whatever the terminal has."""
+        try:
+            sys.stdout.flush()
+            sys.stdout.buffer.write(data)
+            sys.stdout.buffer.flush()
+        except BrokenPipeError:
+            leave_pipe()
+        except OSError as error:
+            output_failed(error)
+
+    def print_json(self, data: Any) -> None:
+        """Print data as JSON, as docs/json.md describes it."""
+        self.print(dumps(data_of(data)))
+
+    def print_section(self, title: str, lines: Sequence[str] = (), at_most: int | None = None) -> None:
+        """Print a heading with lines below it, of many the first ``at_most``."""
+        print_section(make_console(), Section(title, lines=lines), at_most)
+
+    def tell(self, lines: Iterable[str]) -> None:
+        """Print lines on standard error, so that they do not mix with results."""
+        for line in lines:
+            typer.echo(line, err=True)
+
+    def progress(self) -> Bar | Lines:
+        """Return what shows the progress of a campaign; it is to be used as a context manager."""
+        return make_progress(make_console(stderr=True))
+
+    def show_results(
+        self, path: Path, *, json: bool, earlier: bool = False, summary: bool = False
+    ) -> Results:
+        """Print what the journal at ``path`` holds, and return it.
+
+        Args:
+            earlier: also show what earlier campaigns found.
+            summary: leave out the table of mutants.
+        """
+        found = Results.read(path, earlier=earlier)
+        if json:
+            self.print_json(document(found))
+        elif summary:
+            print_summary(make_console(), found)
+        else:
+            print_results(make_console(), found)
+        return found
+
+    def run_to_end(
+        self, request: Request, run: Callable[[Progress], Path], min_score: float | None, *, json: bool
+    ) -> NoReturn:
+        """Run a campaign, print its summary, and exit as the limits decide.
+
+        Args:
+            run: runs the campaign, and returns the path of its journal.
+            min_score: in percent; None for the configured one.
+
+        Raises typer.Exit, and what the campaign raises.
+        """
+        with self.progress() as progress:
+            path = run(progress)
+        results = self.show_results(path, json=json, summary=True)
+        self.exit_as(decided(request.configuration, results, min_score))
+
+    def exit_as(self, decision: Decision) -> NoReturn:
+        """Print why, and exit so. Raises typer.Exit."""
+        self.tell(decision.lines)
+        raise typer.Exit(decision.exit_code)
+
+
+def decided(configuration: Configuration, results: Results, min_score: float | None) -> Decision:
+    """Compare results with the limits; ``min_score``, in percent, replaces the configured one."""
+    limit = min_score if min_score is not None else configuration.min_score
+    return decide(
+        results,
+        min_score=None if limit is None else limit / 100,
+        max_timeouts=configuration.timeout_limit,
+        max_unstable=configuration.unstable_limit,
+        max_errors=configuration.error_limit,
+        demands=configuration.demands,
+    )

@@ -1,0 +1,100 @@
+"""What ``mutabot suggest`` has found, as plain data."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from mutabot.api.reports import MutabotError
+
+
+class NothingToSuggestError(MutabotError):
+    """There is no survivor for which a check could be looked for, or no test that one can be added to."""
+
+    exit_code = 3
+
+
+@dataclass(frozen=True, slots=True)
+class ProvenCheck:
+    """One check, proven.
+
+    Attributes:
+        test: node id of the test that it is added to, without parameters.
+        style: ``pytest``, ``unittest``, or ``other`` for a test that another tool makes.
+        looks_at: the expression that it reads.
+        statement: the assertion.
+        tolerance: how far the reading may be off, in its unit; None where it must be equal.
+        spread: how far runs of the original are apart; None where they must be equal.
+        runs: runs of the original that were measured.
+        fresh: fresh seeds in which it was run on the original afterwards; it passed in all.
+        unseen: share of runs in which it may fail although it did not in these, with 95 % confidence.
+        kills: id of each mutant that it kills by itself, to the 0-based rounds in which it does.
+        by_hand: all that is to be added where no diff can: to a test that another tool makes; else empty.
+    """
+
+    test: str
+    style: str
+    looks_at: str
+    statement: str
+    tolerance: float | None
+    spread: float | None
+    runs: int
+    fresh: int
+    unseen: float
+    kills: Mapping[str, tuple[int, ...]]
+    by_hand: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Unsolved:
+    """A survivor that no check kills.
+
+    Attributes:
+        mutant: its id.
+        reason: why not.
+        never: whether no observation at the ends of these tests could kill it.
+    """
+
+    mutant: str
+    reason: str
+    never: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Dropped:
+    """A check that failed its proof.
+
+    Attributes:
+        test: the test that it was added to.
+        statement: the assertion.
+        reason: how it failed.
+    """
+
+    test: str
+    statement: str
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Suggestions:
+    """What ``mutabot suggest`` found.
+
+    Attributes:
+        checks: those first that kill most.
+        diff: all of them as one unified diff of the project.
+        unsolved: survivors that none of them kills.
+        dropped: checks that failed their proof.
+        numbers: number of each survivor by its id.
+        descriptions: what each survivor does, by its id.
+        rounds: rounds of the campaign.
+        seeds: fresh seeds that were run for the bands, and as many others for the proof.
+    """
+
+    checks: tuple[ProvenCheck, ...] = ()
+    diff: str = ""
+    unsolved: tuple[Unsolved, ...] = ()
+    dropped: tuple[Dropped, ...] = ()
+    numbers: Mapping[str, int] = field(default_factory=dict)
+    descriptions: Mapping[str, str] = field(default_factory=dict)
+    rounds: int = 0
+    seeds: int = 0
