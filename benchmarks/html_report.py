@@ -196,7 +196,7 @@ def _diverged(test: str, chance: random.Random) -> Diverged:
     )
     slipped = f"box slipped from gripper at {chance.uniform(1, 9):.1f} s, 40 mm above table"
     story = f"{slipped}; box ended 0.31 m from where it ends in the original"
-    return Diverged(test, 2.0, "box is not where it is in the original", story, apart, 2.0)
+    return Diverged(test, 2.0, "box is not where it is in the original", story, apart, fault=2.0)
 
 
 def write(journal: Path, folder: Path) -> tuple[Written, float, float]:

@@ -94,7 +94,7 @@ def missing_in(shown: Shown) -> list[str]:
 
 def _tells(outcome: Outcome) -> tuple[bool, float, int]:
     """The more, the better to look at; of equal rounds the first."""
-    return bool(outcome.acted), max((one.worst for one in outcome.diverged), default=0.0), -outcome.round
+    return bool(outcome.acted), outcome.deviation or 0.0, -outcome.round
 
 
 def _reached_by(results: Results, result: MutantResult) -> tuple[str, ...]:

@@ -12,8 +12,8 @@ from typing import Any
 import foxglove
 from foxglove import channels, messages
 
+from mutabot.evidence.paths import TrackPath as Way
 from mutabot.evidence.recording import Block
-from mutabot.evidence.story import TrackPath as Way
 
 from .shown import BLOCK, COLOURS, Shown, Weight, events, things_in, values_in
 

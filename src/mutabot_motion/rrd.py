@@ -17,8 +17,8 @@ import rerun
 from rerun import blueprint as layout
 
 from mutabot.errors import UsageError
+from mutabot.evidence.paths import TrackPath as Way
 from mutabot.evidence.recording import Block, Recording, TrackKind
-from mutabot.evidence.story import TrackPath as Way
 
 from .shown import BLOCK, COLOURS, Shown, Weight, events, things_in, values_in
 from .sights import has_screen

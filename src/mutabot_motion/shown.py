@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import Any
 
+from mutabot.evidence.paths import TrackPath, paths_of
 from mutabot.evidence.recording import Block, RecordedCall, RecordedMoment, Recording, TrackKind
-from mutabot.evidence.story import TrackPath, paths_of
 
 #: of both sides: red, green and blue that people with any kind of sight tell apart
 COLOURS = {"original": (86, 180, 233), "mutant": (230, 159, 0)}

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import pytest
 
+from mutabot.evidence.differences import noise_between
+from mutabot.evidence.paths import RecordedPaths
 from mutabot.evidence.recording import RecordedCall, Recording
-from mutabot.evidence.story import RecordedPaths, diverged, noise_between
+from mutabot.evidence.story import diverged
 from tests.evidence.worlds import SHELF, TABLE, Place, apart, line, recorded, story
 
 #: up from the shelf, over to the table, down, and away
@@ -46,7 +48,7 @@ def test_a_box_that_slips_is_told() -> None:
     box = [*over_shelf, *line(over_shelf[-1], fallen, 1.0), *[fallen] * 60][: len(CARRIED)]
     text = story(ORIGINAL, recorded(CARRIED, box, held_until(16, None), ORIGINAL.calls))  # type: ignore[arg-type]
     assert text.startswith(
-        "box and table never touched (original: at 4.0 s); box and gripper separated at 1.6 s"
+        "box never touched table (original: at 4.0 s); box was lost at 1.6 s (original: let go at 4.1 s)"
     )
     assert "box ended" in text
 
@@ -55,20 +57,23 @@ def test_a_box_that_is_let_go_too_early_is_told() -> None:
     dropped = [*WAY[:31], *[TABLE] * 20][: len(CARRIED)]
     opened = [RecordedCall(3.0, 3.2, "arm:open", "mission.py:9", None, {}, {})]
     text = story(ORIGINAL, recorded(CARRIED, dropped, held_until(31, 32), opened))  # type: ignore[arg-type]
-    assert text.startswith("box and gripper separated at 3.1 s (original: at 4.1 s)")
+    assert text.startswith(
+        "box was let go at 3.1 s, 0.3 m above the table (original: at 4.1 s, on the table) "
+        "and hit it with 2.5 m/s"
+    )
 
 
 def test_a_box_that_is_held_to_the_end_is_told() -> None:
     text = story(ORIGINAL, recorded(CARRIED, CARRIED, held_until(99, 40), ORIGINAL.calls))  # type: ignore[arg-type]
-    assert "box and gripper never separated (original: at 4.1 s)" in text
+    assert "box was never let go (original: at 4.1 s)" in text
 
 
 def test_what_is_merely_late_is_no_distance() -> None:
     late = [CARRIED[0]] * 5 + CARRIED
     found = apart(recorded(CARRIED), recorded(late))
     assert found is not None
-    assert found.story == "the same movements happened at other times"
-    assert found.worst <= 1.0
+    assert found.story == "the same movements happened up to 0.5 s later"
+    assert found.deviation <= 1.0
     (tool,) = found.apart
     assert tool.largest > 0.1
     assert tool.aside == pytest.approx(0.0, abs=1e-3)
@@ -79,7 +84,7 @@ def test_a_detour_is_as_far_as_it_leads() -> None:
     found = apart(recorded(CARRIED), recorded(detour))
     assert found is not None
     assert found.apart[0].aside == pytest.approx(0.2, abs=0.01)
-    assert found.story == "tool left its path by up to 0.2 m but reached the correct end position"
+    assert found.story.startswith("tool left its path by up to 0.2 m but reached the correct end position")
     assert found.at == pytest.approx(2.0, abs=0.11)
 
 

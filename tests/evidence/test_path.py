@@ -8,7 +8,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as some
 
-from mutabot.evidence.story import Point, aside, simple
+from mutabot.evidence.paths import Point, aside, simple
 
 POINTS = some.lists(some.tuples(*[some.floats(-2.0, 2.0, width=32)] * 3), min_size=1, max_size=30)
 

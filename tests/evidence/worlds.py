@@ -6,8 +6,9 @@ from collections.abc import Callable, Iterable, Sequence
 
 from mutabot.evidence import tape as tapes
 from mutabot.evidence.feed import Feed
+from mutabot.evidence.paths import RecordedPaths
 from mutabot.evidence.recording import RecordedCall, Recording
-from mutabot.evidence.story import RecordedPaths, diverged
+from mutabot.evidence.story import diverged
 from mutabot.model.outcome import Diverged
 
 Place = tuple[float, float, float]

@@ -52,7 +52,7 @@ def test_without_the_vocabulary_values_stand_without_unit() -> None:
 def test_the_survivor_farthest_from_the_original_is_told() -> None:
     near = replace(FAR, round=0, distance=2.0, divergence=("near",))
     assert explain(SKIP, [near, FAR], VOCABULARY) == "gripper.command: do nothing; box.x: 1"
-    assert MutantResult(SKIP, (near, FAR), None, "").distance == 312.0
+    assert MutantResult(SKIP, (near, FAR), None, "").deviation == 312.0
 
 
 @pytest.mark.parametrize(

@@ -4,19 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from hashlib import blake2b
 from typing import TYPE_CHECKING
 
 from mutabot.errors import JournalError
+from mutabot.evidence.differences import noise_between
+from mutabot.evidence.paths import RecordedPaths
 from mutabot.evidence.recording import bytes_of, from_bytes
-from mutabot.evidence.story import RecordedPaths, diverged, noise_between
+from mutabot.evidence.spread import spread_between
+from mutabot.evidence.story import diverged
 from mutabot.journal.recordings import ORIGINAL, Rank, Recordings
 from mutabot.journal.records import UNFIT
 
 if TYPE_CHECKING:
     from mutabot.campaign.request import Progress, Request
+    from mutabot.evidence.differences import Spread
+    from mutabot.evidence.recording import Recording
     from mutabot.model import Diverged, Mutant
     from mutabot.model.events import TestEnd
 
@@ -36,16 +41,20 @@ class CampaignEvidence:
     Attributes:
         problems: what could not be recorded, one line each.
         is_lost: whether the recordings cannot be used any more.
+        has_tracks: whether anything is known of where things are.
     """
 
     recordings: Recordings
     problems: dict[str, None] = field(default_factory=dict)
     is_lost: bool = False
+    has_tracks: bool = False
     _noise: dict[tuple[int, str], Mapping[str, float]] = field(default_factory=dict)
+    _passed: dict[str, list[int]] = field(default_factory=dict)
     _digests: dict[tuple[int, str], bytes] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self._original = lru_cache(_HELD)(self._read_original)
+        self._spread = lru_cache(None)(self._spread_of)
 
     def begin(self, runs: Iterable[tuple[int, int, Iterable[TestEnd]]], mutants: Iterable[Mutant]) -> None:
         """The baseline is taken.
@@ -62,10 +71,25 @@ class CampaignEvidence:
                 if repetition:
                     self.add_again(round, end)
                 elif end.recording is not None:
-                    self._digests[round, end.test] = _digest(end.recording)
-                    data = bytes_of(end.recording)
-                    self.recordings.add(ORIGINAL, round, end.test, Rank.ORIGINAL, data)
-                    self.problems.update(dict.fromkeys(from_bytes(data).problems))
+                    found = self._add_original(round, end, end.recording)
+                    self.problems.update(dict.fromkeys(found.problems))
+
+    def add_seed(self, round: int, ends: Iterable[TestEnd]) -> None:
+        """The original has run with the seed of a round in which no mutant runs."""
+        self.recordings.forget(ORIGINAL, round)
+        for end in ends:
+            if end.recording is not None:
+                self._add_original(round, end, end.recording)
+
+    def _add_original(self, round: int, end: TestEnd, recording: str) -> Recording:
+        data = bytes_of(recording)
+        self._digests[round, end.test] = _digest(recording)
+        self.recordings.add(ORIGINAL, round, end.test, Rank.ORIGINAL, data)
+        found = from_bytes(data)
+        self.has_tracks |= bool(found.tracks)
+        if end.outcome == "passed":
+            self._passed.setdefault(end.test, []).append(round)
+        return found
 
     def add_again(self, round: int, end: TestEnd) -> None:
         """A further run of the original: how far things are apart without any fault."""
@@ -77,7 +101,7 @@ class CampaignEvidence:
     def take(
         self, mutant: str, round: int, ends: Iterable[TestEnd], *, survived: bool
     ) -> tuple[Diverged, ...]:
-        """Keep what differs of a mutant's tests. Returns how it does, the worst first.
+        """Keep what differs of a mutant's tests. Returns how it does, what says most first.
 
         Recordings that cannot be read or written any more, whoever has spoiled them, cost no outcome.
         """
@@ -98,13 +122,14 @@ class CampaignEvidence:
             if changed is None:
                 continue
             original, seen, data = changed
-            noise = self._noise.get((round, end.test))
-            one = diverged(end.test, original, seen, noise, is_cut=end.outcome == "failed")
+            noise, spread = self._noise.get((round, end.test)), self._spread(end.test)
+            one = diverged(end.test, original, seen, noise, spread, is_cut=end.outcome == "failed")
             if one is not None:
+                one = replace(one, example=end.example)
                 rank = Rank.SURVIVOR if survived else Rank.OTHER
                 self.recordings.add(mutant, round, end.test, rank, data)
                 found.append(one)
-        return tuple(sorted(found, key=lambda one: -one.worst))
+        return tuple(sorted(found, key=lambda one: one.rank, reverse=True))
 
     def _changed(self, round: int, end: TestEnd) -> tuple[RecordedPaths, RecordedPaths, bytes] | None:
         """The original's recording of a test, this one, and its data; None if they are the same."""
@@ -112,6 +137,11 @@ class CampaignEvidence:
             return None
         original, data = self._original(round, end.test), bytes_of(end.recording)
         return None if original is None else (original, RecordedPaths(from_bytes(data)), data)
+
+    def _spread_of(self, test: str) -> Spread:
+        """How far the original's runs of a test with different seeds are apart."""
+        runs = (self._original(round, test) for round in self._passed.get(test, ()))
+        return spread_between([one for one in runs if one is not None])
 
     def _read_original(self, round: int, test: str) -> RecordedPaths | None:
         data = self.recordings.data(ORIGINAL, round, test)

@@ -12,6 +12,7 @@ from contextlib import nullcontext, suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from mutabot.campaign.baseline.seeds import record_more_seeds
 from mutabot.campaign.engines.engine import run_trials
 from mutabot.campaign.faults.demanded import demanded_of, split_ladders
 from mutabot.campaign.plan import shuffled
@@ -52,6 +53,8 @@ def run_planned(
     until = None if request.budget is None else started + request.budget
     is_whole, rounds = False, range(request.rounds)
     with suppress(OutOfTimeError), limited(until, request.clock) if until is not None else nullcontext():
+        if any((one.id, round) not in found.done for one in alone for round in rounds):
+            record_more_seeds(campaign)
         if until is None:
             runs = [(one, round) for round in rounds for one in alone if (one.id, round) not in found.done]
             run_trials(campaign, runs, writer)

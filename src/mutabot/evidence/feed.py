@@ -47,6 +47,7 @@ class Feed:
         self._sources: list[_Source] = []
         self._blocks: list[Block] = []
         self._touching: Callable[[], Iterable[tuple[str, str]]] | None = None
+        self._robots: tuple[str, ...] = ()
         self._camera: Callable[[], Any] | None = None
         self._shutter = self._next_picture = 0.0
         self._tape: Tape | None = None
@@ -70,9 +71,15 @@ class Feed:
         """One number, such as the opening of a gripper or the margin of a monitor."""
         self._sources.append(_Source(name, TrackKind.VALUE, read, unit))
 
-    def contacts(self, read: Callable[[], Iterable[tuple[str, str]]]) -> None:
-        """What touches what: ``read`` gives the pairs of names that touch each other now."""
-        self._touching = read
+    def contacts(self, read: Callable[[], Iterable[tuple[str, str]]], *, robots: Iterable[str] = ()) -> None:
+        """What touches what.
+
+        Args:
+            read: gives the pairs of names that touch each other now.
+            robots: which names are parts of robots, such as ``gripper``; if none are given, all that are
+                neither tracked nor blocks.
+        """
+        self._touching, self._robots = read, tuple(robots)
 
     def block(self, name: str, centre: Triple, size: Triple, colour: Sequence[float] | None = None) -> None:
         """A box that never moves, such as a table: middle and edge lengths in m, world frame."""
@@ -164,6 +171,7 @@ class Feed:
         self._before = frozenset()
         for block in self._blocks:
             tape.block(block)
+        tape.recording.robots = tuple(dict.fromkeys((*tape.recording.robots, *self._robots)))
         tape.told_by(lambda: self._offset + self._time())
         tape.at_end.append(lambda: self._finish(tape))
 

@@ -118,6 +118,7 @@ class Recording:
         faulty_call: how many calls had been made by then; None if it did not.
         is_simulated: whether the times are simulated; else they are of the wall clock.
         problems: what could not be read, one line each.
+        robots: names of bodies among the contacts that are parts of robots; empty if that is not known.
     """
 
     times: array[float] = field(default_factory=lambda: array("d"))
@@ -129,10 +130,13 @@ class Recording:
     faulty_call: int | None = None
     is_simulated: bool = True
     problems: list[str] = field(default_factory=list)
+    robots: tuple[str, ...] = ()
 
 
 #: the fields of a recording that are kept as JSON, as they are
-_PLAIN_FIELDS = ("blocks", "moments", "calls", "fault", "faulty_call", "is_simulated", "problems")
+_PLAIN_FIELDS = (
+    "blocks", "moments", "calls", "fault", "faulty_call", "is_simulated", "problems", "robots",
+)  # fmt: skip
 
 
 def to_bytes(recording: Recording) -> bytes:
@@ -164,7 +168,9 @@ def from_bytes(data: bytes) -> Recording:
         for name, kind, unit, size in head["tracks"]:
             values, end = _numbers(_TYPE, data, end, count * TrackKind(kind).width)
             tracks[name] = Track(name, TrackKind(kind), values, unit, _tuple(size))
+        head.setdefault("robots", ())  # recordings of earlier versions do not say
         fields = {name: head[name] for name in _PLAIN_FIELDS}
+        fields["robots"] = tuple(fields["robots"])
         fields["blocks"] = tuple(Block(one[0], *map(_tuple, one[1:])) for one in fields["blocks"])
         fields["moments"] = [RecordedMoment(*one) for one in fields["moments"]]
         fields["calls"] = [RecordedCall(*one) for one in fields["calls"]]

@@ -1,253 +1,47 @@
-"""Compare recordings: how far things were from their places in the original run at the same time, in words.
+"""What happened, in a sentence: how a mutant's test differs from the original's, by what was recorded.
 
-Paths of points are simplified before the distance of points from a path is measured. The sentence tells of
-contacts first, where a simulator reports them; then how far things left their paths, and where they ended.
+The sentence names contacts and releases first, where a simulator reports contacts; then what slipped, was
+dragged, left its path or ended elsewhere, the largest deviation first. The original's value stands beside.
 """
 
 from __future__ import annotations
 
-from bisect import bisect_right
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
-from math import acos, degrees, dist, inf, isclose, isnan, sqrt
-from typing import Any, NamedTuple
+from math import inf
 
-from mutabot.evidence.recording import RecordedCall, Recording, Track, TrackKind
-from mutabot.model.outcome import Apart, Diverged
-from mutabot.model.quantity import distinct_texts, is_number, value_text
+from mutabot.evidence.calls import first_difference
+from mutabot.evidence.contacts import Contacts
+from mutabot.evidence.differences import TURNED, BodyPair, Spread, differences
+from mutabot.evidence.measurements import measurements_of
+from mutabot.evidence.paths import RecordedPaths
+from mutabot.evidence.physics import (
+    COLLISION,
+    DRAG,
+    DURATION,
+    IMPACT,
+    RELEASE,
+    SLIP,
+    SPEED,
+    Fact,
+    facts_of,
+)
+from mutabot.evidence.recording import TrackKind
+from mutabot.model.outcome import Apart, Diverged, Measurement
 
-Point = tuple[float, float, float]
-#: a row of a track: the numbers of one moment
-Row = tuple[float, ...]
-
-#: differences that count as the same: m, degrees, and the share of a value's own range
-LENGTH, ANGLE, SHARE = 0.001, 0.5, 0.01
-#: what the name of an orientation ends with
-TURNED = " turned"
-#: two times that differ by less are the same moment, s
-_SAME = 1e-6
-
-
-def simple(points: Sequence[Point], tolerance: float) -> list[Point]:
-    """Leave out points that lie within ``tolerance`` (m) of the lines between the others.
-
-    Source: D. H. Douglas, T. K. Peucker: Algorithms for the reduction of the number of points required to
-    represent a digitized line or its caricature. Cartographica 10 (1973), pp. 112-122.
-    """
-    kept = {0, len(points) - 1}
-    waiting = [(0, len(points) - 1)]
-    while waiting:
-        first, last = waiting.pop()
-        segment = _segment(points[first], points[last])
-        far, where = max(
-            ((_square(points[number], segment), number) for number in range(first + 1, last)),
-            default=(0.0, first),
-        )
-        if sqrt(far) > tolerance:
-            kept.add(where)
-            waiting += [(first, where), (where, last)]
-    return [points[number] for number in sorted(kept)]
-
-
-def aside(points: Iterable[Point], path: Sequence[Point]) -> float:
-    """Return the largest distance of points from a path, m."""
-    segments = [_segment(one, other) for one, other in pairwise(path)] or [_segment(path[0], path[0])]
-    worst = 0.0
-    for point in points:
-        least = inf
-        for segment in segments:
-            least = min(least, _square(point, segment))
-            if least <= worst:  # this point cannot be the farthest
-                break
-        worst = max(worst, least)
-    return sqrt(worst)
-
-
-def _segment(one: Point, other: Point) -> tuple[float, ...]:
-    """A line's start, its direction, and the square of its length."""
-    x, y, z = one
-    dx, dy, dz = other[0] - x, other[1] - y, other[2] - z
-    return x, y, z, dx, dy, dz, dx * dx + dy * dy + dz * dz
-
-
-def _square(point: Point, segment: tuple[float, ...]) -> float:
-    """The square of a point's distance from a segment, written out: many are asked of every mutant."""
-    ax, ay, az, dx, dy, dz, length = segment
-    x, y, z = point[0] - ax, point[1] - ay, point[2] - az
-    share = (x * dx + y * dy + z * dz) / length if length else 0.0
-    share = 0.0 if share < 0.0 else 1.0 if share > 1.0 else share
-    x, y, z = x - share * dx, y - share * dy, z - share * dz
-    return x * x + y * y + z * z
-
-
-@dataclass(frozen=True)
-class TrackPath:
-    """Where one thing was over time.
-
-    Attributes:
-        track: its numbers.
-        times: the times of its rows, s.
-    """
-
-    track: Track
-    times: Sequence[float]
-
-    @cached_property
-    def _present(self) -> list[tuple[float, Row]]:
-        """The moments at which it was there, with their numbers."""
-        values = [iter(self.track.values)] * self.track.kind.width
-        rows = zip(self.times, zip(*values, strict=True), strict=False)
-        return [(time, row) for time, row in rows if not isnan(row[0])]
-
-    @cached_property
-    def rows(self) -> list[Row]:
-        """The numbers of each moment at which it was there."""
-        return [row for _, row in self._present]
-
-    @cached_property
-    def when(self) -> Sequence[float]:
-        """The moments at which it was there."""
-        return [time for time, _ in self._present]
-
-    @cached_property
-    def points(self) -> list[Point]:
-        """Its positions, m."""
-        return [(row[0], row[1], row[2]) for row in self.rows]
-
-    @cached_property
-    def outline(self) -> list[Point]:
-        """The same with fewer points, to half of the tolerance."""
-        return simple(self.points, LENGTH / 2)
-
-    def at(self, time: float) -> int:
-        """The number of the row that holds at a time: the last one before or at it, else the first."""
-        return max(0, bisect_right(self.when, time + _SAME) - 1)
-
-
-def paths_of(recording: Recording) -> dict[str, TrackPath]:
-    """Everything that was tracked, by name, if it was ever there."""
-    found = {name: TrackPath(track, recording.times) for name, track in recording.tracks.items()}
-    return {name: path for name, path in found.items() if path.rows}
-
-
-@dataclass(frozen=True)
-class RecordedPaths:
-    """A recording, and its paths, which are worked out once."""
-
-    recording: Recording
-
-    @cached_property
-    def paths(self) -> dict[str, TrackPath]:
-        """Everything that was tracked."""
-        return paths_of(self.recording)
-
-
-class _Measure(NamedTuple):
-    """One way to tell two rows apart."""
-
-    name: str
-    unit: str
-    tolerance: float
-    between: Callable[[Row, Row], float]
-
-
-def _measures(path: TrackPath) -> Iterator[_Measure]:
-    track = path.track
-    if track.kind is TrackKind.VALUE:
-        values = [row[0] for row in path.rows]
-        tolerance = SHARE * (max(values) - min(values)) or 1e-6
-        yield _Measure(track.name, track.unit, tolerance, lambda one, other: abs(one[0] - other[0]))
-        return
-    yield _Measure(track.name, "m", LENGTH, lambda one, other: dist(one[:3], other[:3]))
-    if track.kind is TrackKind.POSE:
-        yield _Measure(f"{track.name}{TURNED}", "deg", ANGLE, _turned)
-
-
-def _turned(one: Row, other: Row) -> float:
-    """The angle between two orientations, deg."""
-    dot = abs(sum(a * b for a, b in zip(one[3:7], other[3:7], strict=True)))
-    return degrees(2.0 * acos(min(1.0, dot)))
-
-
-def differences(
-    original: dict[str, TrackPath],
-    mutant: dict[str, TrackPath],
-    noise: Mapping[str, float],
-    until: float = inf,
-) -> list[Apart]:
-    """Return what was apart by more than its tolerance, worst first.
-
-    Args:
-        noise: by how much each thing is apart in equal runs of the original.
-        until: the last time that is compared, s.
-    """
-    found = []
-    for name in original.keys() & mutant.keys():
-        before, after = original[name], mutant[name]
-        if before.track.kind is not after.track.kind:
-            continue
-        rows = [(time, one, other) for time, one, other in _together(before, after) if time <= until]
-        if any(one != other for _, one, other in rows):
-            apart = (_apart(measure, before, after, rows, noise) for measure in _measures(before))
-            found += [one for one in apart if one is not None]
-    return sorted(found, key=lambda one: (-one.worst, one.name))
-
-
-def noise_between(one: RecordedPaths, other: RecordedPaths) -> dict[str, float]:
-    """Return by how much each thing is apart in two equal runs of the original."""
-    found = {}
-    for name in one.paths.keys() & other.paths.keys():
-        rows = list(_together(one.paths[name], other.paths[name]))
-        for measure in _measures(one.paths[name]):
-            gaps = (measure.between(first, second) for _, first, second in rows if first != second)
-            found[measure.name] = max(gaps, default=0.0)
-    return found
-
-
-def _together(before: TrackPath, after: TrackPath) -> Iterator[tuple[float, Row, Row]]:
-    """The rows of both that hold at each moment of either; what has ended stays as it was."""
-    if before.when == after.when:
-        yield from zip(before.when, before.rows, after.rows, strict=True)
-        return
-    for time in sorted({*before.when, *after.when}):
-        yield time, before.rows[before.at(time)], after.rows[after.at(time)]
-
-
-def _apart(
-    measure: _Measure,
-    before: TrackPath,
-    after: TrackPath,
-    rows: Sequence[tuple[float, Row, Row]],
-    noise: Mapping[str, float],
-) -> Apart | None:
-    """How far apart a thing was, if by more than the tolerance."""
-    tolerance = max(measure.tolerance, 2.0 * noise.get(measure.name, 0.0))
-    gaps = [(time, measure.between(one, other) if one != other else 0.0) for time, one, other in rows]
-    first = next((time for time, gap in gaps if gap > tolerance), None)
-    if first is None:
-        return None
-    at, largest = max(gaps, key=lambda one: one[1])
-    beside = _aside(measure, before, after)
-    return Apart(measure.name, measure.unit, first, largest, at, gaps[-1][1], beside, tolerance)
-
-
-def _aside(measure: _Measure, before: TrackPath, after: TrackPath) -> float | None:
-    """How far something left the path or range that it has in the original; None for orientations."""
-    if before.track.kind is TrackKind.VALUE:
-        usual = [row[0] for row in before.rows]
-        least, most = min(usual), max(usual)
-        return max(max(0.0, least - row[0], row[0] - most) for row in after.rows)
-    return None if measure.name.endswith(TURNED) else aside(after.outline, before.outline)
-
-
-#: parts of a sentence, and differences that are kept
-_MOST_PARTS, _MOST = 3, 8
-#: s by which two things must separate earlier than in the original, and by which a test must end earlier
-_EARLIER, _EARLY = 0.3, 1.0
-#: numbers of calls that differ by less are equal
-_ROUNDING = 1e-6
+#: parts of a sentence, how many of them may be contacts, and differences that are kept
+_MOST_PARTS, _MOST_CONTACTS, _MOST = 3, 2, 8
+#: s by which a test must end earlier, and by which a thing must be let go at another time
+_EARLY, _OTHER_TIME = 1.0, 0.5
+#: m: a thing that is let go lower than this is set down
+_SET_DOWN = 0.005
+#: m/s: what is slower hits nothing
+_SLOW = 0.3
+#: share of its range by which fingers move that let something go, and the s before and after that
+_OPENED, _BEFORE, _AFTER = 0.05, 0.3, 0.2
+#: s that is no delay
+_NO_DELAY = 0.1
 
 
 def diverged(
@@ -255,6 +49,7 @@ def diverged(
     original: RecordedPaths,
     mutant: RecordedPaths,
     noise: Mapping[str, float] | None = None,
+    spread: Spread | None = None,
     *,
     is_cut: bool = False,
 ) -> Diverged | None:
@@ -263,12 +58,13 @@ def diverged(
     Args:
         test: node id.
         noise: by how much each thing is apart in equal runs of the original.
+        spread: how far runs of the original with different seeds are apart.
         is_cut: whether something ended the mutant's test before its end.
     """
-    end = mutant.recording.times[-1] if is_cut and mutant.recording.times else inf
-    apart = differences(original.paths, mutant.paths, noise or {}, end)
-    found = [(one.first, f"{one.name} is at a different position than in the original run") for one in apart]
-    call = _first_call(original.recording.calls, mutant.recording.calls)
+    both = _Compared(original, mutant, spread or Spread(), is_cut)
+    apart = differences(original.paths, mutant.paths, noise or {}, both.spread, both.until)
+    found = [(one.first, _first_text(one)) for one in apart]
+    call = first_difference(original.recording.calls, mutant.recording.calls)
     if call is not None and call[1] is not None:
         found.append((call[1], call[0]))
     if not found and call is None:
@@ -276,89 +72,238 @@ def diverged(
     at, what = min(found) if found else (None, "")
     if call is not None and call[1] is None:  # without a clock calls are all that has an order
         what = call[0]
+    measured = both.measurements
     return Diverged(
         test=test,
         at=at,
         what=what,
-        story=_story(original, mutant, apart, is_cut=is_cut),
+        story=both.story(apart, measured),
         apart=tuple(apart[:_MOST]),
+        measurements=tuple(measured[:_MOST]),
         fault=mutant.recording.fault,
         is_simulated=mutant.recording.is_simulated and original.recording.is_simulated,
+        scatters=both.spread.scatters,
     )
 
 
-def _story(original: RecordedPaths, mutant: RecordedPaths, apart: Sequence[Apart], *, is_cut: bool) -> str:
-    """The sentence, most important part first; empty if the world was the same."""
-    usual, contacts = contacts_in(original.recording), contacts_in(mutant.recording)
-    end, due = (one.recording.times[-1] if one.recording.times else 0.0 for one in (mutant, original))
-    is_cut = is_cut and end < due - _EARLY
-    parts = [f"the test ended at {end:.1f} s instead of {due:.1f} s"] if is_cut else []
-    parts += _contacts(usual, contacts, mutant, end)
-    parts += [part for one in apart if not one.is_delay and (part := _strayed(one, is_whole=not is_cut))]
-    if not parts and apart:
-        parts = ["the same movements happened at other times"]
-    return "; ".join(list(dict.fromkeys(parts))[:_MOST_PARTS])
+def _first_text(one: Apart) -> str:
+    """What is different first: a place, an orientation, or a value."""
+    thing = one.name.removesuffix(TURNED)
+    if thing != one.name:
+        return f"{thing} is turned otherwise than in the original run"
+    if one.unit == "m" and one.aside is not None and not one.is_value:
+        return f"{thing} is at a different position than in the original run"
+    return f"{thing} has a different value than in the original run"
 
 
-#: two bodies that touch each other, sorted
-_BodyPair = tuple[str, ...]
+@dataclass(frozen=True)
+class _Compared:
+    """A mutant's test beside the original's."""
+
+    original: RecordedPaths
+    mutant: RecordedPaths
+    spread: Spread
+    is_cut: bool
+
+    @cached_property
+    def end(self) -> float:
+        """When the mutant's test ended, s."""
+        times = self.mutant.recording.times
+        return times[-1] if times else 0.0
+
+    @property
+    def until(self) -> float:
+        """The last moment that can be compared, s."""
+        return self.end if self.is_cut and self.mutant.recording.times else inf
+
+    @cached_property
+    def usual(self) -> Mapping[tuple[str, str], Fact]:
+        """What was measured of the original."""
+        return facts_of(self.original)
+
+    @cached_property
+    def facts(self) -> Mapping[tuple[str, str], Fact]:
+        """What was measured of the mutant."""
+        return facts_of(self.mutant)
+
+    @property
+    def measurements(self) -> list[Measurement]:
+        """What was measured and differs; times of the wall clock are no duration."""
+        found = measurements_of(self.usual, self.facts, self.spread, is_cut=self.is_cut)
+        are_simulated = self.original.recording.is_simulated and self.mutant.recording.is_simulated
+        return [one for one in found if one.name != DURATION or are_simulated]
+
+    def story(self, apart: Sequence[Apart], measured: Sequence[Measurement]) -> str:
+        """The sentence, most important part first; empty if the world was the same."""
+        parts = [*self._cut(), *list(self._contacts(measured))[:_MOST_CONTACTS]]
+        others = [(one.deviation, self._motion(one)) for one in measured]
+        others += [(one.deviation, _strayed(one, is_whole=not self.is_cut)) for one in apart if _is_told(one)]
+        parts += [text for _, text in sorted(others, key=lambda one: -one[0]) if text]
+        parts = parts or [self._delay()] if apart else parts
+        late = next((one for one in measured if one.name == DURATION), None)
+        if late is not None:
+            parts.append(f"the test took {_beside(late, 3)}")
+        text = "; ".join(list(dict.fromkeys(parts))[:_MOST_PARTS])
+        if text and self.spread.scatters:
+            return f"only in a test whose end the original itself scatters ({self.spread.scatters}): {text}"
+        return text
+
+    def _cut(self) -> Iterator[str]:
+        times = self.original.recording.times
+        due = times[-1] if times else 0.0
+        if self.is_cut and self.end < due - _EARLY:
+            yield f"the test ended at {self.end:.1f} s instead of {due:.1f} s"
+
+    def _contacts(self, measured: Sequence[Measurement]) -> Iterator[str]:
+        """What never touched, what was let go otherwise, and what was hit."""
+        usual, contacts = Contacts(self.original), Contacts(self.mutant)
+        always = self.spread.always
+        for pair in sorted(usual.intervals.keys() - contacts.intervals.keys()):
+            begin = usual.intervals[pair][0][0]
+            if begin < self.end and (always is None or pair in always):
+                one, other = sorted(pair, key=lambda name: name not in usual.robots)
+                yield f"{one} never touched {other} (original: at {begin:.1f} s)"
+        for thing in contacts.things:
+            text = self._release(thing, usual, contacts, measured)
+            if text:
+                yield text
+        yield from self._hits(usual, contacts, measured)
+
+    def _hits(self, usual: Contacts, contacts: Contacts, measured: Sequence[Measurement]) -> Iterator[str]:
+        """What touched that touches in no run of the original, beside what was let go onto something."""
+        onto = {_pair(one.thing, one.other) for one in self.facts.values() if one.name == RELEASE}
+        speeds = {one.thing: one.value or 0.0 for one in measured if one.name == COLLISION}
+        new = contacts.intervals.keys() - usual.intervals.keys() - self.spread.ever - onto
+        for pair in sorted(new, key=lambda one: contacts.intervals[one][0][0]):
+            order = [*contacts.robots, *contacts.things, *pair]
+            one, other = sorted(pair, key=order.index)
+            at, speed = contacts.intervals[pair][0][0], speeds.get(f"{one}, {other}")
+            if speed is None:
+                yield f"{one} touched the {other} at {at:.1f} s (original: never)"
+            else:
+                yield f"{one} hit the {other} at {at:.1f} s with {_amount(speed, 'm/s')} (original: never)"
+
+    def _release(
+        self, thing: str, usual: Contacts, contacts: Contacts, measured: Sequence[Measurement]
+    ) -> str:
+        """How a thing was let go, if that was otherwise than in the original; else empty."""
+        before, after = self.usual.get((RELEASE, thing)), self.facts.get((RELEASE, thing))
+        if after is None:
+            return self._not_landed(thing, usual, contacts)
+        impact = self._impact(thing)
+        if before is None:
+            is_told = usual.holds(thing) and after.value > _SET_DOWN
+            return f"{self._verb(thing, after)} {_height(after)} (original: never){impact}" if is_told else ""
+        is_other = before.other != after.other
+        if not is_other and not any((one.name, one.thing) == (RELEASE, thing) for one in measured):
+            return ""
+        is_other_time = abs(after.at - before.at) > _OTHER_TIME
+        now, then = (f"at {one.at:.1f} s, " if is_other_time else "" for one in (after, before))
+        known = _height(before) if is_other or before.value <= _SET_DOWN else _amount(before.value)
+        return f"{self._verb(thing, after)} {now}{_height(after)} (original: {then}{known}){impact}"
+
+    def _not_landed(self, thing: str, usual: Contacts, contacts: Contacts) -> str:
+        """How a thing was let go that was not seen to touch anything afterwards, or that was held on to."""
+        ends = [found[-1][1] for one in (usual, contacts) if (found := one.holds(thing))]
+        if len(ends) < 2 or ends[0] >= self.end:
+            return ""
+        if ends[1] == inf:
+            return f"{thing} was never let go (original: at {ends[0]:.1f} s)"
+        if abs(ends[1] - ends[0]) <= _OTHER_TIME:
+            return ""
+        return f"{thing} was lost at {ends[1]:.1f} s (original: let go at {ends[0]:.1f} s)"
+
+    def _verb(self, thing: str, release: Fact) -> str:
+        """Whether fingers opened, as far as they are recorded."""
+        if release.value <= _SET_DOWN:
+            return f"{thing} was set down"
+        paths = [one for one in self.mutant.paths.values() if one.track.kind is TrackKind.VALUE]
+        fingers = [one for one in paths if "finger" in one.track.name or "gripper" in one.track.name]
+        for path in fingers:
+            values = [row[0] for row in path.rows]
+            moved = values[path.at(release.at + _AFTER)] - values[path.at(release.at - _BEFORE)]
+            if abs(moved) > _OPENED * (max(values) - min(values)):
+                return f"{thing} was let go"
+        return f"{thing} was lost" if fingers else f"{thing} was let go"
+
+    def _impact(self, thing: str) -> str:
+        """With which speed it hit what it fell onto."""
+        now, then = (one.get((IMPACT, thing)) for one in (self.facts, self.usual))
+        if now is None or now.value < _SLOW:
+            return ""
+        is_known = then is not None and then.value >= _SLOW
+        usual = f" (original: {_amount(then.value, 'm/s')})" if then is not None and is_known else ""
+        return f" and hit it with {_amount(now.value, 'm/s')}{usual}"
+
+    def _motion(self, one: Measurement) -> str:
+        """What slipped, was dragged or was faster."""
+        if one.name == SLIP:
+            return f"{one.thing} slipped {_beside(one)} in the grip"
+        if one.name == DRAG:
+            return f"{one.thing} was dragged {_beside(one)} over the {self.facts[DRAG, one.thing].other}"
+        if one.name == SPEED:
+            return f"{one.thing} moved at up to {_beside(one)}"
+        return ""
+
+    def _delay(self) -> str:
+        """By how much the same things happened later or earlier."""
+        delays = [after - before for before, after in self._same_moments()]
+        worst = max(delays, key=abs, default=0.0)
+        if abs(worst) <= _NO_DELAY:
+            return "the same movements happened at other times"
+        return f"the same movements happened up to {abs(worst):.1f} s {'later' if worst > 0 else 'earlier'}"
+
+    def _same_moments(self) -> Iterator[tuple[float, float]]:
+        """When the same calls began and the same bodies touched, in the original and in the mutant."""
+        original, mutant = self.original.recording, self.mutant.recording
+        for one, other in zip(original.calls, mutant.calls, strict=False):
+            if one.operation != other.operation:
+                break
+            if one.began is not None and other.began is not None:
+                yield one.began, other.began
+        if original.times and mutant.times and not self.is_cut:
+            yield original.times[-1], mutant.times[-1]
 
 
-def contacts_in(recording: Recording) -> dict[_BodyPair, tuple[float, float | None]]:
-    """When two bodies touched first, and when they separated for good; None if they touch at the end."""
-    found: dict[_BodyPair, tuple[float, float | None]] = {}
-    for one in recording.moments:
-        pair = tuple(one.text.split(", ", 1))
-        if one.what == "touch":
-            found[pair] = (found[pair][0] if pair in found else one.time, None)
-        elif one.what == "part" and pair in found:
-            found[pair] = (found[pair][0], one.time)
-    return found
+def _pair(one: str, other: str) -> BodyPair:
+    return tuple(sorted((one, other)))
 
 
-def _contacts(
-    usual: Mapping[_BodyPair, tuple[float, float | None]],
-    contacts: Mapping[_BodyPair, tuple[float, float | None]],
-    mutant: RecordedPaths,
-    end: float,
-) -> Iterator[str]:
-    """What never touched, what separated at another time, and what touched in the mutant alone."""
-    for pair in sorted(usual.keys() - contacts.keys()):
-        if usual[pair][0] < end:
-            yield f"{pair[0]} and {pair[1]} never touched (original: at {usual[pair][0]:.1f} s)"
-    for pair in sorted(usual.keys() & contacts.keys()):
-        due, apart = usual[pair][1], contacts[pair][1]
-        if not _is_held(pair, mutant):
-            continue
-        if apart is None and due is not None and due < end:
-            yield f"{pair[0]} and {pair[1]} never separated (original: at {due:.1f} s)"
-        elif apart is not None and apart < (inf if due is None else due) - _EARLIER:
-            original = "never" if due is None else f"at {due:.1f} s"
-            yield f"{pair[0]} and {pair[1]} separated at {apart:.1f} s (original: {original})"
-    for pair in sorted(contacts.keys() - usual.keys(), key=lambda one: contacts[one]):
-        yield f"{pair[0]} touched {pair[1]} at {contacts[pair][0]:.1f} s"
+def _height(release: Fact) -> str:
+    if release.value <= _SET_DOWN:
+        return f"on the {release.other}"
+    return f"{_amount(release.value)} above the {release.other}"
 
 
-def _is_held(pair: _BodyPair, seen: RecordedPaths) -> bool:
-    """Whether one of the two is tracked and the other neither stands still nor is tracked."""
-    fixed = {block.name for block in seen.recording.blocks}
-    return len(seen.paths.keys() & set(pair)) == 1 and fixed.isdisjoint(pair)
+def _beside(one: Measurement, digits: int = 2) -> str:
+    """``12 mm (original: 1 mm)``"""
+    usual = "none" if not one.original else _amount(one.original, one.unit, digits)
+    return f"{_amount(one.value or 0.0, one.unit, digits)} (original: {usual})"
+
+
+def _amount(value: float, unit: str = "m", digits: int = 2) -> str:
+    return amount(float(f"{value:.{digits}g}"), unit)
+
+
+def _is_told(one: Apart) -> bool:
+    """Whether it is no mere delay, and more than the original does by itself."""
+    return not one.is_delay and one.deviation > 1.0
 
 
 def _strayed(one: Apart, *, is_whole: bool) -> str:
-    """How far one thing was from its path, and where it ended; empty if by no more than its tolerance."""
-    strayed, final = one.aside or 0.0, one.final if is_whole else 0.0
+    """How far one thing was from its path, and where it ended; empty if not farther than the original."""
+    strayed, final = one.aside or 0.0, one.final if is_whole and one.of_end > 1.0 else 0.0
     left = f"{one.name} left its path by up to {amount(strayed)}"
     if final > one.tolerance:
         thing = one.name.removesuffix(TURNED)
         if thing != one.name:
             return f"{thing} ended turned by {amount(final, one.unit)}"
-        if one.unit != "m":
+        if one.unit != "m" or one.is_value:
             return f"{one.name} ended {amount(final, one.unit)} from its value in the original"
         if strayed > 2.0 * final:
             return f"{left} and ended {amount(final)} from its original position"
         return f"{one.name} ended {amount(final)} from its position in the original"
-    if strayed <= one.tolerance or one.unit != "m":
+    if strayed <= max(one.tolerance, one.aside_spread) or one.unit != "m" or one.is_value:
         return ""
     return f"{left}{' but reached the correct end position' if is_whole else ''}"
 
@@ -369,47 +314,3 @@ def amount(value: float, unit: str = "m") -> str:
         millimetres = 1e3 * value if value >= 1e-4 else 0.0
         return f"{millimetres:.0f} mm" if millimetres >= 10.0 else f"{millimetres:.2g} mm"
     return f"{value:.3g} {unit}".strip()
-
-
-def _first_call(
-    original: Sequence[RecordedCall], mutant: Sequence[RecordedCall]
-) -> tuple[str, float | None] | None:
-    """The first call that differs, in words, and when it began; None if all calls are the same."""
-    for one, other in zip(original, mutant, strict=False):
-        found = _difference(one, other)
-        if found:
-            return found, other.began
-    if len(mutant) < len(original):
-        one = original[len(mutant)]
-        return f"{_name(one)} is no longer called", one.began
-    if len(original) < len(mutant):
-        other = mutant[len(original)]
-        return f"{_name(other)} is called once more", other.began
-    return None
-
-
-def _difference(one: RecordedCall, other: RecordedCall) -> str:
-    """How a call differs from the original's; empty if it does not."""
-    if (one.operation, one.place, one.pattern) != (other.operation, other.place, other.pattern):
-        return f"{_name(other)} is called instead of {_name(one)}"
-    for before, after, verb in ((one.written, other.written, "sends"), (one.read, other.read, "reads")):
-        for name in {**before, **after}:
-            if not _are_equal(before.get(name), after.get(name)):
-                usual, found = distinct_texts(before.get(name), after.get(name), value_text, 4)
-                return f"{_name(other)} {verb} {name} {found} instead of {usual}"
-    return ""
-
-
-def _are_equal(value: Any, other: Any) -> bool:
-    """Whether values are equal, numbers up to rounding."""
-    if isinstance(value, Mapping) and isinstance(other, Mapping):
-        return value.keys() == other.keys() and all(_are_equal(value[key], other[key]) for key in value)
-    if isinstance(value, list | tuple) and isinstance(other, list | tuple):
-        return len(value) == len(other) and all(map(_are_equal, value, other))
-    if is_number(value) and is_number(other):
-        return isclose(value, other, rel_tol=_ROUNDING, abs_tol=_ROUNDING)
-    return bool(value == other)
-
-
-def _name(call: RecordedCall) -> str:
-    return f"{call.place} {call.operation.rpartition(':')[2]}"

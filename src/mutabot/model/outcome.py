@@ -9,6 +9,7 @@ from enum import StrEnum
 from typing import Any
 
 from mutabot.frozen import frozen
+from mutabot.model.deviation import deviation_of
 
 
 class By(StrEnum):
@@ -97,6 +98,9 @@ class Apart:
         aside: of a position, the greatest distance from the path of the original, whenever that was there; of
             a value, how far it left the original's range; None for orientations.
         tolerance: difference up to which it counts as the same.
+        spread: how far apart it ends in runs of the original with different seeds.
+        aside_spread: how far these runs leave the paths or ranges of each other.
+        is_value: whether it is a value, and no place.
     """
 
     name: str
@@ -107,16 +111,55 @@ class Apart:
     final: float
     aside: float | None = None
     tolerance: float = 0.0
+    spread: float = 0.0
+    aside_spread: float = 0.0
+    is_value: bool = False
 
     @property
-    def worst(self) -> float:
-        """What cannot be mere delay, in multiples of the tolerance."""
-        return max(self.final, self.aside or 0.0) / self.tolerance
+    def deviation(self) -> float:
+        """What cannot be mere delay, in units of the original's spread."""
+        return max(self.of_end, deviation_of(self.aside or 0.0, self.aside_spread, self.tolerance))
+
+    @property
+    def of_end(self) -> float:
+        """The difference at the end in units of the original's spread."""
+        return deviation_of(self.final, self.spread, self.tolerance)
 
     @property
     def is_delay(self) -> bool:
         """Whether it may have gone the same way at other times."""
-        return self.worst <= 1.0
+        return max(self.final, self.aside or 0.0) <= self.tolerance
+
+
+@frozen
+class Measurement:
+    """What was measured of one motion or contact, as the mutant and as the original.
+
+    Attributes:
+        name: what was measured, such as ``release height``.
+        thing: of what, such as ``box``.
+        unit: of the numbers: m, m/s or s.
+        value: as the mutant; None if it did not happen.
+        original: as the original; None if it does not happen there.
+        at: when, s; None if it did not happen.
+        tolerance: difference up to which it counts as the same.
+        spread: by how much it differs in runs of the original with different seeds.
+    """
+
+    name: str
+    thing: str
+    unit: str
+    value: float | None
+    original: float | None
+    at: float | None = None
+    tolerance: float = 0.0
+    spread: float = 0.0
+
+    @property
+    def deviation(self) -> float:
+        """The difference in units of the original's spread; zero for times, which may be mere delay."""
+        difference = abs((self.value or 0.0) - (self.original or 0.0))
+        return 0.0 if self.unit == "s" else deviation_of(difference, self.spread, self.tolerance)
 
 
 @frozen
@@ -129,9 +172,13 @@ class Diverged:
             without a clock.
         what: what differed then.
         story: what happened, in a sentence.
-        apart: what was apart by more than its tolerance, worst first.
+        apart: what was apart by more than its tolerance, largest deviation first.
+        measurements: what was measured of motions and contacts, where it differs.
         fault: when the mutant changed something for the first time, s; None if that is not known.
+        example: value before and after when it did so; None if that is not known.
         is_simulated: whether times are simulated; else they are of the wall clock.
+        scatters: what ends far apart in runs of the original with different seeds, such as ``box by 0.52 m``;
+            empty if the end of the test is stable.
     """
 
     test: str
@@ -139,13 +186,23 @@ class Diverged:
     what: str
     story: str
     apart: tuple[Apart, ...] = ()
+    measurements: tuple[Measurement, ...] = ()
     fault: float | None = None
+    example: tuple[Any, ...] | None = None
     is_simulated: bool = True
+    scatters: str = ""
 
     @property
-    def worst(self) -> float:
-        """The largest distance from the original, in multiples of the tolerance."""
-        return max((one.worst for one in self.apart), default=0.0)
+    def deviation(self) -> float:
+        """How far the world was from the original's at most, in units of the original's spread."""
+        found = [one.deviation for one in self.apart] + [one.deviation for one in self.measurements]
+        return max(found, default=0.0)
+
+    @property
+    def rank(self) -> tuple[bool, bool, bool, float]:
+        """Highest for what says most about a mutant: a stable test whose world differs, and how far."""
+        is_stable = not self.scatters
+        return bool(self.story) and is_stable, bool(self.story), is_stable, self.deviation
 
 
 @frozen
@@ -242,8 +299,8 @@ class Outcome:
         beside: how it had ended before, beside other processes on a busy machine, if the wall clock had ended
             it and it was run once more alone; else None.
         looked: of a survivor, the tests that reach it and what they checked.
-        diverged: how the recordings of its tests differ from the original's, the worst first; empty if they
-            do not, or if there are none.
+        diverged: how the recordings of its tests differ from the original's, what says most first; empty if
+            they do not, or if there are none.
         confirmed: whether the whole suite says so too, of what was found without tests that do not reach the
             mutant; None if none was left out, or not before the test that decided.
         executed: units of the project's files that were executed until then, see ``model.units``; None if
@@ -283,6 +340,25 @@ class Outcome:
     diverged: tuple[Diverged, ...] = ()
     confirmed: bool | None = None
     executed: Mapping[str, tuple[int, ...]] | None = None
+
+    @property
+    def told(self) -> Diverged | None:
+        """The test that says most about it: reports tell its story; None if nothing recorded differs."""
+        return max(self.diverged, key=lambda one: one.rank, default=None)
+
+    @property
+    def deviation(self) -> float | None:
+        """How far it was from the original at most, in units of the original's spread; None if not known.
+
+        What was recorded of the world says more than probes do, and tests whose end is stable more than
+        others.
+        """
+        found = [one for one in self.diverged if one.apart or one.measurements]
+        stable = [one for one in found if not one.scatters]
+        if found:
+            return max(one.deviation for one in stable or found)
+        known = [one for one in (self.distance, self.way) if one is not None]
+        return max(known, default=0.0 if self.indistinguishable else None)
 
 
 def added(counts: Iterable[Mapping[str, int]]) -> dict[str, int]:

@@ -14,6 +14,7 @@ from mutabot.errors import ExtensionError
 from mutabot.extensions import ExtensionPart, brought
 from mutabot.journal import records
 from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity, Span
+from mutabot.model.outcome import Apart, Measurement
 from mutabot.report.texts import state_of
 from mutabot.results import ladders, thresholds
 from mutabot.results.results import Encoder, MutantResult, Results
@@ -84,14 +85,14 @@ def replayed(mutant: Mutant, rounds: Iterable[records.Replayed]) -> dict[str, An
 def _mutant(result: MutantResult) -> dict[str, Any]:
     data = data_of.facts(
         result,
-        "*mutant meaning=quantity rounds# kill_rate survivor=is_survivor indistinguishable distance worst "
+        "*mutant meaning=quantity rounds# kill_rate survivor=is_survivor indistinguishable deviation "
         "why earlier outdated accepted=acceptance?",
     )
     if not result.is_accepted:
         data["accepted"] = None
     data["status"] = None if result.status is None else state_of(result)
     data["kill_rate"] = data_of.facts(result.kill_rate, "killed valid rate=score interval")
-    return data if result.lets_through else data | {"distance": None, "worst": None}
+    return data if result.lets_through else data | {"deviation": None}
 
 
 def _replayed(one: records.Replayed) -> dict[str, Any]:
@@ -153,9 +154,11 @@ data_of = Encoder(
         Quantity: "kind axis unit frame mode",
         MutantResult: _mutant,
         Outcome: "round=round+1 verdict by test exception message place hits acted away example tests wall "
-        "cpu simulated indistinguishable distance divergence way gaps compared commands engine repeats "
-        "beside confirmed kills complete looked diverged",
-        Diverged: "* worst",
+        "cpu simulated indistinguishable deviation distance divergence way gaps compared commands engine "
+        "repeats beside confirmed kills complete looked diverged",
+        Diverged: "* deviation",
+        Apart: "* deviation",
+        Measurement: "* deviation",
         Score: "score check_score killed valid by_check timeouts counts=of_each",
         RoundScores: "*total score=mean check_score=mean_check interval check_interval sample_interval "
         "sample_check_interval accepted rounds#",

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 from mutabot.journal.records import Reaching, Untested
 from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity
 from mutabot.model.outcome import first_line
-from mutabot.results.divergence import numbers_text, worst_of
+from mutabot.results.divergence import numbers_text, weight_of
 
 if TYPE_CHECKING:
     from mutabot.results.results import MutantResult, Results
@@ -201,9 +201,8 @@ def telling(result: MutantResult) -> tuple[int, Diverged | None] | None:
     outcomes = result.survived or [one for one in result.outcomes if one.verdict is status]
     if not outcomes:
         return next(((one.round, None) for one in result.outcomes), None)
-    worst = max(outcomes, key=worst_of)
-    told = sorted(worst.diverged, key=lambda one: not one.story)
-    return worst.round, told[0] if told else None
+    worst = max(outcomes, key=weight_of)
+    return worst.round, worst.told
 
 
 def short_reason(result: MutantResult) -> str:

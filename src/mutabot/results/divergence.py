@@ -29,7 +29,7 @@ def explain(mutant: Mutant, outcomes: Sequence[Outcome], vocabulary: Vocabulary 
     quantity = quantity_of(mutant, vocabulary)
     survivors = [one for one in outcomes if one.verdict is Verdict.SURVIVED]
     if survivors:
-        worst = max(survivors, key=worst_of)
+        worst = max(survivors, key=weight_of)
         return f"{change_text(mutant, worst, quantity) or mutant.description}; {_world_text(worst)}"
     verdict, _ = Counter(one.verdict for one in outcomes).most_common(1)[0]
     if any(one.verdict is Verdict.NOT_COVERED for one in outcomes):
@@ -48,15 +48,9 @@ def change_text(mutant: Mutant, outcome: Outcome, quantity: Quantity | None = No
     return f"{_verb(quantity)} {after} instead of {before}"
 
 
-def worst_of(outcome: Outcome) -> float:
-    """How far the world was from the original's at the worst moment, in multiples of the tolerance.
-
-    What was recorded of the world tells more than probes do, of which one may be a clock: what went the same
-    way at other times is not far.
-    """
-    if any(one.apart for one in outcome.diverged):
-        return max(one.worst for one in outcome.diverged)
-    return max(outcome.distance or 0.0, outcome.way or 0.0)
+def weight_of(outcome: Outcome) -> tuple[bool, float]:
+    """Of several rounds, that one is told about that differs in a stable test, and deviates most."""
+    return outcome.told is not None and not outcome.told.scatters, outcome.deviation or 0.0
 
 
 def _verb(quantity: Quantity | None) -> str:
@@ -69,7 +63,7 @@ def _world_text(outcome: Outcome) -> str:
     if outcome.indistinguishable:
         extent = f"in {outcome.compared.text}" if outcome.compared is not None else "that was compared"
         return f"nothing differs {extent} (indistinguishable)"
-    story = next((one.story for one in outcome.diverged if one.story), "")
+    story = outcome.told.story if outcome.told is not None else ""
     if story:
         return story
     if outcome.divergence:

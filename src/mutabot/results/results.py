@@ -21,7 +21,7 @@ from mutabot.model import By, LeftOut, Mutant, Outcome, Quantity, Role, Verdict
 from mutabot.model.mutant import fits
 from mutabot.model.selection import select
 from mutabot.model.suppression import Acceptance, Accepted
-from mutabot.results.divergence import change_text, explain, quantity_of, worst_of
+from mutabot.results.divergence import change_text, explain, quantity_of
 from mutabot.results.score import Group, RoundScores, Score, groups_of
 from mutabot.results.statistics import Confirmed
 
@@ -104,9 +104,9 @@ class MutantResult:
         return next((verdict for verdict in OUTSIDE if verdict in found), None)
 
     @property
-    def worst(self) -> float:
-        """How far its survivors were from the original at the worst moment, in multiples of the tolerance."""
-        return max(map(worst_of, self.survived), default=0.0)
+    def deviation(self) -> float:
+        """How far its survivors were from the original at most, in units of the original's spread."""
+        return max((one.deviation or 0.0 for one in self.survived), default=0.0)
 
     @property
     def change(self) -> str | None:
@@ -119,11 +119,6 @@ class MutantResult:
     def indistinguishable(self) -> bool:
         """Whether no survivor of it looked other than the original."""
         return bool(self.survived) and all(one.indistinguishable for one in self.survived)
-
-    @property
-    def distance(self) -> float:
-        """How far its survivors took the world from the original's, in multiples of the tolerance."""
-        return max((one.distance or 0.0 for one in self.survived), default=0.0)
 
 
 @frozen
@@ -283,7 +278,7 @@ class Results:
     def survivors(self) -> list[MutantResult]:
         """Mutants that some round lets through, the farthest from the original at any moment first."""
         found = [result for result in self.mutants if result.is_survivor]
-        return sorted(found, key=lambda one: (-one.worst, one.indistinguishable, one.mutant.number))
+        return sorted(found, key=lambda one: (-one.deviation, one.indistinguishable, one.mutant.number))
 
     @property
     def accepted(self) -> list[MutantResult]:

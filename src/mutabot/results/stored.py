@@ -71,7 +71,8 @@ _LINE = (
     "cpu_s=outcome.cpu simulated_s=outcome.simulated distance=outcome.distance way=outcome.way "
     "indistinguishable=outcome.indistinguishable divergence commands=outcome.commands engine=outcome.engine "
     "repeats=outcome.repeats confirmed=outcome.confirmed magnitude=mutant.magnitude "
-    "magnitude_unit=mutant.unit direction=mutant.direction? accepted=accepted.why"
+    "magnitude_unit=mutant.unit direction=mutant.direction? accepted=accepted.why "
+    "deviation=outcome.deviation"
 )
 #: the columns of the table by their stable names, in the order of files; one with a unit ends in it
 COLUMNS = tuple(word.partition("=")[0] for word in _LINE.split())

@@ -28,6 +28,11 @@ class Contacts:
         self._sleepers = b""
         self._sleeping: set[tuple[int, int]] = set()
 
+    @property
+    def robots(self) -> tuple[str, ...]:
+        """The names of what is part of a robot."""
+        return tuple(self._parts.values())
+
     def read(self) -> Iterator[tuple[str, str]]:
         """The pairs that touch now; parts of the arm among themselves do not count."""
         for one, other in _touching(self._data) | self._asleep():

@@ -34,7 +34,8 @@ def tell_of(simulation: Simulation, scene: Scene) -> Feed:
         feed.pose(part.name, _pose(data, body), size=part.extent)
     for prefix, robot in simulation.robots.items():
         feed.value(f"{prefix}fingers closed", robot.closed_path, unit="m")
-    feed.contacts(Contacts(simulation).read)
+    contacts = Contacts(simulation)
+    feed.contacts(contacts.read, robots=contacts.robots)
     for fixture in scene.fixtures:
         feed.block(fixture.name, fixture.centre, fixture.size, fixture.rgba)
     feed.camera(TracingCamera(simulation, _HEIGHT, _WIDTH, _VIEW, is_quick=True).picture, rate=_RATE)

@@ -11,8 +11,8 @@ from operator import ne
 
 from PIL import Image, ImageDraw
 
+from mutabot.evidence.paths import TrackPath
 from mutabot.evidence.recording import Recording, TrackKind
-from mutabot.evidence.story import TrackPath
 from mutabot.model import units
 from mutabot_motion.shown import end_of, things_in
 

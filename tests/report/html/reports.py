@@ -77,7 +77,7 @@ def campaign(folder: Path, *, name: str = "box", **options: Any) -> tuple[Path, 
         Apart("tool turned", "deg", 5.0, 2.0, 5.0, 0.0, None, 0.5),
     )
     diverged = Diverged(
-        samples.TEST, 5.0, f"{name} is not where it is", f"{name} slipped at 5.0 s", apart, 5.0
+        samples.TEST, 5.0, f"{name} is not where it is", f"{name} slipped at 5.0 s", apart, fault=5.0
     )
     outcomes = options.pop("outcomes", samples.OUTCOMES)
     outcomes = tuple(

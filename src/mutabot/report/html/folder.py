@@ -16,8 +16,8 @@ from pathlib import Path
 from typing import Any
 
 from mutabot.errors import UsageError
+from mutabot.evidence.paths import Row, TrackPath
 from mutabot.evidence.recording import RecordedCall, Recording, Track, TrackKind
-from mutabot.evidence.story import Row, TrackPath
 from mutabot.frozen import frozen
 from mutabot.journal.files import REPORT_MARK, clear
 from mutabot.model import By
@@ -25,7 +25,7 @@ from mutabot.model.quantity import value_text
 from mutabot.report.document import data_of, finite
 from mutabot.report.terminal.console import mark_of
 from mutabot.report.texts import acceptance_text, effect_text, mapped, state_of
-from mutabot.results.divergence import worst_of
+from mutabot.results.divergence import weight_of
 from mutabot.results.results import MutantResult, Results, killing_tests, unlooked
 from mutabot.results.stored import StoredEvidence
 from mutabot.results.suggested import Suggestion
@@ -37,7 +37,7 @@ _ROW = (
     "role=mutant.site.role file=mutant.site.span.file span=mutant.site.span site=mutant.site.id "
     "function=mutant.site.span.function operation=mutant.operation quantity=mutant.quantity "
     "unit=quantity.unit description=mutant.description killed=kill_rate.killed valid=kill_rate.valid "
-    "indistinguishable worst earlier outdated"
+    "indistinguishable deviation earlier outdated"
 )
 _LADDER = (
     "place name file=mutant.site.span.file line=mutant.site.span.line unit magnitudes=sizes none_up_to "
@@ -380,7 +380,7 @@ class Recorded:
 
     def _places(self, result: MutantResult) -> Iterator[tuple[int, str]]:
         found = [(number, one) for number, one in enumerate(result.rounds) if one is not None]
-        for number, outcome in sorted(found, key=lambda one: (-worst_of(one[1]), one[0])):
+        for number, outcome in sorted(found, key=lambda one: weight_of(one[1]), reverse=True):
             told = [one.test for one in outcome.diverged]
             tests = self.evidence.tests(result.mutant.id, number)
             for test in sorted(tests, key=lambda one: told.index(one) if one in told else len(told)):

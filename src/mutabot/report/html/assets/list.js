@@ -6,7 +6,7 @@
   const AT_ONCE = 15; // rows that are drawn before the others, so that typing is never held up
   const SORTS = {
     number: [(one) => one.number, 1], place: [(one) => `${one.file}\n${String(one.line).padStart(7, "0")}`, 1], operator: [(one) => one.operator, 1],
-    status: [(one) => marks.ORDER.indexOf(one.status), 1], killed: [(one) => (one.valid ? one.killed / one.valid : 2), 1], worst: [(one) => (one.survives ? one.worst : -1), -1],
+    status: [(one) => marks.ORDER.indexOf(one.status), 1], killed: [(one) => (one.valid ? one.killed / one.valid : 2), 1], deviation: [(one) => (one.survives ? one.deviation : -1), -1],
   };
 
   /** The mutants that are asked for, in the order that is asked for. */
@@ -118,7 +118,7 @@
     const letters = new Set(shown.flatMap((one) => [...one.ends]));
     return h("div", null, h("table", { class: "mutants" },
       h("thead", null, h("tr", null, head("number", "no.", "n"), head("place", "place"), head("operator", "operator"), h("th", { scope: "col" }, "fault and result"),
-        head("status", "rounds"), head("killed", "killed", "n"), head("worst", "deviation", "n", "largest deviation from the original, in multiples of the tolerance"))),
+        head("status", "rounds"), head("killed", "killed", "n"), head("deviation", "deviation", "n", "largest deviation, in units of the original's own spread"))),
       body(shown)), marks.legend(letters));
   }
 
@@ -136,6 +136,6 @@
       h("td", { class: "does" }, h("a", { class: "open", href: address(["mutant", String(one.number)]) }, one.description), h("p", null, one.why)),
       h("td", { class: "rounds" }, marks.ends(one.ends)),
       h("td", { class: "n rate" }, one.valid ? `${one.killed}/${one.valid}` : "–"),
-      h("td", { class: "n far" }, one.survives ? (one.indistinguishable ? "same" : one.worst ? `${Number(one.worst.toPrecision(2)).toLocaleString("en")}×` : "–") : ""));
+      h("td", { class: "n far" }, one.survives ? (one.indistinguishable ? "same" : one.deviation ? `${Number(one.deviation.toPrecision(2)).toLocaleString("en")}×` : "–") : ""));
   }
 })();

@@ -33,7 +33,7 @@
   }
 
   const worstFirst = (mutants) => mutants.filter((one) => one.survives)
-    .sort((one, other) => other.worst - one.worst || one.indistinguishable - other.indistinguishable || one.number - other.number);
+    .sort((one, other) => other.deviation - one.deviation || one.indistinguishable - other.indistinguishable || one.number - other.number);
   mutabot.worstFirst = worstFirst;
 
   /** Whether the page is served by the campaign itself: then it says above how far it is. */
@@ -129,7 +129,7 @@
     return h("section", { "aria-labelledby": "survivors" }, heading,
       h("ol", { class: "findings" }, loud.slice(0, SHOWN).map((one) => finding(one))),
       calm.length ? h("p", { class: "hint" }, `${count(calm.length, "survivor")} without a measured effect on what the robot did: `, calm.slice(0, 3 * SHOWN).map((one, index) => [index ? ", " : "", h("a", { href: address(["mutant", String(one.number)]) }, one.number)])) : null,
-      loud.length > SHOWN ? h("p", null, h("a", { class: "more", href: address(["mutants"], { status: "survived", sort: "worst" }) }, `All ${survivors.length} survivors`)) : null,
+      loud.length > SHOWN ? h("p", null, h("a", { class: "more", href: address(["mutants"], { status: "survived", sort: "deviation" }) }, `All ${survivors.length} survivors`)) : null,
       more);
   }
 

@@ -63,7 +63,7 @@
   }
 
   function row(file, line, at, mutants) {
-    const sorted = [...mutants].sort((one, other) => Number(other.survives) - Number(one.survives) || other.worst - one.worst || one.number - other.number);
+    const sorted = [...mutants].sort((one, other) => Number(other.survives) - Number(one.survives) || other.deviation - one.deviation || one.number - other.number);
     const shown = sorted.slice(0, sorted.length > MARKS ? MARKS - 1 : MARKS);
     const alive = sorted.filter((one) => one.survives);
     const loud = alive.some((one) => !one.indistinguishable);

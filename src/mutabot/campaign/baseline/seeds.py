@@ -1,0 +1,39 @@
+"""More seeds of the original: its own spread is known from several, also where mutants run with few.
+
+Its runs with seeds of rounds in which no mutant runs judge nothing. They show by how much things differ
+without any fault, so that reports tell of mutants by what is the same with all seeds.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from mutabot.execution.task import Task
+from mutabot.model.deadline import Limit
+
+if TYPE_CHECKING:
+    from mutabot.campaign.campaign import Campaign
+
+#: seeds with which the original is run at least, where a simulator tells where things are
+_SEEDS = 3
+
+
+def record_more_seeds(campaign: Campaign) -> None:
+    """Run the original with more seeds if there are few, and if anything is recorded of its world."""
+    evidence, request, baseline = campaign.evidence, campaign.request, campaign.baseline
+    rounds = range(request.rounds, _SEEDS)
+    if evidence is None or not rounds or not evidence.has_tracks:
+        return
+    campaign.progress.stage("original with other seeds", len(rounds))
+    tasks = (
+        Task(
+            (round, 0),
+            request.job(round, record=True, known=baseline.known),
+            startup=Limit(300.0),
+            may_share=baseline.may_share,
+        )
+        for round in rounds
+    )
+    for result in campaign.executor.run(tasks):
+        evidence.add_seed(result.task.key[0], result.ends)
+        campaign.progress.advance()

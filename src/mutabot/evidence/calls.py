@@ -1,0 +1,59 @@
+"""The first call that a mutant's test makes otherwise than the original's, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from math import isclose
+from typing import TYPE_CHECKING, Any
+
+from mutabot.model.quantity import distinct_texts, is_number, value_text
+
+if TYPE_CHECKING:
+    from mutabot.evidence.recording import RecordedCall
+
+#: numbers of calls that differ by less are equal
+_ROUNDING = 1e-6
+
+
+def first_difference(
+    original: Sequence[RecordedCall], mutant: Sequence[RecordedCall]
+) -> tuple[str, float | None] | None:
+    """The first call that differs, in words, and when it began; None if all calls are the same."""
+    for one, other in zip(original, mutant, strict=False):
+        found = _difference(one, other)
+        if found:
+            return found, other.began
+    if len(mutant) < len(original):
+        one = original[len(mutant)]
+        return f"{_name(one)} is no longer called", one.began
+    if len(original) < len(mutant):
+        other = mutant[len(original)]
+        return f"{_name(other)} is called once more", other.began
+    return None
+
+
+def _difference(one: RecordedCall, other: RecordedCall) -> str:
+    """How a call differs from the original's; empty if it does not."""
+    if (one.operation, one.place, one.pattern) != (other.operation, other.place, other.pattern):
+        return f"{_name(other)} is called instead of {_name(one)}"
+    for before, after, verb in ((one.written, other.written, "sends"), (one.read, other.read, "reads")):
+        for name in {**before, **after}:
+            if not _are_equal(before.get(name), after.get(name)):
+                usual, found = distinct_texts(before.get(name), after.get(name), value_text, 4)
+                return f"{_name(other)} {verb} {name} {found} instead of {usual}"
+    return ""
+
+
+def _are_equal(value: Any, other: Any) -> bool:
+    """Whether values are equal, numbers up to rounding."""
+    if isinstance(value, Mapping) and isinstance(other, Mapping):
+        return value.keys() == other.keys() and all(_are_equal(value[key], other[key]) for key in value)
+    if isinstance(value, list | tuple) and isinstance(other, list | tuple):
+        return len(value) == len(other) and all(map(_are_equal, value, other))
+    if is_number(value) and is_number(other):
+        return isclose(value, other, rel_tol=_ROUNDING, abs_tol=_ROUNDING)
+    return bool(value == other)
+
+
+def _name(call: RecordedCall) -> str:
+    return f"{call.place} {call.operation.rpartition(':')[2]}"

@@ -1,0 +1,107 @@
+"""Contacts of a recording: which bodies touch when, and which of them are things, robots and supports."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from math import inf
+from typing import TYPE_CHECKING
+
+from mutabot.evidence.paths import RecordedPaths
+from mutabot.evidence.recording import Recording, TrackKind
+
+if TYPE_CHECKING:
+    from mutabot.evidence.differences import BodyPair
+
+#: from when to when two bodies touch, s; inf if they do at the end
+Interval = tuple[float, float]
+#: names of what no simulator calls a robot
+_GROUND = frozenset({"floor", "ground", "plane", "world"})
+#: s: a contact that is lost for less goes on
+_FLICKER = 0.25
+
+
+def intervals_of(recording: Recording) -> dict[BodyPair, list[Interval]]:
+    """Return when each pair of bodies touches, in order."""
+    found: dict[BodyPair, list[Interval]] = {}
+    for one in recording.moments:
+        pair = tuple(one.text.split(", ", 1))
+        if one.what == "touch":
+            found.setdefault(pair, []).append((one.time, inf))
+        elif one.what == "part" and pair in found:
+            found[pair][-1] = (found[pair][-1][0], one.time)
+    return found
+
+
+def joined(intervals: Iterable[Interval]) -> list[Interval]:
+    """Return intervals in order, those as one that overlap or nearly meet."""
+    found: list[Interval] = []
+    for begin, end in sorted(intervals):
+        if found and begin <= found[-1][1] + _FLICKER:
+            found[-1] = (found[-1][0], max(end, found[-1][1]))
+        else:
+            found.append((begin, end))
+    return found
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """Who touches whom in a recording.
+
+    Attributes:
+        seen: the recording with its paths.
+    """
+
+    seen: RecordedPaths
+
+    @cached_property
+    def intervals(self) -> Mapping[BodyPair, list[Interval]]:
+        """When each pair touches."""
+        return intervals_of(self.seen.recording)
+
+    @cached_property
+    def things(self) -> list[str]:
+        """What is tracked and touched: objects that a robot can move."""
+        touched = {name for pair in self.intervals for name in pair}
+        paths = self.seen.paths.items()
+        return [name for name, path in paths if path.track.kind is not TrackKind.VALUE and name in touched]
+
+    @cached_property
+    def tools(self) -> list[str]:
+        """What else is tracked with a place: the robots' tools."""
+        paths = self.seen.paths.items()
+        places = [name for name, path in paths if path.track.kind is not TrackKind.VALUE]
+        return [name for name in places if name not in self.things and not self.seen.paths[name].track.size]
+
+    @cached_property
+    def robots(self) -> frozenset[str]:
+        """The bodies of robots: as the simulator says, else all that are neither tracked nor stand still."""
+        recording = self.seen.recording
+        if recording.robots:
+            return frozenset(recording.robots)
+        others = {*self.seen.paths, *(block.name for block in recording.blocks)} | _GROUND
+        return frozenset({name for pair in self.intervals for name in pair} - others)
+
+    def holds(self, thing: str) -> list[Interval]:
+        """When any robot touches a thing."""
+        return joined(
+            one
+            for pair, found in self.intervals.items()
+            if thing in pair and self.robots & {*pair}
+            for one in found
+        )
+
+    def supports(self, thing: str) -> dict[str, list[Interval]]:
+        """When a thing touches what is no robot, by its name."""
+        found = {}
+        for pair, intervals in self.intervals.items():
+            (other,) = {*pair} - {thing} if thing in pair and len({*pair}) > 1 else ("",)
+            if other and other not in self.robots:
+                found[other] = intervals
+        return found
+
+
+def is_within(time: float, intervals: Iterable[Interval]) -> bool:
+    """Whether a moment lies in one of the intervals; the moment at which one ends does not."""
+    return any(begin <= time < end for begin, end in intervals)

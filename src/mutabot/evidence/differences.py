@@ -1,0 +1,159 @@
+"""Compare recordings: how far things were from their places in the original run at the same time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import field
+from math import acos, degrees, dist, inf
+from typing import NamedTuple
+
+from mutabot.evidence.paths import LENGTH, RecordedPaths, Row, TrackPath, aside
+from mutabot.evidence.recording import TrackKind
+from mutabot.frozen import frozen
+from mutabot.model.deviation import TOLERANCES, TURNS, difference_of
+from mutabot.model.outcome import Apart
+
+#: two bodies that touch each other, sorted
+BodyPair = tuple[str, ...]
+#: the share of a value's own range that counts as the same
+SHARE = 0.01
+#: what the name of an orientation ends with
+TURNED = " turned"
+
+
+class Measure(NamedTuple):
+    """One way to tell two rows apart.
+
+    Attributes:
+        name: of what, such as ``box turned``.
+        unit: of the difference.
+        tolerance: difference up to which two rows count as the same.
+        between: the difference of two rows.
+    """
+
+    name: str
+    unit: str
+    tolerance: float
+    between: Callable[[Row, Row], float]
+
+
+def measures_of(path: TrackPath) -> Iterator[Measure]:
+    """Yield the ways to tell two moments of a thing apart: by its place and its orientation, or its value."""
+    track = path.track
+    if track.kind is TrackKind.VALUE:
+        values = [row[0] for row in path.rows]
+        tolerance = SHARE * (max(values) - min(values)) or 1e-6
+        yield Measure(
+            track.name, track.unit, tolerance, lambda one, other: difference_of(one[0], other[0], track.unit)
+        )
+        return
+    yield Measure(track.name, "m", LENGTH, lambda one, other: dist(one[:3], other[:3]))
+    if track.kind is TrackKind.POSE:
+        yield Measure(f"{track.name}{TURNED}", "deg", TOLERANCES["deg"], turned)
+
+
+def turned(one: Row, other: Row) -> float:
+    """The angle between two orientations, deg."""
+    dot = abs(sum(a * b for a, b in zip(one[3:7], other[3:7], strict=True)))
+    return degrees(2.0 * acos(min(1.0, dot)))
+
+
+@frozen
+class Spread:
+    """How far runs of the original with different seeds are apart in one test.
+
+    Attributes:
+        ends: by how much each thing is apart at the end, by name of the measure.
+        paths: how far it leaves the paths or ranges of the other runs, likewise.
+        measured: by how much each measurement differs, by name and thing.
+        ever: pairs of bodies that touch each other in any run.
+        always: those that do so in each; None if no run is known.
+        scatters: what ends far apart, such as ``box by 0.52 m``; empty if the end of the test is stable.
+    """
+
+    ends: Mapping[str, float] = field(default_factory=dict)
+    paths: Mapping[str, float] = field(default_factory=dict)
+    measured: Mapping[tuple[str, str], float] = field(default_factory=dict)
+    ever: frozenset[BodyPair] = frozenset()
+    always: frozenset[BodyPair] | None = None
+    scatters: str = ""
+
+
+def differences(
+    original: dict[str, TrackPath],
+    mutant: dict[str, TrackPath],
+    noise: Mapping[str, float],
+    spread: Spread,
+    until: float = inf,
+) -> list[Apart]:
+    """Return what was apart by more than its tolerance, largest deviation first.
+
+    Args:
+        noise: by how much each thing is apart in equal runs of the original.
+        spread: by how much each thing is apart in runs of the original with different seeds.
+        until: the last time that is compared, s.
+    """
+    found = []
+    for name in original.keys() & mutant.keys():
+        before, after = original[name], mutant[name]
+        if before.track.kind is not after.track.kind:
+            continue
+        rows = [(time, one, other) for time, one, other in _together(before, after) if time <= until]
+        if any(one != other for _, one, other in rows):
+            apart = (_apart(measure, before, after, rows, noise, spread) for measure in measures_of(before))
+            found += [one for one in apart if one is not None]
+    return sorted(found, key=lambda one: (-one.deviation, one.name))
+
+
+def noise_between(one: RecordedPaths, other: RecordedPaths) -> dict[str, float]:
+    """Return by how much each thing is apart in two equal runs of the original."""
+    found = {}
+    for name in one.paths.keys() & other.paths.keys():
+        rows = list(_together(one.paths[name], other.paths[name]))
+        for measure in measures_of(one.paths[name]):
+            gaps = (measure.between(first, second) for _, first, second in rows if first != second)
+            found[measure.name] = max(gaps, default=0.0)
+    return found
+
+
+def _together(before: TrackPath, after: TrackPath) -> Iterator[tuple[float, Row, Row]]:
+    """The rows of both that hold at each moment of either; what has ended stays as it was."""
+    if before.when == after.when:
+        yield from zip(before.when, before.rows, after.rows, strict=True)
+        return
+    for time in sorted({*before.when, *after.when}):
+        yield time, before.rows[before.at(time)], after.rows[after.at(time)]
+
+
+def _apart(
+    measure: Measure,
+    before: TrackPath,
+    after: TrackPath,
+    rows: Sequence[tuple[float, Row, Row]],
+    noise: Mapping[str, float],
+    spread: Spread,
+) -> Apart | None:
+    """How far apart a thing was, if by more than the tolerance."""
+    tolerance = max(measure.tolerance, 2.0 * noise.get(measure.name, 0.0))
+    gaps = [(time, measure.between(one, other) if one != other else 0.0) for time, one, other in rows]
+    first = next((time for time, gap in gaps if gap > tolerance), None)
+    if first is None:
+        return None
+    at, largest = max(gaps, key=lambda one: one[1])
+    name, beside = measure.name, aside_of(measure, before, after)
+    spreads = spread.ends.get(name, 0.0), spread.paths.get(name, 0.0)
+    is_value = before.track.kind is TrackKind.VALUE
+    return Apart(
+        name, measure.unit, first, largest, at, gaps[-1][1], beside, tolerance, *spreads, is_value=is_value
+    )
+
+
+def aside_of(measure: Measure, before: TrackPath, after: TrackPath) -> float | None:
+    """How far something left the path or range that it has in the original; None for angles."""
+    if measure.unit in TURNS:
+        return None
+    if before.track.kind is TrackKind.VALUE:
+        usual = [row[0] for row in before.rows]
+        least, most = min(usual), max(usual)
+        return max(max(0.0, least - row[0], row[0] - most) for row in after.rows)
+    return aside(after.outline, before.outline)

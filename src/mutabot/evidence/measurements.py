@@ -1,0 +1,52 @@
+"""What was measured of motions and contacts, as the mutant beside the original, where it differs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
+
+from mutabot.evidence.physics import COLLISION, DRAG, DURATION, IMPACT, RELEASE, SLIP, SPEED, Fact
+from mutabot.model.deviation import TOLERANCES
+from mutabot.model.outcome import Measurement
+
+if TYPE_CHECKING:
+    from mutabot.evidence.differences import Spread
+
+#: differences from which on each is worth telling: recordings have some ten moments a second
+_LEAST = {RELEASE: 0.01, IMPACT: 0.1, SLIP: 0.005, DRAG: 0.02, SPEED: 0.05, COLLISION: 0.0, DURATION: 0.5}
+#: share of the original's greatest speed from which on another one is worth telling
+_FASTER = 0.2
+_UNITS = {IMPACT: "m/s", COLLISION: "m/s", SPEED: "m/s", DURATION: "s"}
+
+Facts = Mapping[tuple[str, str], Fact]
+
+
+def measurements_of(original: Facts, mutant: Facts, spread: Spread, *, is_cut: bool) -> list[Measurement]:
+    """Return what differs by more than the original itself does, largest deviation first.
+
+    ``is_cut``: whether the mutant's test ended early, so that only what exceeds the original counts.
+    """
+    found = list(_measured(original, mutant, spread, is_cut=is_cut))
+    heights = {one.thing for one in found if one.name == RELEASE}
+    found = [one for one in found if one.name != IMPACT or one.thing in heights]
+    return sorted(found, key=lambda one: (-one.deviation, one.name, one.thing))
+
+
+def _measured(original: Facts, mutant: Facts, spread: Spread, *, is_cut: bool) -> Iterator[Measurement]:
+    for key, fact in mutant.items():
+        usual = original.get(key)
+        if fact.name == COLLISION:
+            if usual is not None or tuple(sorted(fact.thing.split(", ", 1))) in spread.ever:
+                continue
+        elif usual is None and fact.name not in (SLIP, DRAG):
+            continue
+        before = usual.value if usual is not None else None
+        more, least = fact.value - (before or 0.0), _LEAST[fact.name]
+        if is_cut and (fact.name == DURATION or more < 0.0):
+            continue
+        unit = _UNITS.get(fact.name, "m")
+        by_itself = spread.measured.get(key, 0.0)
+        least = max(least, _FASTER * (before or 0.0)) if fact.name == SPEED else least
+        if abs(more) > max(least, by_itself) or fact.name == COLLISION:
+            tolerance = TOLERANCES[unit]
+            yield Measurement(fact.name, fact.thing, unit, fact.value, before, fact.at, tolerance, by_itself)

@@ -1,0 +1,138 @@
+"""Paths: where each recorded thing was over time, and the distance of points from a path.
+
+Paths of points are simplified before the distance of points from a path is measured.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from math import inf, isnan, sqrt
+
+from mutabot.evidence.recording import Recording, Track
+
+Point = tuple[float, float, float]
+#: a row of a track: the numbers of one moment
+Row = tuple[float, ...]
+
+#: a length that counts as none, m
+LENGTH = 0.001
+#: two times that differ by less are the same moment, s
+_SAME = 1e-6
+
+
+def simple(points: Sequence[Point], tolerance: float) -> list[Point]:
+    """Leave out points that lie within ``tolerance`` (m) of the lines between the others.
+
+    Source: D. H. Douglas, T. K. Peucker: Algorithms for the reduction of the number of points required to
+    represent a digitized line or its caricature. Cartographica 10 (1973), pp. 112-122.
+    """
+    kept = {0, len(points) - 1}
+    waiting = [(0, len(points) - 1)]
+    while waiting:
+        first, last = waiting.pop()
+        segment = _segment(points[first], points[last])
+        far, where = max(
+            ((_square(points[number], segment), number) for number in range(first + 1, last)),
+            default=(0.0, first),
+        )
+        if sqrt(far) > tolerance:
+            kept.add(where)
+            waiting += [(first, where), (where, last)]
+    return [points[number] for number in sorted(kept)]
+
+
+def aside(points: Iterable[Point], path: Sequence[Point]) -> float:
+    """Return the largest distance of points from a path, m."""
+    segments = [_segment(one, other) for one, other in pairwise(path)] or [_segment(path[0], path[0])]
+    worst = 0.0
+    for point in points:
+        least = inf
+        for segment in segments:
+            least = min(least, _square(point, segment))
+            if least <= worst:  # this point cannot be the farthest
+                break
+        worst = max(worst, least)
+    return sqrt(worst)
+
+
+def _segment(one: Point, other: Point) -> tuple[float, ...]:
+    """A line's start, its direction, and the square of its length."""
+    x, y, z = one
+    dx, dy, dz = other[0] - x, other[1] - y, other[2] - z
+    return x, y, z, dx, dy, dz, dx * dx + dy * dy + dz * dz
+
+
+def _square(point: Point, segment: tuple[float, ...]) -> float:
+    """The square of a point's distance from a segment, written out: many are asked of every mutant."""
+    ax, ay, az, dx, dy, dz, length = segment
+    x, y, z = point[0] - ax, point[1] - ay, point[2] - az
+    share = (x * dx + y * dy + z * dz) / length if length else 0.0
+    share = 0.0 if share < 0.0 else 1.0 if share > 1.0 else share
+    x, y, z = x - share * dx, y - share * dy, z - share * dz
+    return x * x + y * y + z * z
+
+
+@dataclass(frozen=True)
+class TrackPath:
+    """Where one thing was over time.
+
+    Attributes:
+        track: its numbers.
+        times: the times of its rows, s.
+    """
+
+    track: Track
+    times: Sequence[float]
+
+    @cached_property
+    def _present(self) -> list[tuple[float, Row]]:
+        """The moments at which it was there, with their numbers."""
+        values = [iter(self.track.values)] * self.track.kind.width
+        rows = zip(self.times, zip(*values, strict=True), strict=False)
+        return [(time, row) for time, row in rows if not isnan(row[0])]
+
+    @cached_property
+    def rows(self) -> list[Row]:
+        """The numbers of each moment at which it was there."""
+        return [row for _, row in self._present]
+
+    @cached_property
+    def when(self) -> Sequence[float]:
+        """The moments at which it was there."""
+        return [time for time, _ in self._present]
+
+    @cached_property
+    def points(self) -> list[Point]:
+        """Its positions, m."""
+        return [(row[0], row[1], row[2]) for row in self.rows]
+
+    @cached_property
+    def outline(self) -> list[Point]:
+        """The same with fewer points, to half of the tolerance."""
+        return simple(self.points, LENGTH / 2)
+
+    def at(self, time: float) -> int:
+        """The number of the row that holds at a time: the last one before or at it, else the first."""
+        return max(0, bisect_right(self.when, time + _SAME) - 1)
+
+
+def paths_of(recording: Recording) -> dict[str, TrackPath]:
+    """Everything that was tracked, by name, if it was ever there."""
+    found = {name: TrackPath(track, recording.times) for name, track in recording.tracks.items()}
+    return {name: path for name, path in found.items() if path.rows}
+
+
+@dataclass(frozen=True)
+class RecordedPaths:
+    """A recording, and its paths, which are worked out once."""
+
+    recording: Recording
+
+    @cached_property
+    def paths(self) -> dict[str, TrackPath]:
+        """Everything that was tracked."""
+        return paths_of(self.recording)

@@ -1,0 +1,219 @@
+"""Physics of a recording: what was let go and from which height, what slipped, was dragged or hit, how fast.
+
+Recordings have some ten moments a second, so the speed of an impact is that of a free fall from the height at
+which a thing was let go.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
+from math import dist, hypot, inf, sqrt
+from typing import TYPE_CHECKING, NamedTuple
+
+from mutabot.evidence.contacts import Contacts, Interval, is_within
+
+if TYPE_CHECKING:
+    from mutabot.evidence.paths import RecordedPaths, Row, TrackPath
+
+#: what is measured
+RELEASE, IMPACT, SLIP, DRAG = "release height", "impact speed", "slip", "drag"
+COLLISION, SPEED, DURATION = "collision speed", "greatest speed", "duration"
+#: m/s²
+_GRAVITY = 9.81
+#: s: moments that lie closer together belong to two worlds; what falls longer is not followed
+_STEP, _FALL = 0.02, 3.0
+#: s in which a support carries a thing that no robot touches, and how fast the thing moves then, m/s
+_CARRIED, _CARRYING = 0.2, 0.005
+
+
+class Fact(NamedTuple):
+    """Something that was measured.
+
+    Attributes:
+        name: one of the names above.
+        thing: of what.
+        value: in m, m/s or s.
+        at: when, s.
+        other: onto what it fell, over what it was dragged, what was hit.
+    """
+
+    name: str
+    thing: str
+    value: float
+    at: float
+    other: str = ""
+
+
+def facts_of(seen: RecordedPaths) -> dict[tuple[str, str], Fact]:
+    """Return the largest of each kind, by name and thing."""
+    contacts = Contacts(seen)
+    found: dict[tuple[str, str], Fact] = {}
+    for one in _facts(contacts):
+        key = one.name, one.thing
+        if key not in found or one.value > found[key].value:
+            found[key] = one
+    for thing in contacts.things:  # the impact that belongs to the release
+        release = found.get((RELEASE, thing))
+        if release is not None:
+            found[IMPACT, thing] = Fact(IMPACT, thing, _impact(contacts, release), release.at, release.other)
+    return found
+
+
+def _facts(contacts: Contacts) -> Iterator[Fact]:
+    seen = contacts.seen
+    if seen.recording.times:
+        yield Fact(DURATION, "test", seen.recording.times[-1], seen.recording.times[-1])
+    for name in contacts.tools:
+        yield from (Fact(SPEED, name, speed, time) for time, speed in _speeds(seen.paths[name]))
+    for thing in contacts.things:
+        yield from _releases(contacts, thing)
+        yield from _slips(contacts, thing)
+        yield from _drags(contacts, thing)
+    yield from _collisions(contacts)
+
+
+def _speeds(path: TrackPath) -> Iterator[tuple[float, float]]:
+    """When a thing had which speed, m/s."""
+    for (before, one), (after, other) in pairwise(zip(path.when, path.points, strict=True)):
+        if after - before > _STEP:
+            yield after, dist(one, other) / (after - before)
+
+
+def _releases(contacts: Contacts, thing: str) -> Iterator[Fact]:
+    """From how high a thing fell after a robot had touched it last; zero where it stood on something."""
+    path = contacts.seen.paths[thing]
+    supports = contacts.supports(thing)
+    for _, end in contacts.holds(thing):
+        last = path.at(end - 1e-3)
+        if end == inf or path.when[last] >= end:
+            continue
+        under = [name for name, found in supports.items() if is_within(path.when[last], found)]
+        if under:
+            yield Fact(RELEASE, thing, 0.0, end, under[0])
+            continue
+        landing = _landing(supports, end)
+        if landing is not None:
+            begin, other = landing
+            fallen = lowest(path, last) - lowest(path, path.at(begin))
+            yield Fact(RELEASE, thing, max(0.0, fallen), end, other)
+
+
+def _landing(supports: Mapping[str, Sequence[Interval]], time: float) -> tuple[float, str] | None:
+    """When a thing that was let go touched something first, and what."""
+    begins = (
+        (begin, name)
+        for name, found in supports.items()
+        for begin, _ in found
+        if time - 1e-3 <= begin <= time + _FALL
+    )
+    return min(begins, default=None)
+
+
+def _impact(contacts: Contacts, release: Fact) -> float:
+    """How fast a thing was when it touched what it fell onto, m/s: from its energy when it was let go.
+
+    At ten moments a second the first touch may be missed, and what is seen is a bounce.
+    """
+    path = contacts.seen.paths[release.thing]
+    last = path.at(release.at - 1e-3)
+    if release.value <= 0.0 or last == 0:
+        return 0.0
+    step = path.when[last] - path.when[last - 1]
+    carried = dist(path.points[last - 1], path.points[last]) / step if step > _STEP else 0.0
+    return sqrt(carried * carried + 2.0 * _GRAVITY * release.value)
+
+
+def lowest(path: TrackPath, number: int) -> float:
+    """The height of a thing's lowest corner at a moment, m; of its middle if its size is not known."""
+    row, size = path.rows[number], path.track.size
+    if size is None:
+        return row[2]
+    return row[2] - sum(abs(part) * edge / 2.0 for part, edge in zip(_upward(row), size, strict=True))
+
+
+def _upward(row: Row) -> tuple[float, float, float]:
+    """How much each edge of a thing points upward."""
+    if len(row) < 7:
+        return 0.0, 0.0, 1.0
+    w, x, y, z = row[3:7]
+    return 2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)
+
+
+def _slips(contacts: Contacts, thing: str) -> Iterator[Fact]:
+    """How far a thing moved in a robot's grip while nothing else touched it."""
+    path = contacts.seen.paths[thing]
+    supports = [one for found in contacts.supports(thing).values() for one in found]
+    for hold in contacts.holds(thing):
+        free = [
+            number for number, time in enumerate(path.when)
+            if is_within(time, [hold]) and not is_within(time, supports)
+        ]  # fmt: skip
+        if len(free) < 2 or not contacts.tools:
+            continue
+        tool = min(
+            (contacts.seen.paths[name] for name in contacts.tools),
+            key=lambda one: dist(one.points[one.at(path.when[free[0]])], path.points[free[0]]),
+        )
+        places = [_in_frame(tool.rows[tool.at(path.when[one])], path.points[one]) for one in free]
+        ways = [dist(places[0], place) for place in places]
+        worst = max(range(len(ways)), key=ways.__getitem__)
+        yield Fact(SLIP, thing, ways[worst], path.when[free[worst]])
+
+
+def _in_frame(frame: Row, point: Sequence[float]) -> tuple[float, ...]:
+    """A point in the frame of a pose; of a mere point, relative to it."""
+    x, y, z = (a - b for a, b in zip(point, frame[:3], strict=True))
+    if len(frame) < 7:
+        return x, y, z
+    w, a, b, c = frame[3], -frame[4], -frame[5], -frame[6]
+    tx, ty, tz = 2.0 * (b * z - c * y), 2.0 * (c * x - a * z), 2.0 * (a * y - b * x)
+    return (
+        x + w * tx + b * tz - c * ty,
+        y + w * ty + c * tx - a * tz,
+        z + w * tz + a * ty - b * tx,
+    )
+
+
+def _drags(contacts: Contacts, thing: str) -> Iterator[Fact]:
+    """How far a robot moved a thing over what it stood on; what moves things by itself is left out."""
+    path, holds = contacts.seen.paths[thing], contacts.holds(thing)
+    for other, found in contacts.supports(thing).items():
+        if _carries(contacts, other):
+            continue
+        way, at = 0.0, None
+        for (before, one), (after, next_one) in pairwise(zip(path.when, path.points, strict=True)):
+            both = all(is_within(time, holds) and is_within(time, found) for time in (before, after))
+            if both and after - before > _STEP:
+                way += hypot(next_one[0] - one[0], next_one[1] - one[1])
+                at = before if at is None else at
+        if at is not None:
+            yield Fact(DRAG, thing, way, at, other)
+
+
+def _carries(contacts: Contacts, support: str) -> bool:
+    """Whether something moves what lies on it, as a conveyor does."""
+    for thing in contacts.things:
+        path, held = contacts.seen.paths[thing], contacts.holds(thing)
+        found = contacts.supports(thing).get(support, [])
+        lies: list[Interval] = [(begin + _CARRIED, end) for begin, end in found if end - begin > _CARRIED]
+        for (before, one), (after, other) in pairwise(zip(path.when, path.points, strict=True)):
+            alone = is_within(before, lies) and is_within(after, lies)
+            touched = any(begin - _CARRIED <= after and before <= end + _CARRIED for begin, end in held)
+            way = hypot(other[0] - one[0], other[1] - one[1])
+            if alone and not touched and after - before > _STEP and way > _CARRYING * (after - before):
+                return True
+    return False
+
+
+def _collisions(contacts: Contacts) -> Iterator[Fact]:
+    """When a robot touched something that is no tracked thing, and how fast its tool was just before."""
+    for pair, found in contacts.intervals.items():
+        robots = [name for name in pair if name in contacts.robots]
+        if not robots or contacts.robots >= {*pair} or {*contacts.things} & {*pair}:
+            continue
+        (other,) = {*pair} - {robots[0]}
+        begin = found[0][0]
+        tools = [contacts.seen.paths[name] for name in contacts.tools]
+        speeds = [speed for path in tools for time, speed in _speeds(path) if begin - 0.25 <= time <= begin]
+        yield Fact(COLLISION, f"{robots[0]}, {other}", max(speeds, default=0.0), begin, other)

@@ -1,0 +1,71 @@
+"""The original's own spread: how far its runs with different seeds are apart in one test."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import combinations
+from math import dist
+from typing import TYPE_CHECKING
+
+from mutabot.evidence.contacts import intervals_of
+from mutabot.evidence.differences import Measure, Spread, aside_of, measures_of
+from mutabot.evidence.physics import facts_of
+from mutabot.evidence.recording import TrackKind
+from mutabot.model.deviation import spread_of
+
+if TYPE_CHECKING:
+    from mutabot.evidence.paths import RecordedPaths, Row, TrackPath
+
+#: m: a test in which the original ends farther apart than this has no stable end
+_STABLE = 0.1
+
+
+def spread_between(runs: Sequence[RecordedPaths]) -> Spread:
+    """Return how far runs of the original with different seeds are apart in one test."""
+    if not runs:
+        return Spread()
+    ends: dict[str, float] = {}
+    paths: dict[str, float] = {}
+    for one, other in combinations(runs, 2):
+        for name in one.paths.keys() & other.paths.keys():
+            before, after = one.paths[name], other.paths[name]
+            for measure in measures_of(before) if before.track.kind is after.track.kind else ():
+                far = _ends_apart(measure, before, after)
+                ends[measure.name] = max(far, ends.get(measure.name, 0.0))
+                beside = (aside_of(measure, *pair) or 0.0 for pair in ((before, after), (after, before)))
+                paths[measure.name] = max(*beside, paths.get(measure.name, 0.0))
+    touched = [intervals_of(one.recording).keys() for one in runs]
+    return Spread(
+        ends,
+        paths,
+        _measured(runs),
+        frozenset().union(*touched),
+        frozenset(touched[0]).intersection(*touched[1:]),
+        _scatters(runs, ends),
+    )
+
+
+def _ends_apart(measure: Measure, before: TrackPath, after: TrackPath) -> float:
+    """How far apart a thing ends; what each seed places elsewhere, by how it has moved since."""
+    apart = measure.between(before.rows[-1], after.rows[-1])
+    return min(apart, dist(_moved(before), _moved(after))) if measure.unit == "m" else apart
+
+
+def _moved(path: TrackPath) -> Row:
+    return tuple(end - start for start, end in zip(path.rows[0][:3], path.rows[-1][:3], strict=True))
+
+
+def _measured(runs: Sequence[RecordedPaths]) -> dict[tuple[str, str], float]:
+    found: dict[tuple[str, str], list[float]] = {}
+    for one in runs:
+        for key, fact in facts_of(one).items():
+            found.setdefault(key, []).append(fact.value)
+    return {key: spread_of(values) for key, values in found.items()}
+
+
+def _scatters(runs: Sequence[RecordedPaths], ends: dict[str, float]) -> str:
+    """What has no stable end, in words: the thing that is farthest apart."""
+    kinds = {name: path.track.kind for one in runs for name, path in one.paths.items()}
+    places = (name for name, kind in kinds.items() if kind is not TrackKind.VALUE and name in ends)
+    far, name = max(((ends[name], name) for name in places), default=(0.0, ""))
+    return f"{name} by {far:.2g} m" if far > _STABLE else ""

@@ -1,0 +1,108 @@
+"""What is measured of motions and contacts: heights, speeds, slips, drags and collisions."""
+
+from __future__ import annotations
+
+from math import sqrt
+
+import pytest
+
+from mutabot.evidence.paths import RecordedPaths
+from mutabot.evidence.physics import COLLISION, DRAG, DURATION, IMPACT, RELEASE, SLIP, SPEED, Fact, facts_of
+from tests.evidence.worlds import SHELF, TABLE, Place, line, recorded
+
+#: half of a box's edge, and the height of the table's top, m
+HALF, TOP = 0.025, 0.0
+HELD, LYING, THERE = ("box", "gripper"), ("box", "shelf"), ("box", "table")
+ABOVE: Place = (1.0, 0.0, 0.525)
+WAY = [SHELF, *line(SHELF, (0.0, 0.0, 0.525), 0.5), *line((0.0, 0.0, 0.525), ABOVE, 2.0)]
+
+
+def falling(start: Place, ground: float = TABLE[2]) -> list[Place]:
+    """Places of a free fall, ten a second, until it lies."""
+    x, y, z = start
+    heights = [z - 9.81 * (number / 10) ** 2 / 2 for number in range(1, 30)]
+    return [(x, y, max(height, ground)) for height in heights]
+
+
+def facts(*args: object) -> dict[tuple[str, str], Fact]:
+    return facts_of(RecordedPaths(recorded(*args)))  # type: ignore[arg-type]
+
+
+def dropped(height: float) -> dict[tuple[str, str], Fact]:
+    """A box that is let go so high above the table."""
+    start = (1.0, 0.0, TABLE[2] + height)
+    way = [SHELF, *line(SHELF, start, 2.0), start, start]
+    box = [*way, *falling(start)]
+    lands = next(number for number, place in enumerate(box) if number > 20 and place[2] <= TABLE[2])
+
+    def touching(now: int) -> set[tuple[str, str]]:
+        found = {LYING} if now == 0 else set()
+        if now < len(way):
+            found.add(HELD)
+        if now >= lands:
+            found.add(THERE)
+        return found
+
+    return facts([*way, *[start] * (len(box) - len(way))], box, touching)
+
+
+@pytest.mark.parametrize("height", [0.05, 0.23, 0.53, 1.2])
+def test_a_box_hits_the_table_as_fast_as_it_falls_from_where_it_is_let_go(height: float) -> None:
+    found = dropped(height)
+    assert found[RELEASE, "box"].value == pytest.approx(height, abs=1e-3)
+    assert found[RELEASE, "box"].other == "table"
+    assert found[IMPACT, "box"].value == pytest.approx(sqrt(2 * 9.81 * height), rel=0.02)
+
+
+def test_a_box_that_stands_when_it_is_let_go_falls_from_nowhere() -> None:
+    way = [SHELF, *line(SHELF, TABLE, 2.0)]
+    box = [*way, *[TABLE] * 5]
+
+    def touching(now: int) -> set[tuple[str, str]]:
+        return ({HELD} if now < 23 else set()) | ({THERE} if now >= 20 else set())
+
+    found = facts(box, box, touching)
+    assert found[RELEASE, "box"].value == 0.0
+    assert found[IMPACT, "box"].value == 0.0
+
+
+@pytest.mark.parametrize("slip", [0.0, 0.03])
+def test_a_slip_is_how_far_a_box_moves_in_the_grip(slip: float) -> None:
+    tool = [SHELF, *line(SHELF, ABOVE, 2.0)]
+    box = [(x, y, z - slip * number / 20) for number, (x, y, z) in enumerate(tool)]
+    found = facts(tool, box, lambda now: {HELD} if now >= 1 else {LYING})
+    assert found[SLIP, "box"].value == pytest.approx(slip * 19 / 20, abs=1e-6)
+
+
+def test_a_drag_is_the_way_over_what_a_box_stands_on_while_a_robot_touches_it() -> None:
+    way = [SHELF, *line(SHELF, (0.3, 0.0, SHELF[2]), 1.0)]
+    found = facts(way, way, lambda now: {HELD, LYING})
+    assert found[DRAG, "box"].value == pytest.approx(0.3, abs=1e-6)
+    assert found[DRAG, "box"].other == "shelf"
+
+
+def test_what_a_conveyor_carries_is_not_dragged() -> None:
+    way = [SHELF, *line(SHELF, (0.6, 0.0, SHELF[2]), 2.0)]
+    found = facts(way, way, lambda now: {LYING, HELD} if now > 15 else {LYING})
+    assert (DRAG, "box") not in found
+
+
+def test_a_collision_has_the_speed_of_the_tool_just_before() -> None:
+    way = [SHELF, *line(SHELF, (0.5, 0.0, SHELF[2]), 1.0)]
+    found = facts(
+        way, [SHELF] * len(way), lambda now: {LYING} | ({("gripper", "table")} if now > 8 else set())
+    )
+    assert found[COLLISION, "gripper, table"].value == pytest.approx(0.5, rel=1e-3)
+    assert found[COLLISION, "gripper, table"].at == pytest.approx(0.9)
+
+
+def test_the_greatest_speed_and_the_duration_are_those_of_the_whole_test() -> None:
+    found = facts([*line(SHELF, ABOVE, 4.0), *line(ABOVE, SHELF, 1.0)])
+    assert found[SPEED, "tool"].value == pytest.approx(1.0, rel=1e-3)
+    assert found[DURATION, "test"].value == pytest.approx(4.9)
+
+
+def test_a_second_world_in_a_test_is_no_leap() -> None:
+    recording = recorded([SHELF, SHELF, ABOVE, ABOVE])
+    recording.times[2:] = type(recording.times)("d", [0.101, 0.201])
+    assert facts_of(RecordedPaths(recording))[SPEED, "tool"].value == 0.0

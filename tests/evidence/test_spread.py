@@ -1,0 +1,102 @@
+"""Deviation in units of the original's own spread: which things and tests a story is told by."""
+
+from __future__ import annotations
+
+import pytest
+
+from mutabot.evidence.paths import RecordedPaths
+from mutabot.evidence.recording import Recording
+from mutabot.evidence.spread import spread_between
+from mutabot.evidence.story import diverged
+from mutabot.model import Outcome, Verdict
+from mutabot.model.deviation import deviation_of, difference_of, spread_of
+from mutabot.model.outcome import Diverged
+from tests.evidence.worlds import SHELF, TABLE, Place, line, recorded
+
+WAY = [SHELF, *line(SHELF, TABLE, 2.0)]
+
+
+def ending(end: Place, start: Place = SHELF) -> Recording:
+    """A tool that always goes the same way, and a box that ends somewhere."""
+    return recorded(WAY, [start, *line(start, end, 2.0)])
+
+
+def beside(x: float) -> Recording:
+    return ending((1.0 + x, 0.0, 0.025))
+
+
+def told(mutant: Recording, *runs: Recording) -> Diverged:
+    found = diverged(
+        "test",
+        RecordedPaths(runs[0]),
+        RecordedPaths(mutant),
+        spread=spread_between([RecordedPaths(run) for run in runs]),
+    )
+    assert found is not None
+    return found
+
+
+def box_of(found: Diverged) -> float:
+    (box,) = (one.deviation for one in found.apart if one.name == "box")
+    return box
+
+
+def test_a_deviation_is_the_difference_in_units_of_the_originals_spread() -> None:
+    assert box_of(told(beside(0.3), beside(0.0), beside(0.06))) == pytest.approx(5.0, rel=0.01)
+
+
+def test_where_the_original_does_not_spread_the_tolerance_is_the_unit() -> None:
+    assert box_of(told(beside(0.3), beside(0.0), beside(0.0))) == pytest.approx(300.0, rel=0.01)
+
+
+def test_what_differs_by_no_more_than_the_original_itself_is_not_told() -> None:
+    found = told(beside(0.05), beside(0.0), beside(0.08))
+    assert box_of(found) <= 1.0
+    assert "box" not in found.story
+
+
+def test_what_each_seed_places_elsewhere_and_nothing_moves_has_a_stable_end() -> None:
+    places = [(0.0, 0.0, 0.5), (0.3, 0.0, 0.5), (0.0, 0.4, 0.5)]
+    still = [RecordedPaths(ending(place, place)) for place in places]
+    assert spread_between(still).ends["box"] == pytest.approx(0.0, abs=1e-6)
+    assert not spread_between(still).scatters
+
+
+def test_a_test_in_which_the_original_scatters_says_so() -> None:
+    found = told(beside(2.0), beside(0.0), beside(0.52))
+    assert found.scatters == "box by 0.52 m"
+    assert found.story.startswith("only in a test whose end the original itself scatters (box by 0.52 m): ")
+
+
+def test_the_story_is_told_in_a_test_whose_end_is_stable() -> None:
+    lost = told(beside(9.0), beside(0.0), beside(0.5))
+    stable = told(beside(0.02), beside(0.0), beside(0.001))
+    assert lost.apart[0].final > stable.apart[0].final
+    for both in ((lost, stable), (stable, lost)):
+        outcome = Outcome("m", 0, Verdict.SURVIVED, diverged=both)
+        assert outcome.told is stable
+        assert outcome.deviation == stable.deviation
+
+
+def test_a_contact_that_the_original_has_with_another_seed_is_no_news() -> None:
+    def touched(*pairs: tuple[str, str], lower: float = 0.0) -> Recording:
+        way = [(x, y, z - lower) for x, y, z in WAY]
+        return recorded(way, WAY, lambda now: {*pairs} if now > 3 else set())
+
+    hit, usual = ("gripper", "table"), touched()
+    assert "gripper hit the table" in told(touched(hit, lower=0.2), usual).story
+    assert "gripper hit the table" not in told(touched(hit, lower=0.2), usual, touched(hit)).story
+
+
+@pytest.mark.parametrize(
+    ("unit", "one", "other"), [("deg", 180.0, -180.0), ("rad", 3.0, 3.0 - 6.283185307179586)]
+)
+def test_angles_are_the_same_a_full_turn_apart(unit: str, one: float, other: float) -> None:
+    assert difference_of(one, other, unit) == pytest.approx(0.0, abs=1e-9)
+    assert spread_of([one, other], unit) == pytest.approx(0.0, abs=1e-9)
+    assert difference_of(one, other, "m") > 6.0
+
+
+def test_of_one_run_there_is_no_spread() -> None:
+    assert spread_of([3.0]) == 0.0
+    assert deviation_of(3.0, 0.0, 0.5) == 6.0
