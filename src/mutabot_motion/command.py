@@ -92,9 +92,11 @@ def missing_in(shown: Shown) -> list[str]:
     return found
 
 
-def _tells(outcome: Outcome) -> tuple[bool, float, int]:
+def _tells(outcome: Outcome) -> tuple[bool, bool, float, int]:
     """The more, the better to look at; of equal rounds the first."""
-    return bool(outcome.acted), outcome.deviation or 0.0, -outcome.round
+    told = outcome.told
+    deviation = outcome.deviation or 0.0 if told is not None else 0.0
+    return bool(outcome.acted), told is not None and not told.scatters, deviation, -outcome.round
 
 
 def _reached_by(results: Results, result: MutantResult) -> tuple[str, ...]:

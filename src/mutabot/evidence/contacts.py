@@ -15,16 +15,16 @@ if TYPE_CHECKING:
     from mutabot.evidence.differences import BodyPair
 
 #: from when to when two bodies touch, s; inf if they do at the end
-Interval = tuple[float, float]
+ContactSpan = tuple[float, float]
 #: names of what no simulator calls a robot
 _GROUND = frozenset({"floor", "ground", "plane", "world"})
 #: s: a contact that is lost for less goes on
 _FLICKER = 0.25
 
 
-def intervals_of(recording: Recording) -> dict[BodyPair, list[Interval]]:
+def intervals_of(recording: Recording) -> dict[BodyPair, list[ContactSpan]]:
     """Return when each pair of bodies touches, in order."""
-    found: dict[BodyPair, list[Interval]] = {}
+    found: dict[BodyPair, list[ContactSpan]] = {}
     for one in recording.moments:
         pair = tuple(one.text.split(", ", 1))
         if one.what == "touch":
@@ -34,9 +34,9 @@ def intervals_of(recording: Recording) -> dict[BodyPair, list[Interval]]:
     return found
 
 
-def joined(intervals: Iterable[Interval]) -> list[Interval]:
+def joined(intervals: Iterable[ContactSpan]) -> list[ContactSpan]:
     """Return intervals in order, those as one that overlap or nearly meet."""
-    found: list[Interval] = []
+    found: list[ContactSpan] = []
     for begin, end in sorted(intervals):
         if found and begin <= found[-1][1] + _FLICKER:
             found[-1] = (found[-1][0], max(end, found[-1][1]))
@@ -46,7 +46,7 @@ def joined(intervals: Iterable[Interval]) -> list[Interval]:
 
 
 @dataclass(frozen=True)
-class Contacts:
+class RecordedContacts:
     """Who touches whom in a recording.
 
     Attributes:
@@ -56,7 +56,7 @@ class Contacts:
     seen: RecordedPaths
 
     @cached_property
-    def intervals(self) -> Mapping[BodyPair, list[Interval]]:
+    def intervals(self) -> Mapping[BodyPair, list[ContactSpan]]:
         """When each pair touches."""
         return intervals_of(self.seen.recording)
 
@@ -83,7 +83,7 @@ class Contacts:
         others = {*self.seen.paths, *(block.name for block in recording.blocks)} | _GROUND
         return frozenset({name for pair in self.intervals for name in pair} - others)
 
-    def holds(self, thing: str) -> list[Interval]:
+    def holds(self, thing: str) -> list[ContactSpan]:
         """When any robot touches a thing."""
         return joined(
             one
@@ -92,7 +92,7 @@ class Contacts:
             for one in found
         )
 
-    def supports(self, thing: str) -> dict[str, list[Interval]]:
+    def supports(self, thing: str) -> dict[str, list[ContactSpan]]:
         """When a thing touches what is no robot, by its name."""
         found = {}
         for pair, intervals in self.intervals.items():
@@ -102,6 +102,6 @@ class Contacts:
         return found
 
 
-def is_within(time: float, intervals: Iterable[Interval]) -> bool:
+def is_within(time: float, intervals: Iterable[ContactSpan]) -> bool:
     """Whether a moment lies in one of the intervals; the moment at which one ends does not."""
     return any(begin <= time < end for begin, end in intervals)

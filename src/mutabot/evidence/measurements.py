@@ -18,10 +18,12 @@ _LEAST = {RELEASE: 0.01, IMPACT: 0.1, SLIP: 0.005, DRAG: 0.02, SPEED: 0.05, COLL
 _FASTER = 0.2
 _UNITS = {IMPACT: "m/s", COLLISION: "m/s", SPEED: "m/s", DURATION: "s"}
 
-Facts = Mapping[tuple[str, str], Fact]
+FactsByName = Mapping[tuple[str, str], Fact]
 
 
-def measurements_of(original: Facts, mutant: Facts, spread: Spread, *, is_cut: bool) -> list[Measurement]:
+def measurements_of(
+    original: FactsByName, mutant: FactsByName, spread: Spread, *, is_cut: bool
+) -> list[Measurement]:
     """Return what differs by more than the original itself does, largest deviation first.
 
     ``is_cut``: whether the mutant's test ended early, so that only what exceeds the original counts.
@@ -32,7 +34,9 @@ def measurements_of(original: Facts, mutant: Facts, spread: Spread, *, is_cut: b
     return sorted(found, key=lambda one: (-one.deviation, one.name, one.thing))
 
 
-def _measured(original: Facts, mutant: Facts, spread: Spread, *, is_cut: bool) -> Iterator[Measurement]:
+def _measured(
+    original: FactsByName, mutant: FactsByName, spread: Spread, *, is_cut: bool
+) -> Iterator[Measurement]:
     for key, fact in mutant.items():
         usual = original.get(key)
         if fact.name == COLLISION:

@@ -11,7 +11,7 @@ from itertools import pairwise
 from math import dist, hypot, inf, sqrt
 from typing import TYPE_CHECKING, NamedTuple
 
-from mutabot.evidence.contacts import Contacts, Interval, is_within
+from mutabot.evidence.contacts import ContactSpan, RecordedContacts, is_within
 
 if TYPE_CHECKING:
     from mutabot.evidence.paths import RecordedPaths, Row, TrackPath
@@ -47,7 +47,7 @@ class Fact(NamedTuple):
 
 def facts_of(seen: RecordedPaths) -> dict[tuple[str, str], Fact]:
     """Return the largest of each kind, by name and thing."""
-    contacts = Contacts(seen)
+    contacts = RecordedContacts(seen)
     found: dict[tuple[str, str], Fact] = {}
     for one in _facts(contacts):
         key = one.name, one.thing
@@ -60,7 +60,7 @@ def facts_of(seen: RecordedPaths) -> dict[tuple[str, str], Fact]:
     return found
 
 
-def _facts(contacts: Contacts) -> Iterator[Fact]:
+def _facts(contacts: RecordedContacts) -> Iterator[Fact]:
     seen = contacts.seen
     if seen.recording.times:
         yield Fact(DURATION, "test", seen.recording.times[-1], seen.recording.times[-1])
@@ -80,7 +80,7 @@ def _speeds(path: TrackPath) -> Iterator[tuple[float, float]]:
             yield after, dist(one, other) / (after - before)
 
 
-def _releases(contacts: Contacts, thing: str) -> Iterator[Fact]:
+def _releases(contacts: RecordedContacts, thing: str) -> Iterator[Fact]:
     """From how high a thing fell after a robot had touched it last; zero where it stood on something."""
     path = contacts.seen.paths[thing]
     supports = contacts.supports(thing)
@@ -99,7 +99,7 @@ def _releases(contacts: Contacts, thing: str) -> Iterator[Fact]:
             yield Fact(RELEASE, thing, max(0.0, fallen), end, other)
 
 
-def _landing(supports: Mapping[str, Sequence[Interval]], time: float) -> tuple[float, str] | None:
+def _landing(supports: Mapping[str, Sequence[ContactSpan]], time: float) -> tuple[float, str] | None:
     """When a thing that was let go touched something first, and what."""
     begins = (
         (begin, name)
@@ -110,7 +110,7 @@ def _landing(supports: Mapping[str, Sequence[Interval]], time: float) -> tuple[f
     return min(begins, default=None)
 
 
-def _impact(contacts: Contacts, release: Fact) -> float:
+def _impact(contacts: RecordedContacts, release: Fact) -> float:
     """How fast a thing was when it touched what it fell onto, m/s: from its energy when it was let go.
 
     At ten moments a second the first touch may be missed, and what is seen is a bounce.
@@ -140,7 +140,7 @@ def _upward(row: Row) -> tuple[float, float, float]:
     return 2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)
 
 
-def _slips(contacts: Contacts, thing: str) -> Iterator[Fact]:
+def _slips(contacts: RecordedContacts, thing: str) -> Iterator[Fact]:
     """How far a thing moved in a robot's grip while nothing else touched it."""
     path = contacts.seen.paths[thing]
     supports = [one for found in contacts.supports(thing).values() for one in found]
@@ -175,7 +175,7 @@ def _in_frame(frame: Row, point: Sequence[float]) -> tuple[float, ...]:
     )
 
 
-def _drags(contacts: Contacts, thing: str) -> Iterator[Fact]:
+def _drags(contacts: RecordedContacts, thing: str) -> Iterator[Fact]:
     """How far a robot moved a thing over what it stood on; what moves things by itself is left out."""
     path, holds = contacts.seen.paths[thing], contacts.holds(thing)
     for other, found in contacts.supports(thing).items():
@@ -191,12 +191,12 @@ def _drags(contacts: Contacts, thing: str) -> Iterator[Fact]:
             yield Fact(DRAG, thing, way, at, other)
 
 
-def _carries(contacts: Contacts, support: str) -> bool:
+def _carries(contacts: RecordedContacts, support: str) -> bool:
     """Whether something moves what lies on it, as a conveyor does."""
     for thing in contacts.things:
         path, held = contacts.seen.paths[thing], contacts.holds(thing)
         found = contacts.supports(thing).get(support, [])
-        lies: list[Interval] = [(begin + _CARRIED, end) for begin, end in found if end - begin > _CARRIED]
+        lies: list[ContactSpan] = [(begin + _CARRIED, end) for begin, end in found if end - begin > _CARRIED]
         for (before, one), (after, other) in pairwise(zip(path.when, path.points, strict=True)):
             alone = is_within(before, lies) and is_within(after, lies)
             touched = any(begin - _CARRIED <= after and before <= end + _CARRIED for begin, end in held)
@@ -206,7 +206,7 @@ def _carries(contacts: Contacts, support: str) -> bool:
     return False
 
 
-def _collisions(contacts: Contacts) -> Iterator[Fact]:
+def _collisions(contacts: RecordedContacts) -> Iterator[Fact]:
     """When a robot touched something that is no tracked thing, and how fast its tool was just before."""
     for pair, found in contacts.intervals.items():
         robots = [name for name in pair if name in contacts.robots]

@@ -12,7 +12,7 @@ from functools import cached_property
 from math import inf
 
 from mutabot.evidence.calls import first_difference
-from mutabot.evidence.contacts import Contacts
+from mutabot.evidence.contacts import RecordedContacts
 from mutabot.evidence.differences import TURNED, BodyPair, Spread, differences
 from mutabot.evidence.measurements import measurements_of
 from mutabot.evidence.paths import RecordedPaths
@@ -61,7 +61,7 @@ def diverged(
         spread: how far runs of the original with different seeds are apart.
         is_cut: whether something ended the mutant's test before its end.
     """
-    both = _Compared(original, mutant, spread or Spread(), is_cut)
+    both = _ComparedRuns(original, mutant, spread or Spread(), is_cut)
     apart = differences(original.paths, mutant.paths, noise or {}, both.spread, both.until)
     found = [(one.first, _first_text(one)) for one in apart]
     call = first_difference(original.recording.calls, mutant.recording.calls)
@@ -97,7 +97,7 @@ def _first_text(one: Apart) -> str:
 
 
 @dataclass(frozen=True)
-class _Compared:
+class _ComparedRuns:
     """A mutant's test beside the original's."""
 
     original: RecordedPaths
@@ -156,7 +156,7 @@ class _Compared:
 
     def _contacts(self, measured: Sequence[Measurement]) -> Iterator[str]:
         """What never touched, what was let go otherwise, and what was hit."""
-        usual, contacts = Contacts(self.original), Contacts(self.mutant)
+        usual, contacts = RecordedContacts(self.original), RecordedContacts(self.mutant)
         always = self.spread.always
         for pair in sorted(usual.intervals.keys() - contacts.intervals.keys()):
             begin = usual.intervals[pair][0][0]
@@ -169,7 +169,9 @@ class _Compared:
                 yield text
         yield from self._hits(usual, contacts, measured)
 
-    def _hits(self, usual: Contacts, contacts: Contacts, measured: Sequence[Measurement]) -> Iterator[str]:
+    def _hits(
+        self, usual: RecordedContacts, contacts: RecordedContacts, measured: Sequence[Measurement]
+    ) -> Iterator[str]:
         """What touched that touches in no run of the original, beside what was let go onto something."""
         onto = {_pair(one.thing, one.other) for one in self.facts.values() if one.name == RELEASE}
         speeds = {one.thing: one.value or 0.0 for one in measured if one.name == COLLISION}
@@ -184,7 +186,7 @@ class _Compared:
                 yield f"{one} hit the {other} at {at:.1f} s with {_amount(speed, 'm/s')} (original: never)"
 
     def _release(
-        self, thing: str, usual: Contacts, contacts: Contacts, measured: Sequence[Measurement]
+        self, thing: str, usual: RecordedContacts, contacts: RecordedContacts, measured: Sequence[Measurement]
     ) -> str:
         """How a thing was let go, if that was otherwise than in the original; else empty."""
         before, after = self.usual.get((RELEASE, thing)), self.facts.get((RELEASE, thing))
@@ -202,7 +204,7 @@ class _Compared:
         known = _height(before) if is_other or before.value <= _SET_DOWN else _amount(before.value)
         return f"{self._verb(thing, after)} {now}{_height(after)} (original: {then}{known}){impact}"
 
-    def _not_landed(self, thing: str, usual: Contacts, contacts: Contacts) -> str:
+    def _not_landed(self, thing: str, usual: RecordedContacts, contacts: RecordedContacts) -> str:
         """How a thing was let go that was not seen to touch anything afterwards, or that was held on to."""
         ends = [found[-1][1] for one in (usual, contacts) if (found := one.holds(thing))]
         if len(ends) < 2 or ends[0] >= self.end:
