@@ -61,7 +61,7 @@ def reasons() -> list[str]:
 
 
 def end_of_process() -> Callable[[bool], object] | None:
-    """What ends the simulated process whose thread runs, and begins it anew if told so; None in any other."""
+    """Return a function that ends or restarts the current simulated process; None outside of one."""
     if not _is_running:
         return None
     from ros_in_process.processes import process  # noqa: PLC0415

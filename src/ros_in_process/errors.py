@@ -4,7 +4,7 @@ from __future__ import annotations
 
 
 class Deadlock(BaseException):
-    """All threads wait, and nothing will ever wake one.
+    """All threads wait, and no timer or message can wake any of them.
 
     Not an Exception, so that a program under test does not swallow it.
     """

@@ -46,7 +46,7 @@ class _InterruptionGuard:
         self.is_kept = True
 
     def let_go(self) -> None:
-        """Raise Interruption if one is kept, and OutOfTimeError if the time is up."""
+        """Raise Interruption if one was held back, and OutOfTimeError if the time is up."""
         if self.is_kept:
             self.is_kept = False
             raise Interruption
@@ -130,7 +130,7 @@ def limited(until: float, clock: Callable[[], float]) -> Iterator[None]:
 
 @contextmanager
 def interruptible() -> Iterator[None]:
-    """Inside, Ctrl-C takes effect at once, and so does one that was kept."""
+    """Let Ctrl-C take effect at once inside, including one that was held back."""
     keeper = _keeper
     if keeper is None:
         yield

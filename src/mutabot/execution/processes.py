@@ -1,4 +1,4 @@
-"""Processes that run jobs: fresh ones, and copies of a fork server that has collected the tests.
+"""Start processes that run jobs: fresh ones, and copies of a fork server that has collected the tests.
 
 A process has a folder, a command line, an environment and an end, and it tells events. As many open files as
 a campaign needs may be open at a time, or it is refused before anything runs.
@@ -82,7 +82,7 @@ class Home:
         return self.folder / FOLDER
 
     def events(self, name: str) -> str:
-        """Where the process of this name tells what it does."""
+        """Return the path of the event file of a process."""
         return f"{self.processes}/{name}{SUFFIX}"
 
     @property
@@ -107,7 +107,7 @@ class Home:
 
     @property
     def is_whole(self) -> bool:
-        """Whether it is still there: nobody but the controller may remove it."""
+        """Return whether the folder still exists, which only the controller may remove."""
         return Path(self.job_file).is_file() if os.access(self.folder, os.X_OK) else False
 
     def remove(self) -> None:
@@ -243,7 +243,7 @@ class EventStream:
         return found
 
     def _of_fork(self, name: str, ended: ForkEnded) -> list[Event]:
-        """What a fork told that has ended; nothing if it cannot be relied on."""
+        """Return the events of a fork that has ended; none if they cannot be relied on."""
         folder = Path(self._home.folder, FORKS, name)
         file = folder / FOLDER / (name + SUFFIX)
         if not file.exists():  # it had no folder of its own yet
@@ -421,7 +421,7 @@ class ForkServerProcess:
 
 
 def _template(job: Job) -> Job:
-    """What two jobs must have in common to begin as copies of one server."""
+    """Return what jobs must have in common to start as copies of one fork server."""
     return replace(
         job,
         round=0,
@@ -456,7 +456,7 @@ _OF_PROCESSES = ("evidence", "languages", "model", "operators", "runtime")
 
 
 def compile_us() -> None:
-    """Compile what processes of the tests import of us, if nobody has: they write no compiled files.
+    """Compile the modules of mutabot that processes of the tests import, as those write no compiled files.
 
     Some installers and all editable installations leave that to the first import, which would be each
     process's.

@@ -76,7 +76,7 @@ def end_abandoned(home: Path) -> int:
 
 
 def end_below(folder: Path) -> int:
-    """End all that was started below workers whose folders are in this one; returns how many there were."""
+    """End all processes below workers whose folders are in this one; return their number."""
     start = _mark(folder) + b"/"
     marked = [(pid, entry) for pid in _processes() for entry in _environment(pid) if entry.startswith(start)]
     return sum(_end(pid, entry) for pid, entry in marked)
@@ -106,7 +106,7 @@ def _environment(pid: int) -> list[bytes]:
 
 
 def _is_starting(pid: int) -> bool:
-    """Whether a process without an environment may get one: it is neither a dead one nor the kernel's own."""
+    """Return whether a process without an environment is starting, rather than dead or the kernel's own."""
     with suppress(OSError):
         fields = (_PROC / str(pid) / "stat").read_text("ascii", "replace").rpartition(")")[2].split()
         return fields[0] not in "ZX" and not int(fields[6]) & _KERNEL

@@ -139,7 +139,7 @@ class Result:
     untrusted: str | None = None
 
     def take(self, line: events.Event) -> None:  # noqa: PLR0912  # one case per kind of line is the clearest there is
-        """Sort in one event."""
+        """Take one event into account."""
         match line:
             case events.SiteSeen():
                 self.sites.append(line)
@@ -230,7 +230,7 @@ class Executor(Protocol):
         """
 
     def rest(self, is_awaited: Callable[[], bool], seconds: float) -> Iterator[Result | tuple[Task, Event]]:
-        """After an interruption of ``events``: what fork parents still tell, which end what they have forked.
+        """After an interruption of ``events``, yield what fork parents report while they end their forks.
 
         It ends once they have told of all forks and nothing ``is_awaited`` any more, or when that takes much
         longer than these ``seconds``. There is nothing where forks cannot be heard of before their parents
@@ -238,4 +238,4 @@ class Executor(Protocol):
         """
 
     def apart(self) -> AbstractContextManager[Executor]:
-        """An executor for one task at a time, which shares nothing with what runs here meanwhile."""
+        """Return an executor for one task at a time, which shares nothing with tasks that run here."""

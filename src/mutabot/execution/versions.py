@@ -31,7 +31,7 @@ def versions() -> dict[str, str]:
 
 
 def _own_code() -> str:
-    """Of a mutabot that is being worked on, the version alone does not tell what it does."""
+    """Return a digest of mutabot's own code, where the version alone does not identify it."""
     home = Path(mutabot.__file__).parent
     places = (*(home / part for part in _PARTS), *home.parent.glob("mutabot_*"))
     files = sorted(file for one in places for file in one.rglob("*.py"))

@@ -1,4 +1,4 @@
-"""Run tasks in worker processes, and tell what they do.
+"""Run tasks in worker processes, and yield their events.
 
 One thread looks after all workers: it waits for events, for exits and for deadlines, and never for one worker
 alone. Workers are process groups of their own, so that ending one ends all it started.
@@ -62,7 +62,7 @@ class TokenPool:
         return f"/proc/{os.getpid()}/fd/{self.reading}"
 
     def take(self, *, beside: int = 0) -> bool:
-        """Take a free token, if there is one beside so many others."""
+        """Take a token, if more than ``beside`` are free."""
         try:
             taken = len(os.read(self.reading, 1 + beside))
         except BlockingIOError:
@@ -78,7 +78,7 @@ class TokenPool:
                 os.write(self._writing, _BYTE * min(count, self._size))
 
     def refill(self) -> None:
-        """Make all tokens free again; only when nobody holds any."""
+        """Free all tokens; only when none is held."""
         with suppress(BlockingIOError):
             os.read(self.reading, _MOST_TOKENS)
         self.give_back(self._size)
@@ -216,11 +216,11 @@ class Workers:
             yield from self._wait(None, LOOKS)
 
     def apart(self) -> Workers:
-        """One more worker process, which shares nothing with these."""
+        """Return an executor with one more worker process, which shares nothing with these."""
         return Workers(self._root, self._arguments, jobs=1)
 
     def _note(self, left: list[str] | None) -> None:
-        """Tell once what a process left running."""
+        """Report once what a process left running."""
         if left and not self._has_told_left:
             self._has_told_left = True
             more = f" and {len(left) - 1} more" if len(left) > 1 else ""
@@ -239,7 +239,7 @@ class Workers:
 
     @property
     def _spared(self) -> int:
-        """Tokens that are left to fork parents which have ended no test yet, one for each to fork with.
+        """Return the number of tokens reserved for fork parents that have ended no test yet, one for each.
 
         Outcomes wait until the parent ends the test in which they were forked: what runs beside it puts off
         the first of them.
@@ -344,7 +344,7 @@ class Workers:
 
 
 class _Worker:
-    """One running worker process."""
+    """A running worker process."""
 
     def __init__(self, task: Task, home: Home, events: EventStream, process: Spawned | Copy) -> None:
         self.task = task
@@ -375,7 +375,7 @@ class _Worker:
             selector.register(self.process.pidfd, selectors.EVENT_READ, self)
 
     def read(self) -> list[Event]:
-        """Take what it has told by now."""
+        """Read the events that it has written so far."""
         return self._taken(self.events.read())
 
     def _taken(self, events: list[Event]) -> list[Event]:

@@ -103,7 +103,7 @@ def _open(name: str, pragmas: tuple[str, ...], *, uri: bool = False) -> sqlite3.
 
 
 def connect(path: Path) -> sqlite3.Connection:
-    """The one connection that writes; the file is made if it does not exist."""
+    """Open the connection that writes; the file is created if it does not exist."""
     # NORMAL survives the death of the process; only a power cut can take the last outcomes, and those are
     # simply run again. The last question opens the log, whatever is in its place later.
     pragmas = (_ALONE, "journal_mode = WAL", "synchronous = NORMAL", "schema_version")
@@ -111,7 +111,7 @@ def connect(path: Path) -> sqlite3.Connection:
 
 
 def loaded(source: sqlite3.Connection) -> sqlite3.Connection:
-    """All that is in a database, in one without a name, which is gone with its connection."""
+    """Copy a database into an unnamed one, which is deleted with its connection."""
     copy = _open("", ())
     try:
         source.backup(copy)
@@ -186,7 +186,7 @@ def _rows(connection: sqlite3.Connection, table: str) -> dict[int, tuple[Any, ..
 
 
 def differences(file: sqlite3.Connection, known: sqlite3.Connection) -> list[str]:
-    """Rows that were changed, added or removed, and whatever else is in the file, in words."""
+    """Return one text for each row that was changed, added or removed, and for other differences."""
     if set(file.execute(_THINGS, (_MOST,))) != set(known.execute(_THINGS, (_MOST,))):
         return ["the tables are others than were made"]
     found: list[str] = []
@@ -243,7 +243,7 @@ def no_journal(path: Path) -> JournalError:
 
 
 def set_aside(path: Path) -> Path | None:
-    """Move aside what lies there and is no journal of this version; returns where to.
+    """Move aside a file that is no journal of this version; return its new path.
 
     A journal of another version gets that as part of its name, so that no later campaign overwrites it;
     a damaged one takes the place of the previous one. Raises JournalError for a file that is not ours.

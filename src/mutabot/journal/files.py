@@ -1,4 +1,4 @@
-"""What of mutabot lies in a project, and who may write a journal: one campaign at a time.
+"""Mutabot's files in a project, and the lock that lets one campaign at a time write a journal.
 
 What a journal says is believed: outcomes in it are taken over, and gates are decided by it. One that git
 tracks was written by whoever wrote the commit, as by a stranger's pull request, which would judge itself. It
@@ -60,7 +60,7 @@ def clear(path: Path) -> None:
 
 
 class WriterLock:
-    """Held by the one process that writes a journal; the system gives it back when that process dies."""
+    """The lock of the process that writes a journal, which the system releases when that process dies."""
 
     def __init__(self, journal: Path, descriptor: int) -> None:
         self._journal = journal
@@ -123,7 +123,7 @@ def is_written(journal: Path) -> bool:
 
 @contextmanager
 def at_work(home: Path) -> Iterator[None]:
-    """Say that somebody works in mutabot's folder; the first to come removes what killed ones left there.
+    """Mark mutabot's folder as in use; the first user removes what killed processes left there.
 
     Also folders that their controllers had not claimed yet, or had begun to remove.
     """

@@ -89,7 +89,7 @@ def guarded(path: Path) -> Iterator[None]:
 
 
 class JournalReader:
-    """The record of one campaign, to be read; use as a context manager.
+    """Read the record of a campaign; use as a context manager.
 
     Every method raises JournalError when the file cannot be read.
 
@@ -311,7 +311,7 @@ class JournalReader:
 
 
 class Journal(JournalReader):
-    """The record of one campaign, to be written; use as a context manager.
+    """Write the record of a campaign; use as a context manager.
 
     Every method raises JournalError when the file cannot be read or written.
 
@@ -407,7 +407,7 @@ class Journal(JournalReader):
         self._lock.release()
 
     def begin(self, meta: Mapping[str, Any]) -> None:
-        """Begin the campaign. Mutants and outcomes of those before are kept aside.
+        """Begin the campaign. Mutants and outcomes of earlier campaigns are kept aside.
 
         All or nothing. A complete campaign stays readable as ``previous_of`` the path.
         """
@@ -429,7 +429,7 @@ class Journal(JournalReader):
     # What the campaign was and how it ended
 
     def set_meta(self, key: str, value: Any) -> None:
-        """Add or replace one fact about the campaign."""
+        """Add or replace a fact about the campaign."""
         self._put("meta", key, _dump(value))
 
     def finish(self, reason: str) -> None:
@@ -452,7 +452,7 @@ class Journal(JournalReader):
                 self._put("test", one.test.test, _dump(one))
 
     def add_control(self, control: ControlEnd) -> None:
-        """Add the end of one control mutant."""
+        """Add the end of a control."""
         self._put("control", control.control, _dump(control))
 
     def set_original(self, kept: KeptBaseline) -> None:
@@ -498,7 +498,7 @@ class Journal(JournalReader):
     # Outcomes
 
     def add_outcome(self, outcome: Outcome, *, key: str = "") -> None:
-        """Add one outcome; a later one of the same mutant and round takes its place.
+        """Add an outcome, replacing an earlier one of the same mutant and round.
 
         ``key`` is what it depends on; the empty key says that nobody knows, and that it is not to be reused.
         """
@@ -580,11 +580,11 @@ class Journal(JournalReader):
     # Writing
 
     def _put(self, table: str, *values: Any) -> None:
-        """Add a row; one of the same name makes way, where names are unique."""
+        """Add a row, replacing one of the same name where names are unique."""
         self._write(f"INSERT OR REPLACE INTO {table} VALUES ({', '.join('?' * len(values))})", *values)
 
     def _write(self, statement: str, *values: Any) -> None:
-        """Carry out one statement; within ``_transaction``, as a part of it."""
+        """Execute a statement; within ``_transaction``, as a part of it."""
         if self._done is None:
             with self._transaction():
                 self._write(statement, *values)

@@ -126,7 +126,7 @@ class Recordings:
         self._delete("mutant = ? AND round = ?", mutant, round)
 
     def add(self, mutant: str, round: int, test: str, rank: Rank, data: bytes) -> bool:
-        """Add one; of lower ranks, others make room for it. Returns whether there was room."""
+        """Add a recording, removing ones of lower rank if needed. Returns whether there was room."""
         if self.used + len(data) > self._limit and not self._make_room(rank, len(data)):
             self.dropped += 1
             return False
@@ -139,12 +139,12 @@ class Recordings:
         return True
 
     def tests(self, mutant: str, round: int) -> tuple[str, ...]:
-        """The tests of which there is one."""
+        """Return the tests that have a recording."""
         rows = self._rows("SELECT test FROM recording WHERE mutant = ? AND round = ?", mutant, round)
         return tuple(test for (test,) in rows)
 
     def data(self, mutant: str, round: int, test: str) -> bytes | None:
-        """One, as ``evidence.recording.to_bytes`` wrote it; None if there is none."""
+        """Return a recording, as ``evidence.recording.to_bytes`` wrote it; None if there is none."""
         rows = self._rows(
             "SELECT data FROM recording WHERE mutant = ? AND round = ? AND test = ?", mutant, round, test
         )
@@ -165,7 +165,7 @@ class Recordings:
         return [(str(test), Rank(rank), bytes(data)) for test, rank, data in rows]
 
     def take(self, others: Iterable[Recordings], mutants: set[str]) -> None:
-        """Take over those of several journals, of equal ones the first; all but of these mutants make way."""
+        """Copy recordings of several journals, the first of equal ones; keep those of ``mutants`` only."""
         self.keep_only(mutants)
         done: set[tuple[str, int]] = set()
         for other in others:
@@ -212,7 +212,7 @@ _KINDS = {stat.S_IFLNK: "a link", stat.S_IFDIR: "a folder", stat.S_IFIFO: "a pip
 
 
 def _what_is_there(path: Path) -> str:
-    """What stands in the place of the file, or of one beside it, that is no plain file; empty if nothing."""
+    """Return what kind of thing, other than a plain file, has the name of the file; empty if none."""
     for suffix in BESIDE:
         name = path.with_name(path.name + suffix)
         kind = stat.S_IFMT(name.lstat().st_mode) if os.path.lexists(name) else stat.S_IFREG

@@ -138,7 +138,7 @@ class Untested:
 
 @frozen
 class BaselineTest:
-    """One test of the baseline.
+    """A test of the baseline.
 
     Attributes:
         round: 0-based round.
@@ -227,7 +227,7 @@ class ControlEnd:
 
 @frozen
 class Stratum:
-    """The mutants of one family in one role, of which some were drawn.
+    """The mutants of one family and role, of which some were drawn.
 
     Attributes:
         family, role: which.
@@ -358,7 +358,7 @@ class Verification:
 
 @frozen
 class Flaky:
-    """Tests that cannot be relied on: they differ between equal runs of the original, or fail in one round.
+    """Flaky tests, which differ between equal runs of the original, or fail in some round.
 
     Attributes:
         tests: one line each: test, round and reason.
@@ -404,7 +404,7 @@ def is_wrong(outcome: Outcome) -> bool:
 
 @frozen
 class Replayed:
-    """One mutant in one round, run again.
+    """A repeated run of one mutant in one round.
 
     Attributes:
         round: 0-based round.
@@ -424,7 +424,7 @@ class Replayed:
 
 @frozen
 class Repeated:
-    """Outcomes of one kind, and what repeats of them came to.
+    """Outcomes of one kind, and how their repeats ended.
 
     Attributes:
         outcomes: how many there were before any was repeated.
@@ -539,7 +539,7 @@ def _refuse_excess(value: Any, depth: int) -> None:
 
 
 def fact(key: str, value: Any) -> Any:
-    """A fact of a campaign, if it can be one."""
+    """Return a fact of a campaign, checked for its type."""
     if value is None or key not in FACTS:
         return value
     found = from_data(FACTS[key], value)

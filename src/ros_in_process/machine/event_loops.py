@@ -153,7 +153,7 @@ _running: dict[SimulatedThread, Any] = {}
 
 
 def _change_running_loop(old: SimulatedThread, new: SimulatedThread) -> None:
-    """Each thread has a running loop of its own; asyncio keeps one for each native thread."""
+    """Exchange asyncio's running loop, kept per native thread, when the simulated thread changes."""
     running = asyncio._get_running_loop()
     if running is not None or _running:
         _running[old] = running

@@ -41,7 +41,7 @@ def refuse(name: str, refusal: Callable[[], None]) -> None:
 
 
 def is_provided(name: str) -> bool:
-    """Whether a module of this name has a simulated one."""
+    """Return whether a module of this name is simulated."""
     return name in _builders
 
 
@@ -62,7 +62,7 @@ def add_root(folder: str) -> None:
 
 
 def is_of_project(file: str) -> bool:
-    """Whether a file belongs to the project: below one of its roots, and not installed there."""
+    """Return whether a file belongs to the project: below one of its roots, and not installed there."""
     answer = _answers.get(file)
     if answer is None:
         path = os.path.realpath(file)
@@ -130,12 +130,12 @@ _import.__code__ = _import.__code__.replace(co_filename=f"<importlib._bootstrap,
 
 
 def install() -> None:
-    """Answer import statements by who asks, from now on."""
+    """From now on, give importing modules the real or simulated module that they are meant to have."""
     builtins.__import__ = _import
 
 
 def catch_up() -> None:
-    """Give the simulated modules to those who imported the real ones before."""
+    """Give simulated modules to modules of the project that have already imported the real ones."""
     for module in [module for name, module in list(sys.modules.items()) if _decided(name)]:
         for name, value in list(vars(module).items()):
             if isinstance(value, ModuleType) and value.__name__ in _builders:
@@ -161,7 +161,7 @@ def copied(name: str, without: Sequence[str] = ()) -> ModuleType:
 
 
 def varied(name: str, **changes: object) -> ModuleType:
-    """A module with the attributes of a real one, apart from some."""
+    """Return a copy of a module with some attributes replaced."""
     real = sys.modules.get(name) or _real_import(name, None, None, ("*",), 0)
     module = ModuleType(name, real.__doc__)
     module.__dict__.update(real.__dict__)

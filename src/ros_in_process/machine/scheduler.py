@@ -1,4 +1,4 @@
-"""Runs all threads of a simulation in one native thread, in simulated time.
+"""Run all threads of a simulation in one native thread, in simulated time.
 
 Each simulated thread is a greenlet. One runs until it waits; the scheduler then picks the next that can
 run. When none can, time jumps to the earliest deadline. So waiting costs no wall time, the order of events
@@ -128,12 +128,12 @@ class Scheduler:
                 task.sentinel.release()
 
     def _serve(self, *_: object) -> None:
-        """Go on with another thread when one has ended: where ended greenlets return to."""
+        """Continue with another thread when one has ended; ended greenlets return here."""
         while True:
             self._enter(self._next())
 
     def drop_process(self, process: Process) -> None:
-        """Never let the threads of a process run again, except the running one: not even `finally` blocks."""
+        """Stop all threads of a process but the running one for ever; their `finally` blocks do not run."""
         for task in [task for task in self._tasks if task.process is process and task is not self.current]:
             task.is_over, task.is_parked = True, False
             if task in self._ready:
@@ -181,7 +181,7 @@ class Scheduler:
         self.wake(task)
 
     def sleep(self, duration: int) -> None:
-        """Let so much time pass, whoever wakes this thread meanwhile."""
+        """Let `duration` nanoseconds pass, whatever notifies this thread meanwhile."""
         end = self.now + max(duration, 0)
         if duration <= 0:
             self.pause()

@@ -28,7 +28,7 @@ class Schedule(Protocol):
         """Whether the running thread lets others go first at a place at which it need not."""
 
     def keeps(self, number: int) -> list[bool]:
-        """Which of so many ready entities a wait set reports now; at least one."""
+        """Choose which of `number` ready entities a wait set reports now; at least one."""
 
     def discovery(self) -> int:
         """After which time (ns) two ends in different contexts find each other."""

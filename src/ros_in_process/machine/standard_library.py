@@ -1,4 +1,4 @@
-"""The standard library's modules that wait or tell time, in simulated time.
+"""Modules of the standard library that wait or read clocks, in simulated time.
 
 Only `_thread` and `time` are written anew. `threading`, `queue`, `concurrent.futures` and `sched` are
 second copies of the library's own source above them, so they behave as they do everywhere.

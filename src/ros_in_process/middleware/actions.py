@@ -1,4 +1,4 @@
-"""Actions: the services and topics that one consists of, and the states of its goals."""
+"""Actions: their services and topics, and the states of their goals."""
 
 from __future__ import annotations
 
@@ -164,7 +164,7 @@ class ActionServer(_ActionEnd):
         ]
 
     def is_ready(self, wait_set: WaitSet) -> tuple[bool, ...]:
-        """Whether there is a goal, a request to cancel, one for a result, or a result that has expired."""
+        """Return whether goals, cancel requests, result requests or expired results are waiting."""
         return self._is_ready(wait_set, ("service", "service", "service", "timer"))
 
     def take_goal_request(self, kind: Any) -> tuple[Any, Any]:
@@ -262,7 +262,7 @@ def _status(goal: ActionGoalHandle) -> Any:
 
 
 class ActionGoalHandle(Destroyable):
-    """One goal of a server, and its state."""
+    """A goal of a server, and its state."""
 
     def __init__(self, server: ActionServer, info: Any) -> None:
         super().__init__()

@@ -1,4 +1,4 @@
-"""Clocks, sleeping until one shows a time, and timers."""
+"""Clocks, waiting until a clock reaches a time, and timers."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ class RosClock(Destroyable):
 
 
 class ClockEvent(Waitable):
-    """What a thread sleeps on until a clock shows a time, or until somebody sets it."""
+    """An event on which a thread waits until a clock reaches a time, or until it is set."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -130,7 +130,7 @@ class ClockEvent(Waitable):
 
 
 class Timer(Waitable):
-    """Is due once in each period of a clock."""
+    """A timer that is due once in each period of a clock."""
 
     def __init__(self, clock: RosClock, context: Participant, period: int, autostart: bool = True) -> None:
         super().__init__()

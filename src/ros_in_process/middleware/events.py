@@ -1,4 +1,4 @@
-"""Events of publishers and subscriptions: what has happened since one was last taken."""
+"""Quality-of-service events of publishers and subscriptions, counted since they were last taken."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class Status:
 
 
 class EventHandle(Waitable):
-    """Tells of one kind of event of a publisher or a subscription."""
+    """A handle to one kind of event of a publisher or a subscription."""
 
     def __init__(self, end: Any, event: Any) -> None:
         super().__init__()

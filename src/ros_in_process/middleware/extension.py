@@ -1,4 +1,4 @@
-"""The module in the place of `rclpy._rclpy_pybind11`: all names that the real one exports."""
+"""The replacement for `rclpy._rclpy_pybind11`, with all names that the real module exports."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class EventsExecutor:
 
 
 def rclpy_get_rmw_implementation_identifier() -> str:
-    """The middleware that this one stands for."""
+    """The name of the middleware that this one simulates."""
     return "rmw_fastrtps_cpp"
 
 
@@ -109,7 +109,7 @@ def _hash_by_age(self: Any) -> int:
 
 
 def install() -> None:
-    """Put the module in the place of the real one, before rclpy is imported."""
+    """Replace the real module, before rclpy is imported."""
     if MODULE in sys.modules:
         raise NeedsRealRos("rclpy was imported before the simulation was set up")
     module = build()

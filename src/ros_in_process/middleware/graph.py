@@ -26,7 +26,7 @@ _numbers = count(1)
 
 
 class Destroyable:
-    """A handle that is destroyed once nobody uses it any more.
+    """A handle that is destroyed once it is no longer in use.
 
     Attributes:
         destroyed: how many handles have been destroyed so far.
@@ -85,7 +85,7 @@ class Waitable(Destroyable):
 
 
 class Participant(Destroyable):
-    """One start of ROS in a process: a participant of the network, with what its command line said."""
+    """A participant of the network: one initialisation of ROS in a process, with its arguments."""
 
     def __init__(self, args: list[str], domain_id: int) -> None:
         super().__init__()
@@ -220,7 +220,7 @@ class Node(Destroyable):
 
 
 class Endpoint(Waitable):
-    """One end of a topic or service."""
+    """An endpoint of a topic or service."""
 
     role = ""
 
@@ -235,14 +235,14 @@ class Endpoint(Waitable):
         self.seen_at = WORLD.discovery()
 
     def _others(self, role: str) -> Iterator[Any]:
-        """The ends of a role that this one could talk to, by domain, name and type."""
+        """Yield the endpoints of a role that match this one by domain, name and type."""
         wanted = (role, self.name, self.type_name, self.node.context.domain)
         for end in WORLD.ends:
             if (end.role, end.name, end.type_name, end.node.context.domain) == wanted:
                 yield end
 
     def when_both_are_seen(self, other: Endpoint, meet: Callable[[], None]) -> None:
-        """Let two ends meet: at once in one context, after discovery otherwise."""
+        """Call `meet` when two endpoints see each other: in one context at once, else after discovery."""
 
         def meet_if_there() -> None:
             if not self.is_destroyed and not other.is_destroyed:
@@ -298,7 +298,7 @@ class World:
         return [end for end in self.ends if end.role == role and _is_seen(by, end.node.context, end.seen_at)]
 
     def of_node(self, by: Node, role: str, name: str, namespace: str, what: str) -> list[Endpoint]:
-        """The ends of a role that a node has, as another one sees it."""
+        """Return the endpoints of a role that one node has, as seen by another."""
         if not any((node.name, node.namespace) == (name, namespace) for node in self.seen_nodes(by)):
             if what.startswith("action"):
                 raise RCLError(f"Failed to get {what} names and type: error not set")

@@ -1,4 +1,4 @@
-"""The state machine of lifecycle nodes, with its services and the topic that tells of transitions."""
+"""The state machine of lifecycle nodes, with its services and the topic of transitions."""
 
 from __future__ import annotations
 

@@ -76,7 +76,7 @@ def rclpy_logging_rcutils_log(
 
 
 def rclpy_logging_set_logger_level(name: str, level: Any, detailed_error: bool = False) -> None:
-    """Let a logger tell only what is at least this severe."""
+    """Set the lowest severity that a logger prints."""
     if int(level) not in _NAMES:
         detail = f": Unable to set log level {int(level)}" if detailed_error else ""
         raise RuntimeError(f"Failed to set level for logger{f' {name!r}' if detailed_error else ''}{detail}")
@@ -89,7 +89,7 @@ def rclpy_logging_get_logger_level(name: str) -> int:
 
 
 def rclpy_logging_get_logger_effective_level(name: str) -> int:
-    """The level of a logger, or of the nearest one above it that has one."""
+    """Return the level of a logger, or of its nearest ancestor that has one."""
     while name:
         if _levels.get(name):
             return _levels[name]
@@ -98,7 +98,7 @@ def rclpy_logging_get_logger_effective_level(name: str) -> int:
 
 
 def rclpy_logging_logger_is_enabled_for(name: str, severity: Any) -> bool:
-    """Whether a logger tells what is so severe."""
+    """Return whether a logger prints messages of this severity."""
     return int(severity) >= rclpy_logging_get_logger_effective_level(name)
 
 
@@ -120,7 +120,7 @@ def rclpy_logging_rosout_add_sublogger(logger: str, sublogger: str) -> bool:
 
 
 def rclpy_logging_rosout_remove_sublogger(logger: str, sublogger: str) -> None:
-    """Stop publishing what a child logs, when nobody uses it any more."""
+    """Stop publishing the messages of a child logger that is no longer in use."""
     full = f"{logger}.{sublogger}"
     _sublogger_users[full] = _sublogger_users.get(full, 1) - 1
     if _sublogger_users[full] <= 0:

@@ -81,7 +81,7 @@ class rmw_qos_profile_t:  # noqa: N801  (the name that rclpy uses)
         return self._told(self.depth, self.history, self.liveliness, times)
 
     def as_discovered(self) -> dict[str, Any]:
-        """The same as others see it: the network tells no depth and no history, and defaults are resolved."""
+        """The profile as discovered by others: without depth and history, and with defaults resolved."""
         return self._told(
             0, UNKNOWN, self.liveliness or AUTOMATIC, [self.lifespan, self.deadline, self.lease]
         )
@@ -101,7 +101,7 @@ class rmw_qos_profile_t:  # noqa: N801  (the name that rclpy uses)
         }
 
     def resolved(self, is_writer: bool, others: list[rmw_qos_profile_t]) -> rmw_qos_profile_t:
-        """The profile with system defaults, and best available ones, as Fast DDS takes them."""
+        """Return the profile with system defaults and best-available policies resolved as by Fast DDS."""
         profile = rmw_qos_profile_t.__new__(rmw_qos_profile_t)
         profile.__dict__.update(self.__dict__)
         profile.reliability = self.reliability or (RELIABLE if is_writer else BEST_EFFORT)

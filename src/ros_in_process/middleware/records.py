@@ -160,7 +160,7 @@ class rcl_duration_t(Record):  # noqa: N801
 
 
 class rcl_time_point_t(Record):  # noqa: N801
-    """A time of one of the clocks."""
+    """A point in time of one clock type."""
 
     fields = ("nanoseconds", "clock_type")
     nanoseconds: int

@@ -1,4 +1,4 @@
-"""Services: clients and servers, their requests and answers, and the events that tell of them."""
+"""Services: clients and servers, their requests and responses, and service events."""
 
 from __future__ import annotations
 
@@ -184,7 +184,7 @@ class Service(_ServiceEnd):
 
 
 class TypeDescriptionService(Destroyable):
-    """The service that tells what a type is made of."""
+    """The service that describes a message type."""
 
     def __init__(self, node: Node) -> None:
         from type_description_interfaces.srv import GetTypeDescription  # noqa: PLC0415  (only where there is ROS)

@@ -35,12 +35,12 @@ def uninstall_signal_handlers() -> None:
 
 
 def register_sigint_guard_condition(condition: GuardCondition) -> None:
-    """Wake a wait set when a signal comes."""
+    """Trigger a guard condition when SIGINT arrives."""
     _conditions.append((_process(), condition))
 
 
 def unregister_sigint_guard_condition(condition: GuardCondition) -> None:
-    """Wake it no longer."""
+    """No longer trigger a guard condition."""
     _conditions[:] = [entry for entry in _conditions if entry[1] is not condition]
 
 
@@ -54,12 +54,12 @@ def handles(process: Any, signum: int) -> bool:
 
 
 def replaced(process: Any, signum: int) -> None:
-    """A program has set a handler of its own, after ROS's."""
+    """Note that a program has replaced ROS's signal handler by its own."""
     _replaced.add((process, int(signum)))
 
 
 def shut_down(process: Any) -> None:
-    """What ROS's handlers do: shut the contexts down and wake the executors."""
+    """Do what ROS's handlers do: shut the contexts down and wake the executors."""
     for context in process.contexts:
         context.close()
     for owner, condition in tuple(_conditions):

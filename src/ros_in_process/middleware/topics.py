@@ -157,7 +157,7 @@ class Publisher(_Topic):
         self._send(converted(message, self.kind))
 
     def publish_raw(self, data: bytes) -> None:
-        """Send a message that is serialized already; a subscription finds out whether it is one."""
+        """Publish a serialized message; whether it is valid turns out at the subscription."""
         self._send(bytes(data))
 
     def _send(self, message: Any) -> None:
@@ -306,7 +306,7 @@ class Subscription(_Topic):
             self.hear_of_life(end)
 
     def _learns_of(self, publisher: Publisher) -> bool:
-        """Whether it is told of a publisher's life: a context does not tell itself that it lives."""
+        """Return whether a publisher's liveliness is seen here, which it is not within one context."""
         return publisher.profile.liveliness != AUTOMATIC or publisher.node.context is not self.node.context
 
     def lose(self, end: Any) -> None:
@@ -341,7 +341,7 @@ class Subscription(_Topic):
         return self._filter is not None
 
     def set_content_filter(self, expression: str, parameters: list[str]) -> None:
-        """Hear only messages for which an expression holds; an empty one ends it."""
+        """Receive only messages for which an expression holds; an empty expression removes the filter."""
         self._filter = ContentFilter(expression, parameters) if expression else None
 
     def get_content_filter(self) -> Any:

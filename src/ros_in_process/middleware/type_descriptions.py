@@ -36,7 +36,7 @@ def _hash_text(type_name: str) -> str:
 
 
 def hash_of(type_name: str) -> dict[str, Any]:
-    """The hash of a type; zeros if its package does not tell."""
+    """Return the hash of a type; zeros if its package does not provide one."""
     text = _hash_text(type_name)
     if not text:
         return {"version": 0, "value": bytes(32)}

@@ -14,7 +14,7 @@ from ros_in_process.middleware.records import (
 
 
 class GuardCondition(Waitable):
-    """Wakes a wait set by hand."""
+    """A condition that wakes a wait set when it is triggered."""
 
     def __init__(self, context: Participant) -> None:
         super().__init__()
@@ -169,7 +169,7 @@ class WaitSet(Destroyable):
                 self._ready[kind][index] = is_kept
 
     def is_ready(self, kind: str, index: int) -> bool:
-        """Whether a member was ready after the wait; before one, whether there is a member."""
+        """Return whether a member was ready after the wait; before a wait, whether there is a member."""
         flags = self._ready.get(kind)
         if flags is not None and index < len(flags):
             return flags[index]

@@ -111,7 +111,7 @@ def _imported_anew(function: Callable[..., object]) -> Callable[..., object]:
 
 
 class _Shared:
-    """What processes share is one object in all of them."""
+    """An object that simulated processes share."""
 
     def __deepcopy__(self, memo: object) -> Any:
         return self
@@ -128,7 +128,7 @@ def _queue_class(name: str) -> type:
 
 
 class Connection(_Shared):
-    """One end of a `multiprocessing.Pipe`."""
+    """An end of a `multiprocessing.Pipe`."""
 
     def __init__(self, incoming: Any, outgoing: Any) -> None:
         self._incoming, self._outgoing = incoming, outgoing

@@ -34,7 +34,7 @@ _pids = count(1_000_001)
 
 
 class Process:
-    """What belongs to one process."""
+    """The state of one simulated process."""
 
     def __init__(
         self, name: str, argv: list[str], folder: str, environ: dict[bytes, bytes], path: list[str]
@@ -154,7 +154,7 @@ class Process:
         SCHEDULER.call_at(SCHEDULER.now + _LEASE, partial(_remove_from_graph, contexts))
 
     def end_in_midst(self, anew: bool) -> None:
-        """Be killed by a thread of its own, and begin anew if told so: with its number and no memory."""
+        """Kill the process from one of its threads; with `anew`, restart it with the same process id."""
         if not anew or self._run is None:
             self.kill(signal.SIGKILL)
         else:
@@ -219,7 +219,7 @@ class Process:
 
 
 class Pipe(io.RawIOBase):
-    """What one process writes and another reads; a reader waits in simulated time."""
+    """A pipe from one process to another, whose reader waits in simulated time."""
 
     def __init__(self, is_text: bool) -> None:
         super().__init__()

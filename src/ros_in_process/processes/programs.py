@@ -45,7 +45,7 @@ class _Program:
 
 
 def _program_of(words: list[str], folder: str) -> _Program | None:
-    """The simulated program that a command starts; None if it starts another one."""
+    """Return the simulated program that a command starts; None for any other program."""
     if outside.starts_nodes(words[0]):
         raise outside.refused(words)
     if outside.is_python(words[0]):
@@ -116,7 +116,7 @@ class Popen:
         return popen
 
     def __init__(self, *_: Any, **__: Any) -> None:
-        """All is done by `__new__`, which may make a real one."""
+        """Do nothing: `__new__` does all, and may make a real process."""
 
     def __class_getitem__(cls, item: Any) -> Any:
         return cls
