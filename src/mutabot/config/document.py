@@ -111,7 +111,7 @@ def _extremes(data: Any) -> Iterator[tuple[KeyPath, str]]:
 
 
 def _reason(error: Exception, text: str) -> tuple[str, int | None]:
-    """Why a file cannot be read, and the line that is to blame, where one is."""
+    """Return why a file cannot be read, and the line with the mistake, if known."""
     match error:
         case FileNotFoundError():
             return "there is no such file", None

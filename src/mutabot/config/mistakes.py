@@ -1,4 +1,4 @@
-"""Mistakes in TOML files, told in the user's words: file, line, key and what would have worked."""
+"""Report mistakes in TOML files: file, line, key and what would have been right."""
 
 from __future__ import annotations
 
@@ -141,7 +141,7 @@ class DocumentPlace:
 
 
 def explained(detail: ErrorDetails) -> str:
-    """One sentence for a mistake that pydantic found, in the words of the files' authors."""
+    """Return a sentence about a mistake that pydantic found, in the terms of the file."""
     kind, value = detail["type"], detail["input"]
     if kind in ("enum", "literal_error"):
         return f"expected text, got {shown(value)}; known: {detail['ctx']['expected']}"
@@ -168,7 +168,7 @@ def _list_hint(detail: ErrorDetails) -> str:
 
 
 def shown(value: Any) -> str:
-    """A value of a TOML file, in words."""
+    """Return a value of a TOML file as text."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, int | float):

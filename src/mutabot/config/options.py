@@ -125,7 +125,7 @@ _SHARD = re.compile(r"\s*([0-9]{1,6})\s*/\s*([0-9]{1,6})\s*")
 
 @frozen
 class Shard:
-    """One of so many parts of a campaign.
+    """A numbered part of a campaign.
 
     Attributes:
         number: 1-based.

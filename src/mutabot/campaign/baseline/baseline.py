@@ -66,7 +66,7 @@ class PlantedFaults:
         return made
 
     def active(self, mutant: Mutant) -> Activation:
-        """How a mutant, or a control at the place of one, becomes active."""
+        """Return the activation of a mutant, or of a control at the place of one."""
         if mutant.family == CONTROL:
             return self._at_place[Place.of(mutant)].control(is_fatal=mutant.operator != Identity.name)
         found = self.by_id[mutant.id].active
@@ -104,12 +104,12 @@ class Sources:
         return Place(site, seen.operation, seen.pattern)
 
     def is_among(self, span: Span, find: Callable[[str], frozenset[Extent]]) -> bool:
-        """Whether an expression is one of those that are found in the text of its file, if that is Python."""
+        """Return whether ``find`` finds an expression in the text of its file, if that is Python."""
         is_python = front_end_of(span.file) is PYTHON
         return is_python and _extent(span) in (self.found_in(span.file, find) or ())
 
     def found_in(self, file: str, find: Callable[[str], Any]) -> Any:
-        """What is found in the text of a file; None for one that cannot be read."""
+        """Return what ``find`` finds in the text of a file; None if the file cannot be read."""
         if (file, find) not in self._read:
             try:
                 found = find(front_end_of(file).text_of((self.root / file).read_bytes()))
@@ -206,7 +206,7 @@ class Baseline(Original):
         return next(((test, why) for test, why in ends if why is not None), None)
 
     def is_apart(self, mutant: Mutant) -> bool:
-        """Whether a mutant needs a process of its own: it is active before any point to fork at."""
+        """Return whether a mutant needs a process of its own, as it is active before any point to fork at."""
         return not self.faults.active(mutant).keys
 
     def is_early(self, mutant: Mutant) -> bool:
@@ -256,7 +256,7 @@ class Baseline(Original):
         self.doubted.add(test)
 
     def compare_runs(self, round: int, end: TestEnd, found: Observation, vocabulary: Vocabulary) -> None:
-        """Compare one more run of a test of the original with its first.
+        """Compare a further run of a test of the original with the first.
 
         Only what both have alike can be compared with a mutant's.
         """

@@ -151,13 +151,13 @@ class _Origins:
                 self.imported |= {one.asname or one.name: f"{module}.{one.name}" for one in node.names}
 
     def last_name(self, function: ast.expr) -> str:
-        """The last name of what is called, before it was imported under another one."""
+        """Return the last part of a called name, before it was renamed by an import."""
         if isinstance(function, ast.Name):
             return self.imported.get(function.id, function.id).rpartition(".")[2]
         return last_name(function) if not isinstance(function, ast.Call) else ""
 
     def of(self, node: ast.AST, scope: _CallScope, depth: int = 0) -> str | None:
-        """The dotted name of what an expression is made of; None if the text does not tell."""
+        """Return the dotted name from which an expression derives; None if the text does not determine it."""
         if depth > _DEEPEST:
             return None
         match node:
@@ -319,7 +319,7 @@ def _root(node: ast.AST) -> str:
 
 
 def _best(call: ast.Call, operations: Sequence[Operation], scope: _CallScope, origins: _Origins) -> Operation:
-    """Of several operations of one name, the one whose class or arguments fit; the first if none does."""
+    """Return the operation of this name whose class or arguments fit; the first if none does."""
     value = call.func.value if isinstance(call.func, ast.Attribute) else call.func
     origin = origins.of(value, scope) or ""
     given = {one.arg for one in call.keywords}
@@ -332,7 +332,7 @@ def _best(call: ast.Call, operations: Sequence[Operation], scope: _CallScope, or
 
 
 def _pattern(call: ast.Call, operation: Operation) -> Pattern | None:
-    """The command that a call gives, by the texts in it; None if they do not tell or there are none."""
+    """Return the text command of a call, by its string literals; None if these do not determine it."""
     named = {one.arg: one.value for one in call.keywords if one.arg}
     root = Path.parse(operation.message, rooted=True).root if operation.message is not None else None
     values = [named[root]] if root in named else [*call.args, *named.values()]

@@ -19,7 +19,7 @@ _SEEDS = 3
 
 
 def record_more_seeds(campaign: Campaign) -> None:
-    """Run the original with more seeds if there are few, and if anything is recorded of its world."""
+    """Run the original with more seeds if there are few, and if recordings are made."""
     evidence, request, baseline = campaign.evidence, campaign.request, campaign.baseline
     rounds = range(request.rounds, _SEEDS)
     if evidence is None or not rounds or not evidence.has_tracks:

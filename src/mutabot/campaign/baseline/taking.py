@@ -1,4 +1,4 @@
-"""Take the baseline: run the suite on the original, and read what it tells.
+"""Take the baseline: run the suite on the original, and read its events.
 
 Tests that fail on the original are an error if they do in every round, and are set aside where they do so in
 some. Each is named with its seed and with the command that makes plain pytest draw the seeds of that round.
@@ -62,7 +62,7 @@ def repeat_command(request: Request, round: int, test: str) -> str:
 
 
 def why_set_aside(request: Request, round: int, end: TestEnd) -> str:
-    """Why a test that fails on the original in this round is set aside in it."""
+    """Return why a test that fails on the original is excluded from this round."""
     seed = derive(request.seed, round, end.test)
     text = f"{FAILS} with seed {seed}: {first_line(end.message)}"
     return f"{text}; repeat it by {repeat_command(request, round, end.test)}"
@@ -97,7 +97,7 @@ _FAILED = 1
 
 
 class Runs(Protocol):
-    """Runs the suite on the original: an executor, or who has kept what one told."""
+    """Runs the suite on the original: an executor, or a store of earlier runs."""
 
     def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Event]]:
         """See ``Executor``."""
@@ -125,7 +125,7 @@ class _Suite:
     may_share: bool = True
 
     def run(self, tasks: Iterable[Task]) -> None:
-        """Run these; one that cannot be a baseline ends all. Raises as ``take_baseline``."""
+        """Run tasks until one cannot be a baseline. Raises as ``take_baseline``."""
         for result in self.executor.events(tasks):
             if not isinstance(result, Result):
                 if isinstance(result[1], Remark):
@@ -151,7 +151,7 @@ class _Suite:
         return {(round, end.test) for round, end in ends if end.outcome == "failed"}
 
     def learns(self) -> bool:
-        """Whether the runs so far tell of operations where they did not know of them in all tests."""
+        """Return whether the runs so far found operations at sites that were unknown in some tests."""
         for result in self.results.values():
             self.known.update(result.known_later)
         return bool(self.known)
@@ -255,7 +255,7 @@ def _note_prepared(request: Request, prepared: Mapping[str, Preparation], progre
 
 
 def _read(suite: _Suite, prepared: Mapping[str, Preparation]) -> Baseline:
-    """What all runs tell, and what is to be said about it."""
+    """Combine the results of all runs into the baseline, with notes for the user."""
     request, progress = suite.request, suite.progress
     remarks = tuple(dict.fromkeys(suite.remarks))
     known = tuple(suite.known.items())

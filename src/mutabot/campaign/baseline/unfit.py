@@ -63,7 +63,7 @@ def refuse_unfit(baseline: Baseline, vocabulary: Vocabulary) -> None:
 def note_fit(
     baseline: Baseline, vocabulary: Vocabulary, progress: Progress, shared: Iterable[Remark] = ()
 ) -> None:
-    """Tell which probes some tests cannot read, that a clock never ticks, and values out of range.
+    """Note probes that some tests cannot read, a clock that never ticks, and values out of range.
 
     ``shared`` tells of sites that are one for several calls.
     """
@@ -132,7 +132,7 @@ def _of_probes(baseline: Baseline, vocabulary: Vocabulary) -> Iterator[Problem]:
 
 
 def _wrong(quantity: Quantity, values: Iterable[Any]) -> str | None:
-    """What is wrong if values were recorded of which none is an orientation."""
+    """Return what is wrong with recorded values of which none is an orientation; None if nothing is."""
     seen = [value for value in values if value is not None]
     if not quantity.is_whole or not seen or any(quantity.orientation(value) is not None for value in seen):
         return None

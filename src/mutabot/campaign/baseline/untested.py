@@ -38,7 +38,7 @@ _OTHER_TEXT = "what runs of this file is not the text that stands there"
 
 @frozen
 class _OriginalCode:
-    """What all runs of the original tell.
+    """What all runs of the original have shown.
 
     Attributes:
         sites: where calls of operations were made.
@@ -171,7 +171,7 @@ def _calls(
 
 
 def _are_of(text: str, spans: Iterable[Span]) -> bool:
-    """Whether code of this text can have been at all of these places: a loader may compile another one."""
+    """Return whether a text has code at all of these spans, as a loader may have compiled another text."""
     nodes = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.expr | ast.stmt)]
     places = {extent_of(node) for node in nodes}
     ends = {extent_of(node)[2:] for node in nodes if isinstance(node, ast.Call)}

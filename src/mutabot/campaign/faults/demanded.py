@@ -1,4 +1,4 @@
-"""Ladders of a plan: the mutants that are one graded fault at rising magnitudes; demanded ones join them."""
+"""Ladders of a plan: mutants of one graded fault at rising magnitudes, with the demanded ones added."""
 
 from __future__ import annotations
 

@@ -135,7 +135,7 @@ class CallFaults(FaultProvider):
         return Planned(ladders_last(with_demanded(found, project)))
 
     def draws(self, operator: str) -> bool:
-        """Whether an operator of its own draws numbers anew for each round."""
+        """Return whether one of its operators draws new random numbers in each round."""
         return operator_named(operator).draws
 
     def is_raced(self, operator: str) -> bool:
@@ -343,7 +343,7 @@ def _why_unmet(
 
 
 def _has_raised(original: Original, place: Place) -> bool:
-    """Whether a call of a place raised; of one that no test reaches, whether any call of the command did."""
+    """Return whether a call at a place raised; at an unreached one, whether any call of the command did."""
     if place in original.answers:
         return original.answers[place].has_raised
     command = place.operation, place.pattern
@@ -354,7 +354,7 @@ def _has_raised(original: Original, place: Place) -> bool:
 
 
 def _is_told(subject: Subject, vocabulary: Vocabulary) -> bool:
-    """Whether the vocabulary names a reading that tells where the subject's quantity is."""
+    """Return whether the vocabulary names a reading of the current value of the subject's quantity."""
     reading = vocabulary.operation(subject.current or "")
     if reading is None or subject.quantity is None:
         return False
@@ -450,7 +450,7 @@ def all_providers() -> tuple[FaultProvider, ...]:
 
 
 def asked_for(project: Project) -> list[FaultProvider]:
-    """The providers of which mutants are asked for. Those of packages are looked for only if one may be."""
+    """Return the providers whose mutants are selected; packages are searched only if they may have some."""
     known = _OWN if set(project.families) <= set(OF_CALLS) else all_providers()
     return [provider for provider in known if provider.is_asked_for(project)]
 
@@ -475,7 +475,7 @@ def provider(name: str) -> FaultProvider:
 
 
 def family_of(mutant: str) -> str:
-    """The family of the mutant with this id; that of calls where nobody knows its operator any more."""
+    """Return the family of the mutant with this id; that of calls if its operator no longer exists."""
     operator = mutant.rpartition(":")[2].partition("=")[0].partition("@")[0]
     if operator in operators_on_calls():
         return operator_named(operator).family

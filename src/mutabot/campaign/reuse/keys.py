@@ -60,7 +60,7 @@ class SourceTree:
         self._files: dict[str, File | None] = {}
 
     def file(self, name: str) -> File | None:
-        """A file; None if there is none, or nobody knows what stood in it."""
+        """Return a file; None if it does not exist, or its content is no longer known."""
         if name not in self._files:
             text = self._text(name, self.digests[name]) if name in self.digests else None
             self._files[name] = File(name, text) if text is not None else None
@@ -73,7 +73,7 @@ class SourceTree:
         return {name: file.said if file is not None else None for name, file in files.items()}
 
     def moved(self, text: str, new: SourceTree) -> str | None:
-        """A text with the places that it names as they are in a new tree; None if one of them is gone."""
+        """Return a text with the places that it names moved to a new tree; None if one no longer exists."""
         gone = False
 
         def place(match: re.Match[str]) -> str:
@@ -177,7 +177,7 @@ class Dependencies:
         }
 
     def _around(self) -> Iterator[tuple[str, str]]:
-        """Which Python files there are: any may hide another one. New tests hide nothing."""
+        """Yield which Python files exist, as a new one may shadow another; new tests shadow nothing."""
         for name in self.tree.digests:
             if not is_test_file(name):
                 yield name, "there"
@@ -239,7 +239,7 @@ class Dependencies:
         return self._stored({**found, **({ALL_FILES: "0"} if ALL_FILES in executed else {})})
 
     def tests(self, mutant: Mutant, round: int, *, whole: bool, until: str = "") -> tuple[str, ...]:
-        """The tests that an outcome depends on, in their order, up to the one that decided."""
+        """Return the tests that an outcome depends on, in order, up to the one that decided."""
         reaching = self._baseline.tests_reaching(round, mutant)
         suite = tuple(test for test in self._baseline.suite(round) if test not in self.absent)
         found = suite if whole else tuple(test for test in suite if test in reaching)
@@ -294,7 +294,7 @@ class Dependencies:
         return " ".join((self._common, self._stored(place), key.split()[2], self._tree, stored))
 
     def asked(self, was: Was) -> tuple[bool, str]:
-        """Whether an outcome depended on all tests, and up to which one."""
+        """Return whether an outcome depended on the whole suite, and the last test that it depended on."""
         place = was.place or {}
         return _SUITE in place, place.get(_UNTIL, "")
 
@@ -313,7 +313,7 @@ class Dependencies:
         return together([executed.by(tests), self._idle[round]])
 
     def _once(self, made: Callable[[], list[str]], *of: object) -> list[str]:
-        """What is made of these objects, made once. They are kept: no other may get the place of one."""
+        """Return what is made of these objects, made once; they are kept, so that their ids stay unique."""
         key = tuple(map(id, of))
         if key not in self._made:
             self._made[key] = of, made()
@@ -368,7 +368,7 @@ class Dependencies:
         return found
 
     def is_of(self, test: str, tree: SourceTree) -> bool:
-        """Whether a test of now was there in a tree; one that is no function is taken for that."""
+        """Return whether a current test existed in a tree; assumed of a test that is no function."""
         file, name = self.file_of(test), _function_of(test)
         now, then = self.tree.file(file), tree.file(file)
         return now is None or name not in now.said or (then is not None and name in then.said)
@@ -410,7 +410,7 @@ class OutcomeWriter:
         self._mutants = {mutant.id: mutant for mutant in mutants}
 
     def add_outcome(self, outcome: Outcome) -> None:
-        """Add one outcome; a later one of the same mutant and round takes its place."""
+        """Add an outcome, replacing an earlier one of the same mutant and round."""
         key = self._key_of(outcome, self._dependencies) if self._dependencies is not None else ""
         self.journal.add_outcome(replace(outcome, executed=None), key=key)
 
@@ -464,7 +464,7 @@ def _differing(names: Mapping[str, set[str] | None], old: SourceTree, new: Sourc
 
 
 def changes(old: Parts, new: Parts) -> list[str]:
-    """What differs, in words, files of the project first."""
+    """Return texts that name what differs, files of the project first."""
     found = []
     for name in {*old, *new}:
         before, now = old.get(name), new.get(name)
@@ -577,6 +577,6 @@ def _meaning(value: Any) -> Any:
 
 
 def installed(root: Path) -> dict[str, str]:
-    """Versions of all that is installed, and what packages hold of which the version does not tell it."""
+    """Return versions of installed distributions, and digests where a version does not fix the content."""
     code = code_of_packages(root).items()
     return {**versions(), **{f"code of {name}": _HASH + _digest(files) for name, files in code}}

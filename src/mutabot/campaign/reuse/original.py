@@ -107,7 +107,7 @@ class OriginalRuns:
         write(KeptBaseline(depends, taken, opened, (*self._reused, *self._made)))
 
     def held(self, name: str, task: Task) -> tuple[list[Event], Result] | None:
-        """What a kept run told, and what became of it; None if there is no such run that can be read."""
+        """Return the events and the result of a kept run; None if there is none that can be read."""
         runs = self._held.get(name)
         if not runs:
             return None
@@ -177,7 +177,7 @@ class _KeptRuns:
 
 
 class _Note:
-    """Keeps what a process tells of a run."""
+    """Keeps the events of a run."""
 
     def __init__(self, name: str) -> None:
         self._name, self._number = name, 0
@@ -188,7 +188,7 @@ class _Note:
         self._packed.append(self._packing.compress(sealed(event, self._number, self._name, _KEY)))
 
     def run(self, result: Result) -> OriginalRun | None:
-        """The run that has ended; None if it was no whole one."""
+        """Return the run that has ended; None if it was incomplete."""
         faults = (result.overdue, result.hindered, result.lost, result.untrusted)
         if result.end is None or result.problems or any(faults):
             return None
@@ -197,7 +197,7 @@ class _Note:
 
 
 def _read(run: OriginalRun) -> list[Event]:
-    """What was told in a run. Raises ValueError if that is not what was written."""
+    """Return the events of a run. Raises ValueError if they are damaged."""
     unpacking, rest = zlib.decompressobj(), run.events
     found: list[Event] = []
     line = b""

@@ -51,7 +51,7 @@ class Earlier:
         self.was = cache(lambda key: now.was(key, parts, tree))
 
     def why(self, pair: RunId, mutant: Mutant, *, is_known: bool = True) -> str | None:
-        """Why an outcome may come out otherwise now, in words; None if it cannot. There is one."""
+        """Return why an existing outcome may be different now; None if it cannot be."""
         names = self._now.why(self.was(self.kept[pair].key), mutant, pair[1], is_known=is_known)
         return in_short(names) if names else None
 
@@ -134,7 +134,7 @@ def reuse(
 
 
 def _taken(found: Reused, mutant: Mutant, round: int) -> Kept | None:
-    """One outcome from the first source in which it holds; else why it does not in the first that has it."""
+    """Take an outcome from the first source in which it holds, or note why the first one does not hold."""
     pair = (mutant.id, round)
     first: str | None = None
     for earlier in found.sources:
@@ -181,7 +181,7 @@ def note_outdated(journal: Journal, request: Request, dependencies: Dependencies
 
 
 def text_of(found: Reused) -> str:
-    """What was taken over, and why the rest was not, in words."""
+    """Return a text with the number of reused outcomes, and why the rest was not reused."""
     reused = len(found.done)
     planned = len(found.done) + len(found.why) + len(found.unsound - found.why.keys()) + found.first
     if reused == planned:
@@ -250,7 +250,7 @@ class Revision:
         return self.ref if self.ref.startswith(abbreviated) else f"{self.ref} ({abbreviated})"
 
     def is_changed(self, path: Path) -> bool:
-        """Whether a file is not as it was; one outside of the repository is taken for unchanged."""
+        """Return whether a file has changed; one outside of the repository is assumed unchanged."""
         return self._name(path) in self.changed
 
     def read(self, path: Path) -> bytes | None:

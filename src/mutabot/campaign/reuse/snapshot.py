@@ -107,7 +107,7 @@ _HASH = "#"
 
 @dataclass(frozen=True, slots=True)
 class _KnownFile:
-    """One file: what the system says about it, and the digest of its content."""
+    """A file: its metadata, and the digest of its content."""
 
     status: tuple[int, ...]
     digest: str
@@ -168,7 +168,7 @@ def counts_by_name(name: str) -> bool:
 
 
 def _walk(root: Path) -> Iterator[tuple[str, Path, tuple[int, ...]]]:
-    """The regular files that could matter, with what tells whether they were touched."""
+    """Yield the regular files that could matter, with the metadata that shows a change."""
     for folder, folders, names in os.walk(root):
         here = Path(folder)
         folders[:] = sorted(name for name in folders if _is_folder_of_project(here / name))

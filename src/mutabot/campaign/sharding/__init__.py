@@ -1,1 +1,1 @@
-"""Shards: a campaign in parts on machines that know nothing of each other, and one journal of them."""
+"""Shards: parts of a campaign on independent machines, and the merging of their journals."""

@@ -1,4 +1,4 @@
-"""Shards: which takes what of a plan, and one journal of their journals, as if one campaign had run.
+"""Shards: divide a plan, and merge the journals as if one campaign had run.
 
 Parts are disjoint, together whole, balanced, and stable under small changes.
 
@@ -284,7 +284,7 @@ def _meta(parts: Sequence[ShardJournal]) -> dict[str, Any]:
 
 
 def _summed(said: Sequence[Any]) -> Any:
-    """Data of one form: numbers are added, lists put one behind the other."""
+    """Return the sum of data of one form: numbers are added, lists concatenated."""
     first = said[0]
     if isinstance(first, dict):
         return {key: _summed([one[key] for one in said]) for key in first}

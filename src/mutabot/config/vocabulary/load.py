@@ -92,7 +92,7 @@ class _Merged:
                     self._add_other(at, read(at, raw), is_shipped)
 
     def _counts(self, what: str, is_shipped: bool) -> bool:
-        """Whether a description is to be taken: the user's own, read first, go before shipped ones."""
+        """Return whether a description is used: the user's own, read first, override shipped ones."""
         if not is_shipped:
             self.own.add(what)
         return not is_shipped or what not in self.own
@@ -174,7 +174,7 @@ def check_operations(entries: Iterable[Read], read: Mapping[str, Read]) -> None:
 
 
 def _check_current(operation: Operation, name: str, reading: Operation) -> None:
-    """Raise ValueError if what an operation reads does not tell where another one moves the robot from."""
+    """Raise ValueError if a reading does not give the start of another operation's motion."""
     if reading.command and reading.named is None:
         raise ValueError(f"{name} is a command: asking it where the robot is would make the robot act")
     moved = [quantity for quantity in _all_arguments(operation) if quantity.kind in READING_OF]
@@ -188,7 +188,7 @@ def _check_current(operation: Operation, name: str, reading: Operation) -> None:
 
 
 def _check_opposite(operation: Operation, name: str, opposite: Operation) -> None:
-    """Raise ValueError if an operation cannot be called in the place of another one."""
+    """Raise ValueError if an operation cannot replace another."""
     if name == operation.target:
         raise ValueError("an operation cannot be its own opposite")
     mine, others = (_roots(each) for each in (operation, opposite))

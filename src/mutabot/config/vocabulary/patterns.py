@@ -151,7 +151,7 @@ def _check_opposite(text: str, notation: Notation) -> None:
 
 
 def _form(notation: Notation) -> tuple[str, ...]:
-    """What tells commands apart: literal text and types of fields, not the fields' names."""
+    """Return what distinguishes commands: literal text and types of fields, not the fields' names."""
     return tuple(part if isinstance(part, str) else f"{{:{part.kind}}}" for part in notation.parts)
 
 
@@ -259,7 +259,7 @@ def _text(value: str | bool | float) -> str:
 
 
 def in_cases(operation: Operation, cases: tuple[Case, ...]) -> Operation:
-    """The operation as one that is meant of calls in these cases alone."""
+    """Return the operation restricted to calls in these cases."""
     whole = Pattern("", operation.arguments, operation.result, source=operation.source)
     return replace(
         operation,
@@ -294,7 +294,7 @@ def _pattern(operation: Operation, pattern: Pattern, cases: tuple[Case, ...]) ->
 
 
 def together(first: Operation, second: Operation) -> Operation:
-    """Two entries for calls of one callable in unlike cases. Raises ValueError if they do not go together."""
+    """Merge two entries for different cases of one callable. Raises ValueError if they conflict."""
     known = {pattern.text: pattern for pattern in first.patterns}
     for pattern in second.patterns:
         other = known.get(pattern.text)
