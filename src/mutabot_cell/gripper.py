@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
+from mutabot_cell.models.effectors import Fingers
 from mutabot_cell.models.noise import SeededNoise
-from mutabot_cell.models.tool import Fingers
 
 from .curve import Curve
 from .errors import BadArgument

@@ -8,9 +8,9 @@ import mujoco
 import numpy as np
 
 from mutabot_cell.models.assembly import FINGER_SENSORS, PAYLOAD_BODY, TOOL_SITE
+from mutabot_cell.models.effectors import Fingers
 from mutabot_cell.models.model import ROBOT_BODY
 from mutabot_cell.models.robot import RobotModel
-from mutabot_cell.models.tool import Fingers
 
 from .curve import Curve
 from .errors import BadArgument

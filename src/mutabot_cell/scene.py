@@ -127,6 +127,7 @@ class Scene:
         Raises:
             BadModel: something is not there, or of another shape.
         """
-        from .models.scene_file import scene_from_mjcf  # noqa: PLC0415  # it loads MuJoCo
+        from .models.scene_file import read_scene  # noqa: PLC0415  # it loads MuJoCo
 
-        return scene_from_mjcf(path, parts, fixtures)
+        found, boxes = read_scene(path, parts, fixtures)
+        return cls(fixtures=tuple(Fixture(*box) for box in boxes), marks=(), parts=found)

@@ -11,8 +11,8 @@ import math
 import mujoco
 import numpy as np
 
+from mutabot_cell.models.effectors import SEALED_GAP, SuctionCup
 from mutabot_cell.models.noise import SeededNoise
-from mutabot_cell.models.tool import SEALED_GAP, SuctionCup
 from mutabot_cell.models.vacuum import Vacuum
 
 from .foresight import Glance

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from mutabot_cell.models.effectors import Fingers, SuctionCup
 from mutabot_cell.models.noise import SeededNoise
-from mutabot_cell.models.tool import Fingers, SuctionCup
 
 from .arm import Arm
 from .errors import BadArgument

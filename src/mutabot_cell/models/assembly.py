@@ -10,13 +10,14 @@ import numpy as np
 from mutabot_cell.geometry import Array
 from mutabot_cell.scene import FRICTION_ON_STEEL, Scene
 
+from .effectors import Fingers
 from .lean import ARM_CLASS, GRIPPER_CLASS
 from .model import ROBOT_BODY, cell_xml, stands
 from .options import compile_quietly
 from .parts import add_grip, add_part, add_surfaces
 from .robot import RobotModel
 from .sleeping import MANY, let_sleep
-from .tool import Fingers, Tool
+from .tool import Tool
 
 TOOL_SITE, PAYLOAD_BODY = "tool", "payload"
 """Behind a robot's prefix, names of what the cell adds to it: the tool point, and the empty body at which the

@@ -6,8 +6,9 @@ import math
 
 import mujoco
 
+from .effectors import LIP_FRICTION, SENSED_GAP, SuctionCup
 from .options import HEAD
-from .tool import LIP_FRICTION, SENSED_GAP, SuctionCup, Tool
+from .tool import Tool
 from .vacuum import Ejector
 
 STROKE = 0.015

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from os import PathLike
-from pathlib import Path
 
 import mujoco
 import numpy as np
@@ -15,10 +14,10 @@ from mutabot_cell.errors import BadArgument, BadModel
 from mutabot_cell.geometry import Array
 
 from .checks import compiled
+from .effectors import Fingers
 from .lean import GRIPPER_CLASS, collide_as, freeze_inertias, leave_looks_out, strip
 from .loading import names_of, read
 from .options import PHYSICS_STEP
-from .tool import Fingers, Tool
 
 PREFIX = "tool/"
 """Before the names of a tool's file, so that they do not meet those of the arm's."""
@@ -41,15 +40,30 @@ class _Measured:
     middle: Array
 
 
-def gripper_from_mjcf(
+@dataclass(frozen=True, slots=True)
+class GripperFile:
+    """What a file says of a gripper.
+
+    Attributes:
+        spec, body, point: as in `Tool`.
+        fingers: what they do, as measured.
+    """
+
+    spec: mujoco.MjSpec
+    body: str
+    point: tuple[float, float, float]
+    fingers: Fingers
+
+
+def read_gripper(
     path: str | PathLike[str],
     actuator: str,
     controls: tuple[float, float],
     pads: tuple[str, ...],
     point: str | None,
     force: float | None,
-) -> Tool:
-    """See `Tool.from_mjcf`."""
+) -> GripperFile:
+    """Read a gripper from a file in MuJoCo's format and measure its fingers; see `Tool.from_mjcf`."""
     spec = read(path)
     strip(spec)
     leave_looks_out(spec)
@@ -87,13 +101,11 @@ def gripper_from_mjcf(
         )
     first = PREFIX + next(iter(spec.worldbody.bodies)).name
     place = closed.middle if point is None else _site_place(model, point)
-    return Tool(
-        name=Path(path).stem,
+    return GripperFile(
         spec=_prefixed(spec),
         body=first,
-        file=Path(path),
         point=(float(place[0]), float(place[1]), float(place[2])),
-        effector=Fingers(
+        fingers=Fingers(
             actuator=PREFIX + actuator,
             pads=tuple(PREFIX + pad for pad in pads),
             stroke=stroke,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from os import PathLike, fspath
 from pathlib import Path
 
@@ -14,22 +15,43 @@ from mutabot_cell.geometry import Pose, pose_of
 
 from .checks import check_chain, check_masses, check_size, check_touch, compiled
 from .lean import ARM_CLASS, collide_as, freeze_inertias, leave_looks_out, strip
-from .limits import Limits, ToolLimits
-from .robot import ON_PEDESTAL, RobotModel
+from .limits import JointLimits, Limits
 from .servos import make_servos, servos_of, torque_of
 
 
-def robot_from_mjcf(
+@dataclass(frozen=True, slots=True)
+class ArmFile:
+    """What a file says of an arm.
+
+    Attributes:
+        name, spec, joints, servos, home, ranges, limits, flange, root, file: as in `RobotModel`.
+        base: where the base stands in the file's world, m and degrees; None where that world is the base.
+    """
+
+    name: str
+    spec: mujoco.MjSpec
+    joints: tuple[str, ...]
+    servos: tuple[str, ...]
+    home: tuple[float, ...]
+    ranges: tuple[tuple[float, float], ...]
+    limits: JointLimits
+    flange: str
+    root: str
+    base: Pose | None
+    file: Path
+
+
+def read_mjcf(
     path: str | PathLike[str],
     tool_site: str,
     home: Sequence[float] | None,
     limits: Limits,
     root: str | None,
     without: Sequence[str],
-) -> RobotModel:
-    """See `RobotModel.from_mjcf`."""
+) -> ArmFile:
+    """Read an arm from a file in MuJoCo's format; see `RobotModel.from_mjcf`."""
     spec = read(path)
-    base = ON_PEDESTAL
+    base = None
     if root is not None:
         spec, base = _part(spec, root, path)
     for name in without:
@@ -39,7 +61,7 @@ def robot_from_mjcf(
                 f"{path} has no body or geom {name!r} to leave out; it has {names_of(spec.bodies)}"
             )
         spec.delete(part)
-    return robot_from_spec(spec, path, tool_site, home, limits, base, root or "")
+    return read_spec(spec, path, tool_site, home, limits, base, root or "")
 
 
 def read(path: str | PathLike[str]) -> mujoco.MjSpec:
@@ -65,16 +87,16 @@ def flange_of(spec: mujoco.MjSpec, path: str | PathLike[str], tool_site: str) ->
     return flange
 
 
-def robot_from_spec(
+def read_spec(
     spec: mujoco.MjSpec,
     path: str | PathLike[str],
     tool_site: str,
     home: Sequence[float] | None,
     limits: Limits,
-    base: Pose = ON_PEDESTAL,
+    base: Pose | None = None,
     root: str = "",
-) -> RobotModel:
-    """A robot from a spec that holds nothing else. Changes the spec."""
+) -> ArmFile:
+    """Read an arm from a spec that holds nothing else. Changes the spec."""
     flange = flange_of(spec, path, tool_site)
     chain = chain_to(flange.parent, spec)
     joints = check_chain(chain, path)
@@ -98,7 +120,7 @@ def robot_from_spec(
     ranges = tuple(_range(model, name) for name in names)
     _check_home(angles, ranges, names, path)
     check_size(compiled(spec, path), names, angles, tool_site, path)
-    return RobotModel(
+    return ArmFile(
         name=Path(path).stem,
         spec=spec,
         joints=names,
@@ -106,12 +128,9 @@ def robot_from_spec(
         home=angles,
         ranges=ranges,
         limits=resolved,
-        tool_limits=ToolLimits(),
         flange=tool_site,
-        payload=1.0,
-        base=base,
         root=root,
-        is_fed_forward=True,
+        base=base,
         file=Path(path),
     )
 

@@ -11,8 +11,8 @@ from mutabot_cell.geometry import quaternion_from_euler
 from mutabot_cell.parts import Box, Cylinder, Mesh, Part, Triple
 from mutabot_cell.scene import FRICTION_ON_SILICONE, FRICTION_ON_STEEL
 
+from .effectors import SENSED_GAP, Fingers, SuctionCup
 from .options import PHYSICS_STEP
-from .tool import SENSED_GAP, Fingers, SuctionCup
 
 LANDING = (0.008, 0.8)
 """Time constant (s) and damping ratio of what a part lands on: it rebounds with a tenth of its speed, as

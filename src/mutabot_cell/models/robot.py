@@ -16,7 +16,9 @@ from mutabot_cell.geometry import Pose
 from mutabot_cell.scene import BASE_POSITION
 
 from .limits import JointLimits, Limits, ToolLimits
+from .loading import ArmFile, read_mjcf
 from .tool import Tool
+from .urdf import read_urdf
 
 ON_PEDESTAL = Pose(*BASE_POSITION, 0.0, 0.0, 0.0)
 """Where a base stands unless said otherwise: on a pedestal as high as the published experiment's."""
@@ -110,10 +112,8 @@ class RobotModel:
             BadModel: the file lacks something; the message says what to add.
             BadArgument: an argument does not fit it.
         """
-        from .loading import robot_from_mjcf  # noqa: PLC0415  # which knows this module
-
-        read = robot_from_mjcf(path, tool_site, home, limits or Limits(), root, without)
-        return replace(read, tool_limits=tool_limits or ToolLimits(), payload=payload)
+        arm = read_mjcf(path, tool_site, home, limits or Limits(), root, without)
+        return cls._of(arm, tool_limits, payload)
 
     @classmethod
     def from_urdf(
@@ -135,10 +135,27 @@ class RobotModel:
             home: joint angles, degrees.
             packages: folders of packages, for `package://NAME/...` in names of meshes.
         """
-        from .urdf import robot_from_urdf  # noqa: PLC0415  # as above
+        arm = read_urdf(path, tool_link, home, limits or Limits(), packages or {})
+        return cls._of(arm, tool_limits, payload)
 
-        read = robot_from_urdf(path, tool_link, home, limits or Limits(), packages or {})
-        return replace(read, tool_limits=tool_limits or ToolLimits(), payload=payload)
+    @classmethod
+    def _of(cls, arm: ArmFile, tool_limits: ToolLimits | None, payload: float) -> RobotModel:
+        return cls(
+            name=arm.name,
+            spec=arm.spec,
+            joints=arm.joints,
+            servos=arm.servos,
+            home=arm.home,
+            ranges=arm.ranges,
+            limits=arm.limits,
+            tool_limits=tool_limits or ToolLimits(),
+            flange=arm.flange,
+            payload=payload,
+            base=arm.base or ON_PEDESTAL,
+            root=arm.root,
+            is_fed_forward=True,
+            file=arm.file,
+        )
 
     def with_tool(self, tool: Tool | None) -> RobotModel:
         """The same arm with `tool` at its flange; None for an arm alone."""

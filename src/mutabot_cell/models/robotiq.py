@@ -11,8 +11,9 @@ from functools import cache
 
 import mujoco
 
+from .effectors import Fingers
 from .options import HEAD
-from .tool import Fingers, Tool
+from .tool import Tool
 
 TOOL_LENGTH = 0.12
 """From the interface to the tool point, m."""

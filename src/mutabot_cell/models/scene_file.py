@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from os import PathLike
+from typing import NamedTuple
 
 import mujoco
 
 from mutabot_cell.errors import BadModel
 from mutabot_cell.geometry import Array, euler_from_rotation
 from mutabot_cell.parts import Box, Cylinder, Part, Triple
-from mutabot_cell.scene import Fixture, Scene
 
 from .checks import compiled
 from .loading import names_of, read
@@ -20,18 +20,28 @@ _BOX, _CYLINDER = mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_CYLINDER
 _Path = str | PathLike[str]
 
 
-def scene_from_mjcf(path: _Path, parts: Sequence[str], fixtures: Sequence[str]) -> Scene:
-    """See `Scene.from_mjcf`."""
+class FixedBox(NamedTuple):
+    """A box that never moves; its fields are the first of `Fixture`."""
+
+    name: str
+    size: Triple
+    centre: Triple
+    rgba: tuple[float, float, float, float]
+    friction: float
+    angles: Triple
+
+
+def read_scene(
+    path: _Path, parts: Sequence[str], fixtures: Sequence[str]
+) -> tuple[tuple[Part, ...], tuple[FixedBox, ...]]:
+    """Read parts, and boxes for fixtures, from a file in MuJoCo's format; see `Scene.from_mjcf`."""
     spec = read(path)
     model = compiled(spec, path)
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     shapes = {name: _shape_of(spec, model, name, path) for name in (*parts, *fixtures)}
-    return Scene(
-        fixtures=tuple(_fixture(model, data, name, shapes[name], path) for name in fixtures),
-        marks=(),
-        parts=tuple(_part(model, data, name, shapes[name], path) for name in parts),
-    )
+    boxes = tuple(_fixed_box(model, data, name, shapes[name], path) for name in fixtures)
+    return tuple(_part(model, data, name, shapes[name], path) for name in parts), boxes
 
 
 def _shape_of(spec: mujoco.MjSpec, model: mujoco.MjModel, name: str, path: _Path) -> int:
@@ -53,10 +63,10 @@ def _touches(model: mujoco.MjModel, geom: int) -> bool:
     return bool(model.geom_contype[geom] or model.geom_conaffinity[geom])
 
 
-def _fixture(model: mujoco.MjModel, data: mujoco.MjData, name: str, geom: int, path: _Path) -> Fixture:
+def _fixed_box(model: mujoco.MjModel, data: mujoco.MjData, name: str, geom: int, path: _Path) -> FixedBox:
     if model.geom_type[geom] != _BOX:
         raise BadModel(f"fixture {name!r} of {path} is no box: give it a geom of type box")
-    return Fixture(
+    return FixedBox(
         name,
         _triple(2 * model.geom_size[geom]),
         _triple(data.geom_xpos[geom]),

@@ -14,8 +14,7 @@ import mujoco
 from mutabot_cell.errors import BadModel
 
 from .limits import Limits
-from .loading import names_of, robot_from_spec
-from .robot import RobotModel
+from .loading import ArmFile, names_of, read_spec
 
 # Names of meshes are paths from the file; links without joints keep their names; looks are left out.
 _COMPILER = (
@@ -24,14 +23,14 @@ _COMPILER = (
 _PACKAGE = re.compile(r"package://([^/\"']+)/")
 
 
-def robot_from_urdf(
+def read_urdf(
     path: str | PathLike[str],
     tool_link: str,
     home: Sequence[float],
     limits: Limits,
     packages: Mapping[str, str | PathLike[str]],
-) -> RobotModel:
-    """See `RobotModel.from_urdf`."""
+) -> ArmFile:
+    """Read an arm from a URDF file; see `RobotModel.from_urdf`."""
     if not Path(path).is_file():
         raise BadModel(f"there is no file {fspath(path)!r}")
     text = Path(path).read_text(encoding="utf-8")
@@ -46,7 +45,7 @@ def robot_from_urdf(
         raise BadModel(f"MuJoCo cannot read {path}: {error}") from error
     if spec.body(tool_link) is None:
         raise BadModel(f"{path} has no link {tool_link!r}; it has {names_of(spec.bodies)}")
-    read = robot_from_spec(spec, path, tool_link, home, limits)
+    read = read_spec(spec, path, tool_link, home, limits)
     return replace(read, name=head or read.name)
 
 

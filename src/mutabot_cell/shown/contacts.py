@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 import mujoco
 
+from mutabot_cell.models.effectors import SuctionCup
 from mutabot_cell.models.model import ROBOT_BODY
 from mutabot_cell.models.sleeping import awake
-from mutabot_cell.models.tool import SuctionCup
 from mutabot_cell.simulation import Simulation
 
 

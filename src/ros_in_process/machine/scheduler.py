@@ -13,15 +13,12 @@ import gc
 from collections.abc import Callable
 from heapq import heappop, heappush
 from itertools import count
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 from greenlet import greenlet
 
 from ros_in_process.errors import Deadlock, NeedsRealRos
 from ros_in_process.machine.schedules import FirstIn, Schedule
-
-if TYPE_CHECKING:
-    from ros_in_process.processes.process import Process
 
 SECOND = 1_000_000_000
 #: what reading a clock costs, so that two readings are never equal
@@ -36,10 +33,24 @@ JUMPS = 10_000
 FRUITLESS_ALARMS = 100_000
 
 
+class SimulatedProcess(Protocol):
+    """What threads belong to, as far as the scheduler, the middleware and the standard library know it.
+
+    Attributes:
+        contexts: its contexts of ROS.
+        streams: of `sys`, those that are not its parent's.
+        main_thread: what `threading.main_thread` gives there; None for that of the tests.
+    """
+
+    contexts: list[Any]
+    streams: dict[str, Any]
+    main_thread: Any
+
+
 class SimulatedThread:
     """A simulated thread."""
 
-    def __init__(self, number: int, run: greenlet, process: Process | None) -> None:
+    def __init__(self, number: int, run: greenlet, process: SimulatedProcess | None) -> None:
         self.number = number
         self.greenlet = run
         self.process = process
@@ -106,7 +117,7 @@ class Scheduler:
 
     # --- threads ---
 
-    def spawn(self, function: Callable[[], None], process: Process | None = None) -> SimulatedThread:
+    def spawn(self, function: Callable[[], None], process: SimulatedProcess | None = None) -> SimulatedThread:
         """Start a thread; it runs when the schedule chooses it."""
         task = SimulatedThread(next(self._numbers), greenlet(None), process or self.current.process)
         task.greenlet = greenlet(lambda: self._run(task, function), self._hub)
@@ -132,7 +143,7 @@ class Scheduler:
         while True:
             self._enter(self._next())
 
-    def drop_process(self, process: Process) -> None:
+    def drop_process(self, process: SimulatedProcess) -> None:
         """Stop all threads of a process but the running one for ever; their `finally` blocks do not run."""
         for task in [task for task in self._tasks if task.process is process and task is not self.current]:
             task.is_over, task.is_parked = True, False

@@ -5,9 +5,9 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Iterator
 from itertools import count
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from ros_in_process.machine.scheduler import SCHEDULER, SimulatedThread
+from ros_in_process.machine.scheduler import SCHEDULER, SimulatedProcess, SimulatedThread
 from ros_in_process.middleware import arguments, names
 from ros_in_process.middleware.messages import type_name
 from ros_in_process.middleware.qos import rmw_qos_profile_t
@@ -18,9 +18,6 @@ from ros_in_process.middleware.records import (
     NodeNameNonExistentError,
     RCLError,
 )
-
-if TYPE_CHECKING:
-    from ros_in_process.processes.process import Process
 
 _numbers = count(1)
 
@@ -101,7 +98,7 @@ class Participant(Destroyable):
                 str(error).replace("Failed to parse ROS arguments", "failed to initialize rcl")
             ) from None
         self.is_up = True
-        self.process: Process | None = SCHEDULER.current.process
+        self.process: SimulatedProcess | None = SCHEDULER.current.process
         if self.process is not None:
             self.process.contexts.append(self)
 

@@ -20,7 +20,7 @@ from typing import Any
 from ros_in_process.errors import NeedsRealRos, note
 from ros_in_process.machine.imports import provide, stand_in
 from ros_in_process.machine.scheduler import SCHEDULER
-from ros_in_process.processes.process import MAIN, STARTED, Process
+from ros_in_process.processes.process import MAIN, STARTED, Process, current
 
 _numbers = count(1)
 _SHARED = "a function that cannot be imported runs in a process of its own: the process shares its modules"
@@ -228,7 +228,7 @@ def _lock_class(make: Callable[[], Any]) -> Callable[[], Any]:
 def _current() -> Any:
     import multiprocessing as real  # noqa: PLC0415
 
-    process = SCHEDULER.current.process or MAIN
+    process = current()
     if process is MAIN:
         return real.current_process()
     found = ChildProcess(name=process.name)

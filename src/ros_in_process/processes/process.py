@@ -99,7 +99,7 @@ class Process:
 
     def start(self, run: Callable[[], object]) -> None:
         """Let its main thread run, as soon as the schedule chooses it."""
-        self.parent = self.parent or SCHEDULER.current.process
+        self.parent = self.parent or current()
         self._run = run
         self.main_task = SCHEDULER.spawn(lambda: self._live(run), self)
 
@@ -291,10 +291,19 @@ def _remove_from_graph(contexts: Sequence[Participant]) -> None:
             handle._release()
 
 
+def current() -> Process:
+    """The process whose thread runs."""
+    return _of(SCHEDULER.current)
+
+
+def _of(thread: SimulatedThread) -> Process:
+    return thread.process if isinstance(thread.process, Process) else MAIN
+
+
 def end_of_current() -> Callable[[bool], object] | None:
     """What ends the process whose thread runs; None for that of the tests."""
-    process = SCHEDULER.current.process
-    return None if process is None or process is MAIN else process.end_in_midst
+    process = current()
+    return None if process is MAIN else process.end_in_midst
 
 
 def _is_own(name: str, module: Any) -> bool:
@@ -308,8 +317,8 @@ def _is_own(name: str, module: Any) -> bool:
 
 def _change(old: SimulatedThread, new: SimulatedThread) -> None:
     if old.process is not new.process:
-        (old.process or MAIN).leave()
-        (new.process or MAIN).enter()
+        _of(old).leave()
+        _of(new).enter()
 
 
 #: the process of the tests

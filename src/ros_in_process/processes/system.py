@@ -14,7 +14,7 @@ from ros_in_process.errors import NeedsRealRos, note
 from ros_in_process.machine.imports import provide, varied
 from ros_in_process.machine.scheduler import SCHEDULER
 from ros_in_process.middleware import signals
-from ros_in_process.processes.process import MAIN, STARTED, Process, process_of
+from ros_in_process.processes.process import MAIN, STARTED, current, process_of
 
 
 def _kill(pid: int, signum: int) -> None:
@@ -32,12 +32,8 @@ def _is_handled_here(signum: int) -> bool:
     return signals.handles(MAIN, signum) or signum in {*MAIN.handlers, real_signal.SIGINT}
 
 
-def _current() -> Process:
-    return SCHEDULER.current.process or MAIN
-
-
 def _exit_now(status: int) -> None:
-    process = _current()
+    process = current()
     if process is MAIN:
         os._exit(status)
     process.finish(status)
@@ -45,7 +41,7 @@ def _exit_now(status: int) -> None:
 
 
 def _fork() -> int:
-    if _current() is MAIN and len(STARTED) == 1:
+    if current() is MAIN and len(STARTED) == 1:
         return os.fork()
     raise NeedsRealRos("a node forks")
 
@@ -57,7 +53,7 @@ def _os() -> ModuleType:
         kill=_kill,
         killpg=_kill,
         getpgid=lambda pid: pid if process_of(pid) else os.getpgid(pid),
-        getpid=lambda: _current().pid if _current() is not MAIN else os.getpid(),
+        getpid=lambda: current().pid if current() is not MAIN else os.getpid(),
         getppid=_parent_pid,
         _exit=_exit_now,
         fork=_fork,
@@ -67,12 +63,12 @@ def _os() -> ModuleType:
 
 
 def _parent_pid() -> int:
-    parent = _current().parent
+    parent = current().parent
     return os.getppid() if parent is None else parent.pid
 
 
 def _handle(signum: int, handler: Any) -> Any:
-    process = _current()
+    process = current()
     before = process.handlers.get(signum, real_signal.getsignal(signum))
     process.handlers[int(signum)] = handler
     signals.replaced(process, signum)
@@ -83,13 +79,13 @@ def _signal() -> ModuleType:
     return varied(
         "signal",
         signal=_handle,
-        getsignal=lambda signum: _current().handlers.get(signum, real_signal.getsignal(signum)),
-        raise_signal=lambda signum: _kill(_current().pid, signum),
+        getsignal=lambda signum: current().handlers.get(signum, real_signal.getsignal(signum)),
+        raise_signal=lambda signum: _kill(current().pid, signum),
     )
 
 
 def _at_exit(function: Callable[..., object], *args: Any, **kwargs: Any) -> Callable[..., object]:
-    process = _current()
+    process = current()
     if process is MAIN:
         return real_atexit.register(function, *args, **kwargs)
     process.at_exit.append(lambda: function(*args, **kwargs))
