@@ -32,7 +32,7 @@ from typing import Any
 
 import simpy
 
-from mutabot.journal.journal import JournalReader
+from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import DRAWING
 
 DATA = Path(__file__).with_name("scaling.json")

@@ -29,7 +29,7 @@ from mutabot.campaign.reuse import keys
 from mutabot.cli import campaign as _loaded_before_the_forks  # noqa: F401
 from mutabot.cli.app import main as mutabot
 from mutabot.execution.versions import versions
-from mutabot.journal.journal import JournalReader
+from mutabot.journal.reader import JournalReader
 from mutabot.model.codec import to_data
 from random_edits import EDITS, SUBJECTS, NotPossibleError, Subject
 

@@ -26,7 +26,7 @@ from mutabot.cli.request import request_of
 from mutabot.families import GRADED
 from mutabot.faults import known_families
 from mutabot.journal.files import HOME
-from mutabot.journal.journal import JournalReader
+from mutabot.journal.reader import JournalReader
 from mutabot.report.document import dumps
 from mutabot.report.terminal.console import make_console, make_progress
 from mutabot.results.results import Results, read_results

@@ -10,7 +10,7 @@ from typing import Any
 from mutabot.errors import MutabotError
 from mutabot.frozen import frozen
 from mutabot.model import Operation, Pattern, Sighting
-from mutabot.model.answer import is_plain
+from mutabot.model.codec import is_plain
 from mutabot.model.events import TestEnd
 from mutabot.model.job import Idle
 from mutabot.model.mutant import Place

@@ -14,7 +14,7 @@ from mutabot.campaign.run import run_campaign
 from mutabot.errors import MutabotError
 from mutabot.execution.task import Task
 from mutabot.frozen import frozen
-from mutabot.journal.journal import JournalReader
+from mutabot.journal.reader import JournalReader
 from mutabot.model import By, Mutant, Verdict
 from mutabot.model.deadline import Limit
 from mutabot.model.events import TestEnd

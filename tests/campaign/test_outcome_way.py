@@ -31,8 +31,9 @@ TESTS = """
 #: from the end of a mutant's test, as the executor hands it to the engine, to its row in the file: these
 #: decide something about an outcome
 DECIDING = {
-    "campaign/engines/engine.py", "campaign/baseline/baseline.py", "campaign/verdict.py",
-    "campaign/comparison.py", "campaign/reuse/keys.py", "journal/journal.py",
+    "campaign/engines/engine.py", "campaign/engines/forks.py", "campaign/engines/replay.py",
+    "campaign/baseline/baseline.py", "campaign/verdict.py", "campaign/comparison.py",
+    "campaign/reuse/keys.py", "journal/journal.py",
 }  # fmt: skip
 #: and these hold the journal's file against others: whose it is, and that it is still there
 GUARDING = {"journal/database.py", "journal/files.py"}

@@ -8,7 +8,7 @@ import pytest
 
 from mutabot.campaign.run import run_campaign
 from mutabot.errors import ExitCode
-from mutabot.journal.journal import JournalReader
+from mutabot.journal.reader import JournalReader
 from mutabot.model import Verdict
 from mutabot.results.gate import decide
 from mutabot.results.results import Results, read_results

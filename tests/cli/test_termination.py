@@ -14,7 +14,7 @@ import pytest
 from mutabot.cli.app import main, terminated_like_ctrl_c
 from mutabot.errors import ExitCode
 from mutabot.execution.interruption import interruptible, interruptions_kept
-from mutabot.journal.journal import JournalReader
+from mutabot.journal.reader import JournalReader
 from tests.campaign.project import write_project
 
 #: seconds: only so that a test that fails does not hang

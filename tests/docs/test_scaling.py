@@ -11,7 +11,7 @@ import pytest
 
 import make_scaling_page
 import pages
-from mutabot.campaign.engines import engine as engines
+from mutabot.campaign.engines import forks
 
 pytest.importorskip("simpy")
 
@@ -39,7 +39,7 @@ def test_the_page_is_made_of_its_data() -> None:
 
 
 def test_a_fork_parent_is_cut_as_the_engine_cuts_it() -> None:
-    assert (engines._LEAST, engines._PARTS) == (simulation.LEAST, simulation.PARTS)
+    assert (forks._LEAST, forks._PARTS) == (simulation.LEAST, simulation.PARTS)
 
 
 @pytest.mark.parametrize("engine", ["replay", "fork"])

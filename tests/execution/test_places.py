@@ -11,7 +11,7 @@ import pytest
 
 from mutabot.campaign.run import run_campaign
 from mutabot.execution.workers import TokenPool, Workers
-from mutabot.journal.journal import JournalReader
+from mutabot.journal.reader import JournalReader
 from tests.campaign.project import Quiet, request_for, write_project
 
 MISSION = """

@@ -17,7 +17,8 @@ import pytest
 from mutabot.cli.app import main
 from mutabot.errors import ExitCode
 from mutabot.journal.database import columns, decode
-from mutabot.journal.journal import Journal, JournalReader
+from mutabot.journal.journal import Journal
+from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import REACHING, BaselineTest, ControlEnd, KeptBaseline, OriginalRun
 from mutabot.model.events import TestEnd
 from mutabot.report.format import Material, format_of, names

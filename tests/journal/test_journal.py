@@ -15,9 +15,9 @@ from pathlib import Path
 import pytest
 
 from mutabot.errors import JournalError
-from mutabot.journal.database import SCHEMA_VERSION, connect
+from mutabot.journal.database import SCHEMA_VERSION, connect, guarded
 from mutabot.journal.files import is_written, previous_of
-from mutabot.journal.journal import Journal, guarded
+from mutabot.journal.journal import Journal
 from mutabot.journal.records import BaselineTest, ControlEnd, Kept
 from mutabot.model import By, Outcome, Verdict
 from mutabot.model.events import TestEnd

@@ -15,7 +15,8 @@ import pytest
 
 from mutabot.errors import JournalError
 from mutabot.journal.files import is_written
-from mutabot.journal.journal import Journal, JournalReader
+from mutabot.journal.journal import Journal
+from mutabot.journal.reader import JournalReader
 from mutabot.journal.recordings import Rank, Recordings
 from mutabot.model import By, Outcome, Verdict
 from results import samples

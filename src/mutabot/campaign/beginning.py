@@ -13,7 +13,7 @@ from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.baseline.unfit import note_fit, refuse_unfit, refuse_unhooked
 from mutabot.campaign.baseline.wrappers import shared_sites
 from mutabot.campaign.campaign import Campaign
-from mutabot.campaign.engines.engine import Unhandled, try_controls
+from mutabot.campaign.engines.engine import try_controls
 from mutabot.campaign.faults.demanded import split_ladders
 from mutabot.campaign.faults.providers import prepare
 from mutabot.campaign.plan import Plan, draw, make_plan
@@ -29,7 +29,8 @@ from mutabot.execution.processes import provide
 from mutabot.extensions import brought
 from mutabot.families import CALLS, MESSAGES
 from mutabot.journal.files import at_work, refuse_tracked
-from mutabot.journal.journal import Journal, kept_original
+from mutabot.journal.journal import Journal
+from mutabot.journal.reader import kept_original
 from mutabot.languages.registry import program_files
 from mutabot.model.codec import to_data
 from mutabot.model.events import Remark
@@ -39,6 +40,7 @@ from mutabot.model.selection import select
 
 if TYPE_CHECKING:
     from mutabot.campaign.baseline.baseline import Baseline
+    from mutabot.campaign.engines.forks import Unhandled
     from mutabot.campaign.evidence import CampaignEvidence
     from mutabot.execution.task import Executor, Result
     from mutabot.journal.records import Untested

@@ -22,7 +22,7 @@ from mutabot.campaign.beginning import begin, locked_executor, selected, whole_p
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.confirmation import decide, earlier_decision
 from mutabot.campaign.engines.controls import run_controls
-from mutabot.campaign.engines.engine import replay
+from mutabot.campaign.engines.replay import replay
 from mutabot.campaign.engines.rerun import refuse_flaky, rerun
 from mutabot.campaign.evidence import CampaignEvidence, recorded
 from mutabot.campaign.faults.providers import family_of, prepare
@@ -37,7 +37,8 @@ from mutabot.errors import ControlError, JournalError, SelectionError, in_short
 from mutabot.execution.interruption import interruptions_kept
 from mutabot.faults import PlannedMutant
 from mutabot.journal import records
-from mutabot.journal.journal import Journal, JournalReader
+from mutabot.journal.journal import Journal
+from mutabot.journal.reader import JournalReader
 from mutabot.model.activation import Activation
 from mutabot.model.mutant import Place
 from mutabot.model.outcome import in_words
@@ -48,6 +49,7 @@ if TYPE_CHECKING:
     from mutabot.campaign.baseline.baseline import Baseline
     from mutabot.campaign.request import Progress, Request
     from mutabot.execution.task import Executor, Result
+    from mutabot.journal.reader import JournalReader
     from mutabot.model import Mutant
 
 #: what else decides how a campaign ends, beside the user's own files

@@ -19,7 +19,7 @@ from mutabot.cli.request import families_of
 from mutabot.config.configuration import load_configuration
 from mutabot.errors import ExitCode
 from mutabot.journal.files import HOME, JOURNAL
-from mutabot.journal.journal import JournalReader
+from mutabot.journal.reader import JournalReader
 from mutabot.report.document import replayed as replayed_data
 from mutabot.report.terminal.campaign import plan_data, print_plan, print_rules
 from mutabot.report.terminal.console import make_console

@@ -14,13 +14,15 @@ from __future__ import annotations
 
 import os
 import sqlite3
-from contextlib import closing, suppress
+from collections.abc import Iterator
+from contextlib import closing, contextmanager, suppress
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
 from mutabot.errors import JournalError
+from mutabot.model.codec import printable
 from mutabot.model.files import copy_file, read_file
 
 from .files import BESIDE, clear, previous_of
@@ -277,3 +279,28 @@ def set_aside(path: Path) -> Path | None:
         if os.path.lexists(old):
             old.replace(new)
     return kept
+
+
+@contextmanager
+def guarded(path: Path) -> Iterator[None]:
+    """Turn what goes wrong with the file at ``path`` into a JournalError."""
+    try:
+        yield
+    except sqlite3.DatabaseError as error:
+        text = str(error)
+        if "not a database" in text or "malformed" in text:
+            text = f"{path} is not a journal of mutabot ({text})"
+        elif "readonly" in text or "unable to open" in text:
+            text = f"{path} cannot be written: is the folder read-only? ({text})"
+        elif "full" in text:
+            text = f"{path} cannot be written: the disk is full; what was written before is kept ({text})"
+        else:
+            text = f"{path}: {text}"
+        raise JournalError(text) from error
+    except OSError as error:
+        raise JournalError(f"{path}: {error.strerror or error}") from error
+
+
+def stored(values: tuple[Any, ...]) -> tuple[Any, ...]:
+    """Values of a row, with texts that can be stored."""
+    return tuple(printable(value) if isinstance(value, str) else value for value in values)

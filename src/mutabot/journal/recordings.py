@@ -16,9 +16,8 @@ from typing import Any, Self
 
 from mutabot.errors import JournalError
 
-from .database import connect, connect_to_read, loaded
+from .database import connect, connect_to_read, guarded, loaded
 from .files import BESIDE, HOME, clear, recordings_path
-from .journal import guarded
 
 _TABLE = """
 CREATE TABLE IF NOT EXISTS recording (

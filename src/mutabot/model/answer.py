@@ -19,6 +19,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from mutabot.extensions import brought
+from mutabot.model.codec import is_plain
 from mutabot.model.data import is_of_numpy
 from mutabot.model.enumeration import is_member, member_of, name_of
 from mutabot.model.path import class_name
@@ -64,7 +65,6 @@ LIMIT = 50_000
 #: containers in containers; more is a structure that holds itself
 DEPTH = 20
 
-_PLAIN = frozenset({type(None), bool, int, float, str})
 _SEQUENCES: dict[type[Any], str] = {
     list: "list", tuple: "tuple", set: "set", frozenset: "frozenset", deque: "deque",
 }  # fmt: skip
@@ -83,11 +83,6 @@ _OF_ROS_1 = ("genpy.message", "genpy.rostime")
 
 class NotKeptError(ValueError):
     """An answer that cannot be kept by value; the text says what it is."""
-
-
-def is_plain(value: Any) -> bool:
-    """Whether a value is kept as it is."""
-    return type(value) in _PLAIN
 
 
 def keep(value: Any, here: Mapping[str, Any], handles: Collection[str] = ()) -> Any:
@@ -126,7 +121,7 @@ class _AnswerWriter:
 
     def keep(self, value: Any, depth: int) -> Any:
         self._spend(len(value) if type(value) is str else 8)
-        if type(value) in _PLAIN:
+        if is_plain(value):
             return value
         if depth > DEPTH:
             raise NotKeptError("something that holds itself")

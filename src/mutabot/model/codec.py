@@ -21,7 +21,12 @@ from typing import Any, TypeVar, Union, get_args, get_origin, get_type_hints
 T = TypeVar("T")
 Decoder = Callable[[Any], Any]
 #: what needs no look at what it is
-_PLAIN = {str, int, float, bool, type(None)}
+_PLAIN = frozenset({str, int, float, bool, type(None)})
+
+
+def is_plain(value: Any) -> bool:
+    """Whether a value is of a type that JSON has: None, a truth value, a number or a text."""
+    return type(value) in _PLAIN
 
 
 def to_data(value: Any) -> Any:

@@ -15,7 +15,7 @@ from typing import Any
 
 from mutabot.frozen import frozen
 from mutabot.model.activation import TEXT_FAULT, Activation, Key
-from mutabot.model.codec import from_data, to_data
+from mutabot.model.codec import from_data, is_plain, to_data
 from mutabot.model.deadline import Limit
 from mutabot.model.event_file import FOLDER
 from mutabot.model.files import open_file, read_file
@@ -222,14 +222,10 @@ class Idle:
     @classmethod
     def of(cls, data: Any) -> Idle:
         """The answers in a mutant's ``idle``; a plain value there is the only answer."""
-        from mutabot.model.answer import is_plain  # noqa: PLC0415  # most jobs have no answers
-
         return cls((data,)) if is_plain(data) else from_data(cls, data)
 
     def data(self) -> Any:
         """The answers as a mutant carries them."""
-        from mutabot.model.answer import is_plain  # noqa: PLC0415  # as above
-
         single = len(self.answers) == 1 and not self.varying and is_plain(self.answers[0])
         return self.answers[0] if single else to_data(self)
 

@@ -16,7 +16,7 @@ from mutabot.errors import SelectionError, UsageError, in_short, unknown_name_te
 from mutabot.frozen import frozen
 from mutabot.journal import records
 from mutabot.journal.files import is_written
-from mutabot.journal.journal import JournalReader
+from mutabot.journal.reader import JournalReader
 from mutabot.model import By, LeftOut, Mutant, Outcome, Quantity, Role, Verdict
 from mutabot.model.mutant import fits
 from mutabot.model.selection import select

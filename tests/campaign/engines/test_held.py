@@ -5,7 +5,7 @@ from __future__ import annotations
 import pickle
 
 from mutabot.campaign.baseline.baseline import observation
-from mutabot.campaign.engines.engine import _ForkOutcome
+from mutabot.campaign.engines.forks import _ForkOutcome
 from mutabot.model.events import TestEnd
 from mutabot.model.mutant import Mutant, Place, Role, Site, Span
 

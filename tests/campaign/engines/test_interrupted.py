@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.engines.engine import _ForkRound
+from mutabot.campaign.engines.forks import _ForkRound
 from mutabot.campaign.run import run_campaign
-from mutabot.journal.journal import JournalReader
+from mutabot.journal.reader import JournalReader
 from mutabot.model import Outcome, Verdict
 from mutabot.model.events import Event, ForkSessionEnd, ForkTestEnd
 from tests.campaign.project import Quiet, request_for, write_project

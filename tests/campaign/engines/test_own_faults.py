@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from mutabot.campaign import verdict
-from mutabot.campaign.engines import engine as engines
+from mutabot.campaign.engines import forks, replay
 from mutabot.errors import JournalError
 from mutabot.model import Verdict
 from tests.campaign.project import run, write_project
@@ -55,14 +55,14 @@ def test_a_mutant_that_cannot_be_judged_is_an_error(
 def test_a_report_of_a_worker_that_cannot_be_used_is_an_error(
     project: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    run_of = engines.run_of
+    run_of = replay.run_of
 
     def broken(result: Any, sources: Any) -> Any:
         if result.task.job.mutant.id == CHOSEN:
             raise RuntimeError("broken")
         return run_of(result, sources)
 
-    monkeypatch.setattr(engines, "run_of", broken)
+    monkeypatch.setattr(replay, "run_of", broken)
     found = run(project, engine="replay")
     assert [mutant for mutant, one in found.items() if one.verdict is Verdict.ERROR] == [CHOSEN]
 
@@ -70,14 +70,14 @@ def test_a_report_of_a_worker_that_cannot_be_used_is_an_error(
 def test_a_report_of_a_fork_that_cannot_be_used_is_an_error(
     project: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    ended = engines._ForkRound._fork_ended
+    ended = forks._ForkRound._fork_ended
 
     def broken(self: Any, line: Any) -> Any:
         if line.mutant == CHOSEN:
             raise RuntimeError("broken")
         return ended(self, line)
 
-    monkeypatch.setattr(engines._ForkRound, "_fork_ended", broken)
+    monkeypatch.setattr(forks._ForkRound, "_fork_ended", broken)
     found = run(project, engine="fork")
     assert [mutant for mutant, one in found.items() if one.verdict is Verdict.ERROR] == [CHOSEN]
 
@@ -88,7 +88,7 @@ def test_a_test_of_the_fork_parent_that_cannot_be_used_is_left_to_replay(
     def broken(self: Any, end: Any) -> Any:
         raise RuntimeError("broken")
 
-    monkeypatch.setattr(engines._ForkRound, "_test_ended", broken)
+    monkeypatch.setattr(forks._ForkRound, "_test_ended", broken)
     found = run(project, engine="auto")
     assert {one.engine for one in found.values()} == {"replay"}
     assert {one.verdict for one in found.values()} == {Verdict.KILLED, Verdict.SURVIVED}

@@ -13,7 +13,8 @@ from mutabot.campaign.reuse import keys
 from mutabot.campaign.run import run_campaign
 from mutabot.errors import BaselineError, ControlError, JournalError
 from mutabot.execution.interruption import Interruption
-from mutabot.journal.journal import Journal, JournalReader, kept_original
+from mutabot.journal.journal import Journal
+from mutabot.journal.reader import JournalReader, kept_original
 from mutabot.model import Verdict
 from mutabot.model.events import TestEnd
 from tests.campaign.project import (

@@ -17,7 +17,7 @@ from urllib.parse import urlsplit
 import pytest
 
 from mutabot.errors import ExitCode
-from mutabot.journal.journal import JournalReader
+from mutabot.journal.reader import JournalReader
 from mutabot_live import server as serving
 from mutabot_live.pages import Pages
 from mutabot_live.server import MOST, LiveFeed, Server

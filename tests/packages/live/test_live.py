@@ -15,7 +15,7 @@ import pytest
 from campaign.project import write_project
 from mutabot.cli.app import main
 from mutabot.errors import ExitCode
-from mutabot.journal.journal import JournalReader
+from mutabot.journal.reader import JournalReader
 from packages.live.visits import PATIENCE, ask, command, listening
 
 MISSION = """

@@ -9,7 +9,7 @@ import pytest
 from campaign.project import write_project
 from mutabot.cli.app import main
 from mutabot.journal.files import JOURNAL
-from mutabot.journal.journal import JournalReader
+from mutabot.journal.reader import JournalReader
 from mutabot_motion.filming import choose_graphics
 
 ROBOT = """

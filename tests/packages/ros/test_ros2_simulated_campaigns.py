@@ -18,7 +18,7 @@ from campaign.project import CONFIGURATION, Quiet, outcomes, request_for, write_
 from mutabot.campaign.run import replay_one, run_campaign
 from mutabot.cli.request import request_again
 from mutabot.config.configuration import load_configuration
-from mutabot.journal.journal import JournalReader
+from mutabot.journal.reader import JournalReader
 from mutabot.model import Verdict
 from mutabot.report.sections import sections
 from mutabot.results.gate import decide

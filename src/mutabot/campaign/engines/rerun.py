@@ -32,7 +32,7 @@ from mutabot.journal import records
 from mutabot.model import Mutant, Outcome, Verdict
 from mutabot.model.outcome import in_words, same_end
 
-from .engine import replay
+from .replay import replay
 
 #: so many kills of a test, or this share of what it judges, could be failures at random
 _FEW, _SHARE = 2, 0.1

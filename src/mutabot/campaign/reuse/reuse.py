@@ -18,7 +18,7 @@ from mutabot.campaign.reuse.keys import Dependencies, SourceTree, Was, tool_tabl
 from mutabot.errors import JournalError, UsageError, in_short
 from mutabot.frozen import frozen
 from mutabot.journal.files import find_journal, refuse_tracked
-from mutabot.journal.journal import Journal, JournalReader
+from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import SINCE, Kept, Since
 from mutabot.model import Mutant, Verdict
 from mutabot.repository import GitError, git, unignored
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from mutabot.campaign.campaign import Campaign, RunId
     from mutabot.campaign.plan import Plan
     from mutabot.campaign.request import Progress, Request
+    from mutabot.journal.journal import Journal
 
 #: names that are given before it is said how many more there are
 _SHOWN = 3

@@ -24,7 +24,8 @@ from mutabot.errors import MergeError
 from mutabot.frozen import frozen
 from mutabot.journal import records
 from mutabot.journal.files import HOME, JOURNAL, is_written, refuse_tracked
-from mutabot.journal.journal import Journal, JournalReader
+from mutabot.journal.journal import Journal
+from mutabot.journal.reader import JournalReader
 from mutabot.journal.recordings import Recordings
 from mutabot.model import Mutant
 from mutabot.model.codec import to_data

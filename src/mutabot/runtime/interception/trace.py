@@ -16,7 +16,8 @@ from mutabot.evidence.recording import RecordedCall
 from mutabot.languages.python import FRONT_END as PYTHON
 from mutabot.languages.registry import front_ends
 from mutabot.model import Call, Reply, Role, Span
-from mutabot.model.answer import NotKeptError, is_plain, keep
+from mutabot.model.answer import NotKeptError, keep
+from mutabot.model.codec import is_plain
 from mutabot.model.events import TRACE_LIMIT, SiteSeen
 from mutabot.model.operation import Form
 from mutabot.runtime import real_path
