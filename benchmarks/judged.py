@@ -22,7 +22,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests"))
 
-from suites.agreement import ENGINES, Found, compare, corpus  # noqa: E402
+from suites.agreement import ENGINES, Found, compare  # noqa: E402
+from suites.corpus import corpus  # noqa: E402
 
 #: mutants of the program text of each project of the corpus
 CONVENTIONAL = 4

@@ -22,7 +22,6 @@ import gzip
 import hashlib
 import json
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -33,7 +32,10 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent
-CORPUS = ROOT / "tests" / "suites" / "projects"
+sys.path.insert(0, str(ROOT / "tests"))
+
+from suites.corpus import copied, corpus  # noqa: E402
+
 #: example -> rounds, and mutants of each family at most
 EXAMPLES: Mapping[str, tuple[int, Mapping[str, int]]] = {
     "paper": (2, {"robot": 1000, "conventional": 40, "catalogue": 30}),
@@ -63,8 +65,7 @@ ACCIDENTS = (
 def projects() -> dict[str, Path]:
     """Every project that can be recorded, by its name."""
     examples = {name: ROOT / "examples" / name for name in EXAMPLES}
-    corpus = {file.parent.name: file.parent for file in sorted(CORPUS.glob("*/mutabot.toml"))}
-    return examples | corpus
+    return examples | {folder.name: folder for folder in corpus()}
 
 
 def record(name: str, folder: Path, command: Sequence[str], wanted: Iterable[str] | None) -> dict[str, Any]:
@@ -76,8 +77,7 @@ def record(name: str, folder: Path, command: Sequence[str], wanted: Iterable[str
     """
     rounds, limits = EXAMPLES.get(name, (1, SMALL))
     with tempfile.TemporaryDirectory() as place:
-        copy = Path(place).resolve() / name
-        shutil.copytree(folder, copy, ignore=shutil.ignore_patterns(".mutabot", "__pycache__"))
+        copy = copied(folder, Path(place).resolve() / name)
         shared = ["--family", ",".join(limits), "--rounds", str(rounds), "--seed", "1"]
         plan = _json([*command, "-C", str(copy), "list", *shared, "--json"])
         ids = [one["id"] for one in plan["mutants"]]

@@ -23,13 +23,13 @@ from mutabot.report.document import data_of, document
 from mutabot.results.results import read_results
 from mutabot.runtime.seeds import derive
 
+from .corpus import copied
 from .editor import Facts
 from .graded_editor import OPERATORS as GRADED_OPERATORS
 from .judge import IGNORED, MORE_DRAWS, Judge, Judgement, is_drawn, is_raced
 from .message_editor import is_named
 
 ENGINES = ("fork", "replay")
-PROJECTS = Path(__file__).resolve().parent / "projects"
 #: no verdict: the plan says that the mutant would change nothing
 LEFT_OUT = "left out"
 #: what plain pytest must say for a verdict; what is no command ends the test that sends it
@@ -170,6 +170,21 @@ def compare(
             that is more; the original may take ten times as long.
         rounds: rounds of the campaign; each is held against plain pytest with its own seeds.
     """
+    with tempfile.TemporaryDirectory() as name:
+        whole = copied(folder, Path(name).resolve() / "whole" / folder.name)
+        return _compare(whole, families, only or {}, engines, jobs, cache, limit, rounds)
+
+
+def _compare(
+    folder: Path,
+    families: Sequence[str],
+    only: Mapping[str, int],
+    engines: Sequence[str],
+    jobs: int,
+    cache: Path | None,
+    limit: float,
+    rounds: int,
+) -> Found:
     found = Found(folder.name)
     results: dict[str, dict[str, Any]] = {}
     with tempfile.TemporaryDirectory() as name:
@@ -186,7 +201,7 @@ def compare(
                 results[engine] = campaign(replace(wanted, selection=selection))
             except MutabotError as error:
                 found.failed.append(f"{folder.name} [{engine}] the campaign stops: {str(error)[:600]}")
-    if "robot" not in (only or {}):
+    if "robot" not in only:
         for data in results.values():
             data["mutants"] += list(left_out(data))
     mutants = {one["id"]: one for data in results.values() for one in data["mutants"]}
@@ -362,8 +377,3 @@ def seeds_of(results: Mapping[str, Mapping[str, Any]], which: int = 1) -> dict[s
         for data in results.values()
         for one in data["baseline"]
     }
-
-
-def corpus() -> list[Path]:
-    """All projects of the corpus."""
-    return sorted(path.parent for path in PROJECTS.glob("*/mutabot.toml"))

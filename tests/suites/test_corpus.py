@@ -9,7 +9,8 @@ import os
 
 import pytest
 
-from .agreement import PROJECTS, compare, corpus
+from .agreement import compare
+from .corpus import PROJECTS, corpus
 
 #: the hardest: act once and assert many, files that tests share, answers that are objects, ends other than
 #: passed; the first of them is in the short run

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import shutil
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +10,7 @@ import pytest
 
 from mutabot.cli.app import main
 from mutabot.journal.journal import Journal
+from suites.corpus import PROJECTS, copied
 
 from .projects import STYLES, TESTS, found_by, make, passes, patched
 
@@ -18,7 +18,6 @@ SUGGEST = ["suggest", "--seeds", "5"]
 
 
 DOCUMENT = Path(__file__).parents[3] / "docs" / "suggest.md"
-PROJECTS = Path(__file__).parents[2] / "suites" / "projects"
 
 
 def survivors(found: dict[str, Any]) -> set[str]:
@@ -72,7 +71,7 @@ def test_what_is_suggested_kills_when_it_is_applied(
 def test_the_page_lists_what_is_suggested_for_the_project_with_all_kinds_of_quantities(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    project = shutil.copytree(PROJECTS / "fault_catalogue", tmp_path / "cell")
+    project = copied(PROJECTS / "fault_catalogue", tmp_path / "cell")
     monkeypatch.chdir(project)
     found_by(["run"], capsys)
     suggested = {one["statement"] for one in found_by(SUGGEST, capsys)["suggestions"]}
