@@ -20,21 +20,16 @@ SHORT: dict[str, list[str]] = {
     "campaigns_in_a_row": ["--count", "1"],
     "cell_physics": ["limits"],
     "cell_speed": ["1"],
-    "cluster_faults": ["--workers", "1", "--schedulers", "0", "--rounds", "1", "--where", "local"],
     "cluster_simulation": ["--mutants", "1000"],
-    "confirmation": ["scales"],
     "controller": ["--mutants", "1000", "--sample", "2"],
     "differential": ["--examples", "scales", "--sample", "2"],
-    "drafts": ["mujoco"],
     "engines": ["--examples", "scales", "--sample", "2"],
-    "evidence": ["--pairs", "1", "--rounds", "1", "--example", "scales", "--selection", ""],
     "flaky_campaigns": ["--count", "1", "--chance", "10"],
     "html_report": ["--mutants", "20", "--rounds", "1", "--repeats", "1"],
     "instrumentation": [],
     "interception": [],
     "judged": ["fluent_api", "--conventional", "0"],
     "kill_and_resume": ["--kills", "1"],
-    "own_checks": ["--fresh", "--sample", "2", "-j", "1"],
     "paper_scores": ["."],
     "paper_seeds": ["1"],
     "pick_and_place_seeds": ["1"],
@@ -46,7 +41,6 @@ SHORT: dict[str, list[str]] = {
     "suggested_checks": ["--seeds", "1", "scales"],
     "suite_length": ["--lengths", "50"],
     "ten_thousand": ["--mutants", "4000"],
-    "thresholds": ["published", "--rounds", "1"],
     "tracking_seeds": ["1"],
     "witness": ["witness", "fluent_api"],
 }
@@ -54,15 +48,10 @@ SHORT: dict[str, list[str]] = {
 LOOSE = {"controller", "html_report", "suite_length", "ten_thousand"}
 #: what a short form cannot bring
 ELSEWHERE = {
-    "equal_runs": "needs ROS 2: tests/packages/ros runs it",
     "foreign_programs": "installs simulators: `make foreign`",
     "palletising_seeds": "is `pick_and_place_seeds` on another example, and takes a minute",
-    "plain_projects": "installs other tools and their projects",
-    "rclpy_tests": "needs a checkout of rclpy",
     "random_edits": "is a module of `since_edits`",
 }
-#: examples in whose folders some scripts work
-IN_EXAMPLE = {"own_checks": "scales", "paper_scores": "paper"}
 
 
 def test_every_script_has_a_short_form() -> None:
@@ -83,15 +72,13 @@ def test_what_the_makefile_asks_of_a_script_it_understands() -> None:
 @pytest.fixture
 def folder(tmp_path: Path, request: pytest.FixtureRequest) -> Path:
     """Where the script works: a copy of an example with a campaign, or an empty folder."""
-    name = request.node.callspec.params["name"]
-    if name not in IN_EXAMPLE:
+    if request.node.callspec.params["name"] != "paper_scores":
         (tmp_path / "witness").mkdir()
         return tmp_path
-    copy = tmp_path / IN_EXAMPLE[name]
-    shutil.copytree(ROOT / "examples" / copy.name, copy, ignore=shutil.ignore_patterns(".mutabot"))
-    if name == "paper_scores":
-        words = ["run", "--only", "@published.txt", "--sample", "2", "--rounds", "1"]
-        subprocess.run([MUTABOT, *words], cwd=copy, env=_environment(), check=True, capture_output=True)
+    copy = tmp_path / "paper"
+    shutil.copytree(ROOT / "examples" / "paper", copy, ignore=shutil.ignore_patterns(".mutabot"))
+    words = ["run", "--only", "@published.txt", "--sample", "2", "--rounds", "1"]
+    subprocess.run([MUTABOT, *words], cwd=copy, env=_environment(), check=True, capture_output=True)
     return copy
 
 
