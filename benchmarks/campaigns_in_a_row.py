@@ -38,6 +38,7 @@ from mutabot.campaign.run import run_campaign
 from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load_vocabulary
 from mutabot.journal.journal import Journal
+from mutabot.model.mutant_end import MutantEnd
 
 ENGINES = ("fork", "replay")
 PEACE, INTERRUPTED, SIGINT, SIGKILL = "left in peace", "interrupted here", "SIGINT", "SIGKILL"
@@ -110,6 +111,8 @@ class Silent:
 
     def stage(self, text: str, total: int | None = None) -> None:
         """Ignore it."""
+
+    def mutant_ended(self, end: MutantEnd) -> None: ...
 
     def advance(self, line: str | None = None) -> None:
         """Ignore it."""

@@ -57,6 +57,7 @@ from mutabot.model.events import (
     event_to_data,
 )
 from mutabot.model.job import Forking
+from mutabot.model.mutant_end import MutantEnd
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 WORKERS = 100
@@ -189,6 +190,8 @@ class Silent:
 
     def stage(self, text: str, total: int | None = None) -> None:
         """Nothing to do."""
+
+    def mutant_ended(self, end: MutantEnd) -> None: ...
 
     def advance(self, line: str | None = None) -> None:
         """One outcome more."""

@@ -36,6 +36,7 @@ from mutabot.config.vocabulary import load_vocabulary
 from mutabot.journal.journal import Journal
 from mutabot.model import Outcome
 from mutabot.model.codec import to_data
+from mutabot.model.mutant_end import MutantEnd
 
 ROOT = Path(__file__).resolve().parent.parent
 #: example to its rounds; one round of pick_and_place takes replay minutes
@@ -90,6 +91,8 @@ class Silent:
 
     def stage(self, text: str, total: int | None = None) -> None:
         """Ignore it."""
+
+    def mutant_ended(self, end: MutantEnd) -> None: ...
 
     def advance(self, line: str | None = None) -> None:
         """Ignore it."""

@@ -28,6 +28,7 @@ from mutabot.config.vocabulary import load_vocabulary
 from mutabot.errors import MutabotError
 from mutabot.journal.journal import Journal
 from mutabot.model import Verdict
+from mutabot.model.mutant_end import MutantEnd
 from mutabot.results.results import Results, read_results
 from mutabot.results.statistics import Estimate, false_kills, false_survivors
 
@@ -113,6 +114,8 @@ class Tally:
 class _Silent:
     def stage(self, text: str, total: int | None = None) -> None:
         pass
+
+    def mutant_ended(self, end: MutantEnd) -> None: ...
 
     def advance(self, line: str | None = None) -> None:
         pass

@@ -29,6 +29,7 @@ from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load_vocabulary
 from mutabot.families import USUAL
 from mutabot.journal.journal import Journal
+from mutabot.model.mutant_end import MutantEnd
 
 ROOT = Path(__file__).resolve().parent.parent
 #: example to the folder in it with the project, and the module that it needs
@@ -42,6 +43,8 @@ class Silent:
 
     def stage(self, text: str, total: int | None = None) -> None:
         """Ignore it."""
+
+    def mutant_ended(self, end: MutantEnd) -> None: ...
 
     def advance(self, line: str | None = None) -> None:
         """Ignore it."""

@@ -28,7 +28,8 @@ from mutabot.faults import known_families
 from mutabot.journal.files import HOME
 from mutabot.journal.reader import JournalReader
 from mutabot.report.document import dumps
-from mutabot.report.terminal.console import make_console, make_progress
+from mutabot.report.terminal.console import make_console
+from mutabot.report.terminal.progress import make_progress
 from mutabot.results.results import Results, read_results
 
 from . import without_checks

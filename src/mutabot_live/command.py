@@ -16,9 +16,9 @@ from typing import Annotated, Any, Self
 import typer
 
 from mutabot.api.processes import Request
-from mutabot.api.reports import CommandContext, Progress
+from mutabot.api.reports import CommandContext, MutantEnd, Progress
 from mutabot.campaign.run import run_campaign
-from mutabot.report.terminal.console import Pace
+from mutabot.report.terminal.progress import Pace
 from mutabot.report.texts import legible
 
 from .pages import Pages
@@ -129,6 +129,11 @@ class _Told:
         self._stage, self._line, self._pace = text, "", Pace(total)
         self.steps += 1
         self.tell()
+
+    def mutant_ended(self, end: MutantEnd) -> None:
+        """A mutant has ended in a round."""
+        if self.progress is not None:
+            self.progress.mutant_ended(end)
 
     def advance(self, line: str | None = None) -> None:
         """One step is done."""

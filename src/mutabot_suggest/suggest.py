@@ -18,6 +18,7 @@ from mutabot.journal.reader import JournalReader
 from mutabot.model import By, Mutant, Verdict
 from mutabot.model.deadline import Limit
 from mutabot.model.events import TestEnd
+from mutabot.model.mutant_end import MutantEnd
 from mutabot.results.results import MutantResult
 
 from .checks import ProposedCheck, Trials, candidates, unseen
@@ -106,6 +107,10 @@ class Quiet:
     def stage(self, text: str, total: int | None = None) -> None:
         """As in ``Progress``."""
         self.progress.stage(text, total)
+
+    def mutant_ended(self, end: MutantEnd) -> None:
+        """As in ``Progress``."""
+        self.progress.mutant_ended(end)
 
     def advance(self, line: str | None = None) -> None:
         """As in ``Progress``."""

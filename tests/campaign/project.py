@@ -20,6 +20,7 @@ from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load_vocabulary
 from mutabot.journal.journal import Journal
 from mutabot.model import Outcome
+from mutabot.model.mutant_end import MutantEnd
 
 #: the reference, as one of several engines: it takes long, and that it agrees with forks is for the corpus
 REPLAY = pytest.param("replay", marks=pytest.mark.whole)
@@ -100,6 +101,8 @@ class Quiet:
 
     def stage(self, text: str, total: int | None = None) -> None:
         self.lines.append(f"== {text} {total}")
+
+    def mutant_ended(self, end: MutantEnd) -> None: ...
 
     def advance(self, line: str | None = None) -> None:
         self.lines.append(line or "")

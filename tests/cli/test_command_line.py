@@ -82,7 +82,7 @@ def test_help_lists_commands_in_the_order_in_which_they_are_used(capsys: pytest.
     listed = capsys.readouterr().out.partition("Commands:\n")[2].splitlines()
     assert [line.split()[0] for line in listed] == [
         "init", "check", "list", "operators", "run", "merge", "replay", "suggest", "results", "show",
-        "thresholds", "report", "live", "motion",
+        "accept", "thresholds", "report", "live", "motion",
     ]  # fmt: skip
 
 

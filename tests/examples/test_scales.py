@@ -18,6 +18,7 @@ from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load_vocabulary
 from mutabot.journal.journal import Journal
 from mutabot.model import Outcome
+from mutabot.model.mutant_end import MutantEnd
 from mutabot.report.document import document, dumps
 from mutabot.results.results import read_results
 from pages import blocks
@@ -73,6 +74,8 @@ class Silent:
     """A progress that tells nobody."""
 
     def stage(self, text: str, total: int | None = None) -> None: ...
+
+    def mutant_ended(self, end: MutantEnd) -> None: ...
 
     def advance(self, line: str | None = None) -> None: ...
 

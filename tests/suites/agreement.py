@@ -19,6 +19,7 @@ from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load_vocabulary
 from mutabot.errors import MutabotError
 from mutabot.journal.journal import Journal
+from mutabot.model.mutant_end import MutantEnd
 from mutabot.report.document import data_of, document
 from mutabot.results.results import read_results
 from mutabot.runtime.seeds import derive
@@ -49,6 +50,8 @@ class Silent:
 
     def stage(self, text: str, total: int | None = None) -> None:
         """Ignore it."""
+
+    def mutant_ended(self, end: MutantEnd) -> None: ...
 
     def advance(self, line: str | None = None) -> None:
         """Ignore it."""

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from mutabot.campaign.request import Progress
     from mutabot.cli.context import CommandContext
     from mutabot.errors import MutabotError, UsageError
+    from mutabot.model.mutant_end import MutantEnd
     from mutabot.model.outcome import Outcome, Verdict
     from mutabot.results.results import MutantResult, Results
     from mutabot.results.suggested import Suggestion
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 __all__ = [
     "CommandContext",
     "MutabotError",
+    "MutantEnd",
     "MutantResult",
     "Outcome",
     "Progress",
@@ -32,6 +34,7 @@ _HOMES = {
         "MutabotError",
         "UsageError",
     ),
+    "mutabot.model.mutant_end": ("MutantEnd",),
     "mutabot.model.outcome": (
         "Outcome",
         "Verdict",

@@ -24,6 +24,7 @@ from mutabot.model.job import Job
 if TYPE_CHECKING:
     from mutabot.config.table import Table
     from mutabot.execution.task import Executor
+    from mutabot.model.mutant_end import MutantEnd
 
 AUTO, FORK, REPLAY = "auto", "fork", "replay"
 ENGINES = (FORK, REPLAY)
@@ -224,6 +225,9 @@ class Progress(Protocol):
 
     def stage(self, text: str, total: int | None = None) -> None:
         """A new stage begins, of so many steps if that is known."""
+
+    def mutant_ended(self, end: MutantEnd) -> None:
+        """A mutant has ended in a round, or an earlier campaign has found how. This is no step of a stage."""
 
     def advance(self, line: str | None = None) -> None:
         """One step is done; ``line`` says which."""

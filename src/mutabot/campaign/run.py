@@ -140,7 +140,7 @@ def _run(
         if revision is not None:
             altered = altered_since(revision, campaign, dependencies, found, part.mutants)
             part = only_altered(journal, revision, altered, found, part, request.rounds, progress)
-    writer = OutcomeWriter(journal, dependencies, plan.mutants)
+    writer = OutcomeWriter(journal, dependencies, plan.mutants, progress.mutant_ended)
     try:
         with _refutable(campaign, journal):
             is_whole = run_planned(campaign, part.mutants, writer, found, started)

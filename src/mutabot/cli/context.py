@@ -15,7 +15,8 @@ from mutabot.journal.files import find_journal
 from mutabot.report.document import data_of, document, dumps
 from mutabot.report.sections import Section
 from mutabot.report.terminal.campaign import print_results, print_summary
-from mutabot.report.terminal.console import Bar, Lines, leave_pipe, make_console, make_progress, print_section
+from mutabot.report.terminal.console import leave_pipe, make_console, print_section
+from mutabot.report.terminal.progress import Bar, Lines, make_progress
 from mutabot.results.gate import Decision, decide
 from mutabot.results.results import Results
 from mutabot.results.stored import StoredEvidence

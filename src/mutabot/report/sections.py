@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
@@ -177,7 +176,7 @@ def _survivors(results: Results, place: PlaceName) -> Iterator[Section]:
         if results.all.total.valid > len(idle) * results.rounds:
             yield Section("No survivors" if results.is_complete else "No survivors so far")
         return
-    same = [result.mutant.number for result in survivors if result.indistinguishable]
+    same = sorted(result.mutant.number for result in survivors if result.indistinguishable)
     shown = [result for result in survivors if not result.indistinguishable]
     if not shown and len(same) <= _FEW:  # else nothing would say which faults these are
         shown, same = survivors, []
@@ -223,15 +222,10 @@ def _outside(results: Results, place: PlaceName) -> Iterator[Section]:
 
 
 def skipped(left_out: Sequence[LeftOut]) -> Iterator[Section]:
-    """What the plan leaves out, a section for each reason."""
+    """What the plan leaves out, a line for each kind of reason."""
     for heading, those in by_heading(left_out).items():
-        if heading == NOTHING:
-            reasons = Counter(item.reason for item in those).most_common()
-            title = f"{plural(len(those), 'mutant')} left out that {heading}"
-            lines = [f"{count} × {reason}" for reason, count in reasons]
-        else:
-            title, lines = f"{plural(len(those), 'mutant')} left out: {heading}", []
-        yield Section(title, lines=lines, is_detail=True)
+        joined = " that " if heading == NOTHING else ": "
+        yield Section(f"{plural(len(those), 'mutant')} left out{joined}{heading}", is_detail=True)
 
 
 def _thresholds(results: Results, place: PlaceName) -> Iterator[Section]:

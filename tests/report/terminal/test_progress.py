@@ -4,12 +4,19 @@ from __future__ import annotations
 
 import io
 import re
+import time
+from typing import Any
 
 import pytest
 from rich.cells import cell_len
 from rich.console import Console
 
-from mutabot.report.terminal.console import Bar, Lines, make_console, make_progress
+from mutabot.model import Mutant, Outcome, Verdict
+from mutabot.model.mutant_end import MutantEnd
+from mutabot.model.suppression import Acceptance
+from mutabot.report.terminal.console import make_console
+from mutabot.report.terminal.progress import Bar, Lines, clock_text, make_progress
+from results import samples
 
 _ESCAPES = re.compile(r"\x1b\[[0-9;?]*[a-zA-Z]")
 
@@ -23,7 +30,7 @@ def test_a_pipe_gets_the_beginning_and_the_end_of_a_stage_and_little_between() -
         progress.note("something to know")
     assert out.getvalue().splitlines() == [
         "mutants: 100",
-        "mutants 100/100, took 0 s (#99 survived)",
+        "mutants 100/100: took 0:00 (#99 survived)",
         "something to know",
     ]
 
@@ -33,7 +40,7 @@ def test_a_pipe_is_told_the_time_left() -> None:
     with Lines(make_console(out), every=0.0) as progress:
         progress.stage("mutants", 2)
         progress.advance()
-    assert "mutants 1/2, 0 s left" in out.getvalue()
+    assert "mutants 1/2: 0:00 elapsed, 0:00 left" in out.getvalue()
 
 
 def test_the_time_left_is_not_guessed_from_the_first_few() -> None:
@@ -44,7 +51,7 @@ def test_the_time_left_is_not_guessed_from_the_first_few() -> None:
             progress.advance()
     *first, last = out.getvalue().splitlines()[1:]
     assert not any("left" in line for line in first)
-    assert last == "mutants 10/100, 0 s left"
+    assert last == "mutants 10/100: 0:00 elapsed, 0:00 left"
 
 
 def test_a_stage_of_unknown_length_only_counts() -> None:
@@ -52,7 +59,7 @@ def test_a_stage_of_unknown_length_only_counts() -> None:
     with Lines(make_console(out), every=0.0) as progress:
         progress.stage("baseline")
         progress.advance("round 1")
-    assert out.getvalue().splitlines() == ["baseline", "baseline 1 (round 1)"]
+    assert out.getvalue().splitlines() == ["baseline", "baseline 1: 0:00 elapsed (round 1)"]
 
 
 def test_a_terminal_gets_a_bar() -> None:
@@ -72,7 +79,7 @@ def test_a_terminal_gets_a_bar() -> None:
 
 
 @pytest.mark.parametrize("width", [50, 60, 80, 120, 200])
-def test_every_stage_is_one_line_with_a_whole_bar_count_and_time(width: int) -> None:
+def test_every_stage_is_one_line_with_count_and_time_and_with_a_bar_where_there_is_room(width: int) -> None:
     out = io.StringIO()
     with Bar(Console(file=out, force_terminal=True, width=width)) as progress:
         progress.stage("a stage with a rather long name, as some of them have", 100)
@@ -80,9 +87,9 @@ def test_every_stage_is_one_line_with_a_whole_bar_count_and_time(width: int) -> 
             progress.advance("#123 mission.py:33 reverse arm.move_by: killed\nby a check in a test")
     last = [line for line in _ESCAPES.sub("", out.getvalue()).splitlines() if line.strip()][-1]
     assert cell_len(last) <= width - 3  # a ^C has its place there
-    assert last.count("━") >= 10
+    assert last.count("━") >= 10 or width < 70
     assert "100/100" in last
-    assert re.search(r"0:00:\d\d", last)
+    assert re.search(r"took 0:\d\d", last)
     assert "killed" not in last  # what was told of the last step does not stay
 
 
@@ -94,3 +101,67 @@ def test_what_is_told_beside_the_bar_never_takes_a_second_line() -> None:
         progress._progress.refresh()
         shown = out.getvalue()
     assert "\x1b[1A" not in shown  # nothing moves up: there is one line
+
+
+def end(mutant: Mutant, verdict: Verdict, round: int = 0, **changes: Any) -> MutantEnd:
+    return MutantEnd(mutant, Outcome(mutant.id, round, verdict), **changes)
+
+
+def told(*ends: MutantEnd) -> list[str]:
+    out = io.StringIO()
+    with Lines(make_console(out, width=80), every=60.0) as progress:
+        progress.stage("mutants", len(ends))
+        for one in ends:
+            progress.mutant_ended(one)
+            progress.advance()
+    return out.getvalue().splitlines()[1:]
+
+
+def test_survivors_are_printed_as_they_are_found_and_once() -> None:
+    first, second, last = told(
+        end(samples.SKIP, Verdict.SURVIVED), end(samples.REVERSE, Verdict.KILLED),
+        end(samples.SKIP, Verdict.SURVIVED, 1), end(samples.BY_TO, Verdict.NOT_COVERED),
+    )  # fmt: skip
+    assert first == "survived: 2 mission.py:2 skip: gripper.command: do nothing (round 1)"
+    assert second.startswith("not covered: 3 mission.py:4 by-to: ")
+    assert last == "mutants 4/4: took 0:00 (killed 1, survived 2, not covered 1)"
+
+
+def test_accepted_survivors_and_those_of_earlier_campaigns_are_only_counted() -> None:
+    accepted = end(samples.SKIP, Verdict.SURVIVED, acceptance=Acceptance("why", "a.toml:1"))
+    reused = end(samples.NEGATE, Verdict.SURVIVED, is_reused=True)
+    assert told(accepted, reused) == ["mutants 2/2: took 0:00 (survived 1, accepted 1)"]
+
+
+def test_a_survivor_that_a_second_look_takes_back_is_named_and_counted_anew() -> None:
+    first, second, last = told(end(samples.SKIP, Verdict.SURVIVED), end(samples.SKIP, Verdict.UNSTABLE))
+    assert (first.partition(":")[0], second.partition(":")[0]) == ("survived", "unstable")
+    assert last.endswith("(unstable 1)")
+
+
+def test_a_bar_shows_the_counts_and_prints_survivors_above() -> None:
+    out = io.StringIO()
+    with Bar(Console(file=out, force_terminal=True, width=120)) as progress:
+        progress.stage("mutants", 2)
+        progress.mutant_ended(end(samples.SKIP, Verdict.SURVIVED))
+        progress.advance("#2 round 1: survived")
+        progress._progress.refresh()
+    text = _ESCAPES.sub("", out.getvalue())
+    assert "survived: 2 mission.py:2 skip" in text
+    assert "1/2" in text
+    assert "survived 1" in text
+
+
+def test_a_pipe_hears_something_while_nothing_ends() -> None:
+    out = io.StringIO()
+    with Lines(make_console(out), every=0.02) as progress:
+        progress.stage("mutants", 5)
+        until = time.monotonic() + 20.0
+        while "elapsed" not in out.getvalue() and time.monotonic() < until:
+            time.sleep(0.01)
+    assert re.match(r"mutants 0/5: 0:\d\d elapsed$", out.getvalue().splitlines()[1])
+
+
+@pytest.mark.parametrize(("seconds", "text"), [(8.2, "0:08"), (125, "2:05"), (3723, "1:02:03")])
+def test_times_are_written_as_clocks_show_them(seconds: float, text: str) -> None:
+    assert clock_text(seconds) == text

@@ -23,9 +23,12 @@ from typing import TYPE_CHECKING, Any
 
 from mutabot.execution.versions import versions
 from mutabot.frozen import frozen
+from mutabot.journal.records import ACCEPTED
 from mutabot.model.codec import to_data
 from mutabot.model.job import Idle
+from mutabot.model.mutant_end import MutantEnd
 from mutabot.model.source_units import ALL_FILES, WHOLE, Executed, File, digest, is_test_file, together
+from mutabot.model.suppression import Accepted
 
 from .packages import code_of_packages
 from .snapshot import _HASH, State, counts_by_name, digest_of, read
@@ -398,21 +401,36 @@ class OutcomeWriter:
     Args:
         dependencies: None where files change meanwhile: then nobody knows, and nothing is to be reused.
         mutants: those of the plan.
+        tell: told of each outcome, first of those that are in the journal already.
 
     Attributes:
         journal: where they go.
     """
 
     def __init__(
-        self, journal: Journal, dependencies: Dependencies | None = None, mutants: Iterable[Mutant] = ()
+        self,
+        journal: Journal,
+        dependencies: Dependencies | None = None,
+        mutants: Iterable[Mutant] = (),
+        tell: Callable[[MutantEnd], None] = lambda end: None,
     ) -> None:
-        self.journal, self._dependencies = journal, dependencies
+        self.journal, self._dependencies, self._tell = journal, dependencies, tell
         self._mutants = {mutant.id: mutant for mutant in mutants}
+        accepting: Accepted = journal.meta().get(ACCEPTED) or Accepted()
+        self._acceptances = accepting.mutants
+        for outcome in journal.outcomes():
+            self._tell_of(outcome, is_reused=True)
 
     def add_outcome(self, outcome: Outcome) -> None:
         """Add an outcome, replacing an earlier one of the same mutant and round."""
         key = self._key_of(outcome, self._dependencies) if self._dependencies is not None else ""
         self.journal.add_outcome(replace(outcome, executed=None), key=key)
+        self._tell_of(outcome)
+
+    def _tell_of(self, outcome: Outcome, *, is_reused: bool = False) -> None:
+        mutant = self._mutants.get(outcome.mutant)
+        if mutant is not None:
+            self._tell(MutantEnd(mutant, outcome, self._acceptances.get(mutant.id), is_reused))
 
     def _key_of(self, outcome: Outcome, dependencies: Dependencies) -> str:
         executed = dependencies.stored(outcome.executed)

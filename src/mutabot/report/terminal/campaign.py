@@ -18,7 +18,7 @@ from mutabot.report.document import data_of
 from mutabot.report.sections import Section, plural, sections, size_text, skipped, untested
 from mutabot.results.thresholds import Thresholds, amount, line_of, rounds_left_out, violations_in_words
 
-from .console import below, heading, legend, letters, make_table, plain, print_section, short_place
+from .console import Breakable, below, heading, legend, letters, make_table, plain, print_section, short_place
 
 if TYPE_CHECKING:
     from mutabot.journal.records import Untested
@@ -99,7 +99,7 @@ def _mutants(results: Results) -> Iterator[RenderableType]:
             mutant.site.role.value,
             short_place(mutant.site.span),
             mutant.operator,
-            plain(mutant.description),
+            Breakable(plain(mutant.description)),
             letters(result.rounds, many=many),
         )
     yield table

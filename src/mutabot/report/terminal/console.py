@@ -1,22 +1,19 @@
-"""The terminal as reports use it: texts without markup, tables, notes, a mark for each verdict, and progress.
-
-Progress is a bar with the time left on a terminal, and a plain line now and then elsewhere.
-"""
+"""The terminal as reports use it: texts without markup, tables, sections, and a mark for each verdict."""
 
 from __future__ import annotations
 
 import os
 import re
 import sys
-import time
-from collections.abc import Callable, Iterable, Sequence
-from typing import IO, TYPE_CHECKING, Self
+from collections.abc import Iterable, Sequence
+from typing import IO, TYPE_CHECKING, Any
 
 from rich import box
 from rich.console import Console, RenderableType
+from rich.containers import Lines
 from rich.padding import Padding
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
-from rich.table import Column, Table
+from rich.segment import Segment, Segments
+from rich.table import Table
 from rich.text import Text
 
 from mutabot.frozen import frozen
@@ -30,11 +27,53 @@ _CONTROLS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f]")
 
 
 class _Console(Console):
-    """A console whose reader may leave early, as ``head`` does: then it prints nothing more."""
+    """A console whose lines do not end in blanks, and whose reader may leave early, as ``head`` does."""
+
+    def print(self, *objects: Any, **options: Any) -> None:
+        """Print one object as its lines; other calls are as in ``Console``."""
+        if len(objects) != 1 or options:
+            super().print(*objects, **options)
+            return
+        lines = self.render_lines(objects[0], pad=False)
+        segments = (segment for line in lines for segment in (*_without_blanks(line), Segment.line()))
+        super().print(Segments(segments), end="")
 
     def on_broken_pipe(self) -> None:
         self.quiet = True
         leave_pipe()
+
+
+def _without_blanks(line: Sequence[Segment]) -> list[Segment]:
+    """A line without the blanks at its end."""
+    found = list(line)
+    while found and not found[-1].control:
+        last = found.pop()
+        text = last.text.rstrip(" ")
+        if text:
+            return [*found, Segment(text, last.style)]
+    return found
+
+
+class Breakable(Text):
+    """A text that breaks between words, and in a word that is too long after a sign that joins its parts."""
+
+    def wrap(self, console: Console, width: int, **options: Any) -> Lines:
+        """Wrap it to a width."""
+        whole = Text(style=self.style)
+        for part in re.split(r"(\s+)", self.plain):
+            pieces = _pieces(part, width) if len(part) > width else [part]
+            whole.append("\n".join(pieces))
+        return whole.wrap(console, width, **options)
+
+
+def _pieces(word: str, width: int) -> list[str]:
+    """A long word in parts that fit a width, as far as signs in it allow."""
+    pieces = [""]
+    for part in re.findall(r"[^_./:\-\[\],=]*[_./:\-\[\],=]?", word):
+        if len(pieces[-1]) + len(part) > width and pieces[-1]:
+            pieces.append("")
+        pieces[-1] += part
+    return pieces
 
 
 def leave_pipe() -> None:
@@ -63,13 +102,20 @@ def heading(text: str) -> Text:
 
 def below(text: str, indent: int = 2, style: str = "") -> RenderableType:
     """Return an indented text."""
-    return Padding(Text(plain(text), style=style, overflow="fold"), (0, 0, 0, indent), expand=False)
+    return Padding(Breakable(plain(text), style=style, overflow="fold"), (0, 0, 0, indent), expand=False)
 
 
 def make_table(columns: Sequence[str] = (), *, header: bool = True) -> Table:
     """Make an empty table. ``>name`` is a column of numbers, ``*name`` takes the room that is left."""
     look = box.SIMPLE_HEAD
-    table = Table(box=look, show_header=header, pad_edge=False, padding=(0, 1), header_style="bold")
+    table = Table(
+        box=look,
+        show_header=header,
+        pad_edge=False,
+        padding=(0, 1, 0, 0),
+        show_edge=False,
+        header_style="bold",
+    )
     for name in columns:
         is_number, is_wide = name.startswith(">"), name.startswith("*")
         table.add_column(
@@ -107,7 +153,7 @@ def print_section(console: Console, section: Section, at_most: int | None = None
         names = (" and ".join(section.columns[index] for index in group) for group in groups)
         table = make_table([name.replace(" and *", " and ") for name in names])
         for row in section.rows[:at_most]:
-            table.add_row(*("\n".join(plain(row[index]) for index in group) for group in groups))
+            table.add_row(*(Breakable("\n".join(plain(row[index]) for index in group)) for group in groups))
         console.print(table)
     for line in section.lines[:at_most]:
         console.print(below(line.lstrip(), 2 + len(line) - len(line.lstrip())))
@@ -173,148 +219,3 @@ def legend(outcomes: Iterable[Outcome | None]) -> Text:
         for mark, _ in marks_in(outcomes)
     ]
     return Text("   ").join(parts)
-
-
-#: part of a stage after which the time left is worth telling: the first steps say little about the others
-_TELLING = 0.1
-
-
-class Pace:
-    """The steps of one stage.
-
-    Args:
-        total: how many there are; None if that is not known.
-        clock: seconds that count.
-
-    Attributes:
-        total, done: steps.
-    """
-
-    def __init__(self, total: int | None = None, clock: Callable[[], float] = time.monotonic) -> None:
-        self.total, self.done = total, 0
-        self._clock = clock
-        self._began = clock()
-
-    def advance(self) -> None:
-        """One more is done."""
-        self.done += 1
-
-    @property
-    def spent(self) -> float:
-        """Seconds since it began."""
-        return self._clock() - self._began
-
-    @property
-    def left(self) -> float | None:
-        """Seconds that the rest will take; None as long as too little is known to tell."""
-        if self.total is None or self.done == 0 or self.done < _TELLING * self.total:
-            return None
-        return self.spent / self.done * max(0, self.total - self.done)
-
-
-#: seconds between two plain lines
-EVERY = 5.0
-
-#: columns that stay free at the right: a ^C that the terminal prints there must not begin another line
-_SPARE = 3
-#: columns of the bar, the count, the time left and the gaps
-_BAR, _BESIDE_BAR = 10, 9 + 7 + 6
-
-
-def _column(width: int | None = None, ratio: int | None = None) -> Column:
-    return Column(min_width=width, max_width=width, ratio=ratio, no_wrap=True, overflow="ellipsis")
-
-
-def make_progress(console: Console) -> Bar | Lines:
-    """Make the progress that fits the console; each is one as ``mutabot.campaign`` wants it."""
-    return Bar(console) if console.is_terminal else Lines(console)
-
-
-class Bar:
-    """A bar per stage on a terminal, each on one line: texts are cut before the bar is."""
-
-    def __init__(self, console: Console) -> None:
-        console.width -= _SPARE
-        room = max(10, min(40, console.width - _BAR - _BESIDE_BAR))
-        self._progress = Progress(
-            TextColumn("{task.description}", markup=False, table_column=Column(max_width=room, no_wrap=True)),
-            BarColumn(bar_width=_BAR, table_column=_column(_BAR)),
-            MofNCompleteColumn(table_column=_column(9)),
-            TimeRemainingColumn(elapsed_when_finished=True, table_column=_column(7)),
-            TextColumn("{task.fields[line]}", markup=False, table_column=_column(ratio=1)),
-            console=console,
-            expand=True,
-        )
-        self._task: TaskID | None = None
-
-    def stage(self, text: str, total: int | None = None) -> None:
-        """Begin another bar."""
-        self._close_stage()
-        self._task = self._progress.add_task(text, total=total, line="")
-
-    def advance(self, line: str | None = None) -> None:
-        """Advance the progress bar and show ``line`` beside it."""
-        if self._task is not None:
-            self._progress.update(self._task, advance=1, line=plain(line or "").partition("\n")[0])
-
-    def note(self, text: str) -> None:
-        """Print a line above the bars."""
-        self._progress.console.print(plain(text))
-
-    def _close_stage(self) -> None:
-        if self._task is not None:
-            self._progress.update(self._task, line="")
-            self._progress.stop_task(self._task)
-
-    def __enter__(self) -> Self:
-        self._progress.start()
-        return self
-
-    def __exit__(self, *error: object) -> None:
-        self._close_stage()
-        self._progress.stop()
-
-
-class Lines:
-    """Plain lines: the start and end of each stage, and how far it is every few seconds."""
-
-    def __init__(self, console: Console, *, every: float = EVERY) -> None:
-        self._console, self._every = console, every
-        self._text, self._pace = "", Pace()
-        self._last = 0.0
-
-    def stage(self, text: str, total: int | None = None) -> None:
-        """Print the stage's name."""
-        self._text, self._pace = text, Pace(total)
-        self._last = time.monotonic()
-        self._print(f"{text}: {total}" if total is not None else text)
-
-    def advance(self, line: str | None = None) -> None:
-        """Count, and print how far it is if the last line is long enough ago."""
-        self._pace.advance()
-        now = time.monotonic()
-        if self._pace.done != self._pace.total and now - self._last < self._every:
-            return
-        self._last = now
-        self._print(f"{self._text} {self._how_far()}" + (f" ({line})" if line else ""))
-
-    def note(self, text: str) -> None:
-        """Print a line."""
-        self._print(text)
-
-    def _how_far(self) -> str:
-        pace = self._pace
-        if pace.total is None:
-            return str(pace.done)
-        took = f", took {pace.spent:.0f} s" if pace.done >= pace.total else ""
-        left = f", {pace.left:.0f} s left" if not took and pace.left is not None else ""
-        return f"{pace.done}/{pace.total}{took or left}"
-
-    def _print(self, text: str) -> None:
-        self._console.print(plain(text), soft_wrap=True)
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *error: object) -> None:
-        pass

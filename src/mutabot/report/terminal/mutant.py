@@ -14,7 +14,7 @@ from mutabot.report.sections import Section, between, plural
 from mutabot.report.texts import acceptance_text, effect_text, telling
 from mutabot.results.divergence import numbers_text
 
-from .console import below, heading, letters, make_table, mark_of, plain, print_section
+from .console import Breakable, below, heading, letters, make_table, mark_of, plain, print_section
 
 if TYPE_CHECKING:
     from mutabot.journal.records import Replayed
@@ -89,7 +89,7 @@ def _facts(result: MutantResult) -> Table:
     table = make_table(("", "*"), header=False)
     for name, text in facts.items():
         if text:
-            table.add_row(Text(name, style="dim"), plain(text))
+            table.add_row(Text(name, style="dim"), Breakable(plain(text)))
     return table
 
 

@@ -180,9 +180,9 @@
     const nothing = "would change nothing";
     const headings = Map.groupBy(campaign.left_out, (one) => one.reason.startsWith(nothing) ? `Left out that ${nothing}` : `Left out: ${one.reason}`);
     for (const [heading, those] of [...headings].sort(([one], [other]) => other.startsWith("Left out that") - one.startsWith("Left out that"))) {
-      section.append(h("h3", null, `${heading} (${those.length})`), ...[...Map.groupBy(those, (one) => one.reason)].map(([reason, items]) => h("details", null,
-        h("summary", null, `${items.length} × ${reason}`), h("ul", { class: "plain small" }, items.slice(0, 50).map((one) => h("li", null, one.description, " ", h("code", null, one.id))),
-          items.length > 50 ? h("li", null, `and ${items.length - 50} more, which \`mutabot list --all\` prints`) : null))));
+      section.append(h("details", null, h("summary", null, `${heading} (${those.length})`),
+        h("ul", { class: "plain small" }, those.slice(0, 50).map((one) => h("li", null, one.description, heading.endsWith(one.reason) ? null : `: ${one.reason}`, " ", h("code", null, one.id))),
+          those.length > 50 ? h("li", null, `and ${those.length - 50} more, which \`mutabot list --all\` prints`) : null)));
     }
     return section;
   }

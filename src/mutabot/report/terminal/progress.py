@@ -1,0 +1,255 @@
+"""Progress of a campaign: a bar with the times on a terminal, and a plain line now and then elsewhere.
+
+Both print survivors as they are found, and count how mutants ended.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import Counter
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Self
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, ProgressColumn, Task, TaskID, TextColumn
+from rich.table import Column
+from rich.text import Text
+
+from .console import plain, short_place
+
+if TYPE_CHECKING:
+    from mutabot.model.mutant_end import MutantEnd
+
+#: part of a stage after which the time left is worth telling: the first steps say little about the others
+_TELLING = 0.1
+#: states that are told at once
+_TOLD = ("survived", "not covered")
+
+
+class Pace:
+    """The steps of one stage.
+
+    Args:
+        total: how many there are; None if that is not known.
+        clock: seconds that count.
+
+    Attributes:
+        total, done: steps.
+    """
+
+    def __init__(self, total: int | None = None, clock: Callable[[], float] = time.monotonic) -> None:
+        self.total, self.done = total, 0
+        self._clock = clock
+        self._began = clock()
+
+    def advance(self) -> None:
+        """One more is done."""
+        self.done += 1
+
+    @property
+    def spent(self) -> float:
+        """Seconds since it began."""
+        return self._clock() - self._began
+
+    @property
+    def left(self) -> float | None:
+        """Seconds that the rest will take; None as long as too little is known to tell."""
+        if self.total is None or self.done == 0 or self.done < _TELLING * self.total:
+            return None
+        return self.spent / self.done * max(0, self.total - self.done)
+
+    @property
+    def words(self) -> str:
+        """``0:08 elapsed, 0:20 left``; only the time it took when all is done."""
+        if self.total is not None and self.done >= self.total:
+            return f"took {clock_text(self.spent)}"
+        left = self.left
+        return f"{clock_text(self.spent)} elapsed" + ("" if left is None else f", {clock_text(left)} left")
+
+
+def clock_text(seconds: float) -> str:
+    """Return ``1:02:03`` or ``2:03``."""
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02}:{rest:02}" if hours else f"{minutes}:{rest:02}"
+
+
+class Tally:
+    """Counts how mutants ended, each in each round by its last outcome."""
+
+    def __init__(self) -> None:
+        self._states: dict[tuple[str, int], str] = {}
+        self._counts: Counter[str] = Counter()
+        self._told: set[str] = set()
+
+    def add(self, end: MutantEnd) -> str | None:
+        """Count an outcome. Returns what to tell of it: that a survivor is found, or none any more."""
+        key, state = (end.mutant.id, end.outcome.round), end.state
+        before = self._states.get(key)
+        if before == state:
+            return None
+        if before is not None:
+            self._counts[before] -= 1
+        self._states[key] = state
+        self._counts[state] += 1
+        is_new = state in _TOLD and end.mutant.id not in self._told
+        if end.mutant.has_sizes or end.is_reused or not (is_new or before in _TOLD):
+            return None
+        self._told.add(end.mutant.id)
+        mutant = end.mutant
+        what = f"{mutant.number} {short_place(mutant.site.span)} {mutant.operator}: {mutant.description}"
+        return f"{state}: {what} (round {end.outcome.round + 1})"
+
+    @property
+    def words(self) -> str:
+        """``killed 35, survived 4``; empty if nothing is counted."""
+        return ", ".join(f"{state} {self._counts[state]}" for state in _ORDER if self._counts[state])
+
+
+#: the order in which states are counted
+_ORDER = (
+    "killed", "timeout", "survived", "not covered", "accepted", "refused", "invalid", "no effect", "unstable",
+    "error",
+)  # fmt: skip
+
+#: seconds between two plain lines
+EVERY = 30.0
+
+#: columns that stay free at the right: a ^C that the terminal prints there must not begin another line
+_SPARE = 3
+#: columns of the bar; of the count, the times and the gaps beside it; and from where on there is room for it
+_BAR, _BESIDE_BAR, _ROOM_FOR_BAR = 10, 9 + 26 + 6, 70
+
+
+def _column(width: int | None = None, ratio: int | None = None) -> Column:
+    return Column(min_width=width, max_width=width, ratio=ratio, no_wrap=True, overflow="ellipsis")
+
+
+def make_progress(console: Console) -> Bar | Lines:
+    """Make the progress that fits the console; each is one as ``mutabot.campaign`` wants it."""
+    return Bar(console) if console.is_terminal else Lines(console)
+
+
+class _Times(ProgressColumn):
+    """How long a stage has taken, and what is left of it."""
+
+    def render(self, task: Task) -> Text:
+        """Return both."""
+        pace = task.fields["pace"]
+        return Text(pace.words if isinstance(pace, Pace) else "")
+
+
+class Bar:
+    """A bar per stage on a terminal, each on one line: texts are cut before the bar is."""
+
+    def __init__(self, console: Console) -> None:
+        console.width -= _SPARE
+        bar = _BAR if console.width >= _ROOM_FOR_BAR else 0
+        room = max(8, min(40, console.width - bar - _BESIDE_BAR))
+        self._progress = Progress(
+            TextColumn("{task.description}", markup=False, table_column=Column(max_width=room, no_wrap=True)),
+            *([BarColumn(bar_width=bar, table_column=_column(bar))] if bar else []),
+            MofNCompleteColumn(table_column=_column(9)),
+            _Times(table_column=Column(no_wrap=True)),
+            TextColumn("{task.fields[line]}", markup=False, table_column=_column(ratio=1)),
+            console=console,
+            expand=True,
+        )
+        self._task: TaskID | None = None
+        self._pace, self._tally = Pace(), Tally()
+
+    def stage(self, text: str, total: int | None = None) -> None:
+        """Begin another bar."""
+        self._close_stage()
+        self._pace = Pace(total)
+        self._task = self._progress.add_task(text, total=total, line="", pace=self._pace)
+
+    def mutant_ended(self, end: MutantEnd) -> None:
+        """Count an outcome, and print a survivor above the bars."""
+        text = self._tally.add(end)
+        if text is not None:
+            self._progress.console.print(Text(plain(text), style="red" if end.state in _TOLD else ""))
+
+    def advance(self, line: str | None = None) -> None:
+        """Advance the progress bar, and show the counts beside it, or ``line`` as long as there are none."""
+        self._pace.advance()
+        if self._task is not None:
+            text = self._tally.words or plain(line or "").partition("\n")[0]
+            self._progress.update(self._task, advance=1, line=text)
+
+    def note(self, text: str) -> None:
+        """Print a line above the bars."""
+        self._progress.console.print(plain(text))
+
+    def _close_stage(self) -> None:
+        if self._task is not None:
+            self._progress.update(self._task, line="")
+            self._progress.stop_task(self._task)
+
+    def __enter__(self) -> Self:
+        self._progress.start()
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self._close_stage()
+        self._progress.stop()
+
+
+class Lines:
+    """Plain lines: the start and end of each stage, survivors, and how far it is every half minute.
+
+    That line comes also while nothing ends: a CI that sees no output for minutes ends a job.
+    """
+
+    def __init__(self, console: Console, *, every: float = EVERY) -> None:
+        self._console, self._every = console, every
+        self._text, self._pace, self._tally = "", Pace(), Tally()
+        self._last = time.monotonic()
+        self._lock, self._is_over = threading.Lock(), threading.Event()
+        self._thread = threading.Thread(target=self._live, name="mutabot-progress", daemon=True)
+
+    def stage(self, text: str, total: int | None = None) -> None:
+        """Print the stage's name."""
+        self._text, self._pace = text, Pace(total)
+        self._print(f"{text}: {total}" if total is not None else text)
+
+    def mutant_ended(self, end: MutantEnd) -> None:
+        """Count an outcome, and print a survivor."""
+        text = self._tally.add(end)
+        if text is not None:
+            self._print(text)
+
+    def advance(self, line: str | None = None) -> None:
+        """Count, and print how far it is if the last line about that is long enough ago."""
+        self._pace.advance()
+        if self._pace.done == self._pace.total or time.monotonic() - self._last >= self._every:
+            self._tell(line)
+
+    def note(self, text: str) -> None:
+        """Print a line."""
+        self._print(text)
+
+    def _tell(self, line: str | None = None) -> None:
+        self._last = time.monotonic()
+        pace = self._pace
+        of = "" if pace.total is None else f"/{pace.total}"
+        counts = self._tally.words or line
+        self._print(f"{self._text} {pace.done}{of}: {pace.words}{f' ({counts})' if counts else ''}")
+
+    def _live(self) -> None:
+        while not self._is_over.wait(self._every / 10):
+            if self._text and time.monotonic() - self._last >= self._every:
+                self._tell()
+
+    def _print(self, text: str) -> None:
+        with self._lock:
+            self._console.print(plain(text), soft_wrap=True)
+
+    def __enter__(self) -> Self:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self._is_over.set()
+        self._thread.join()
