@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from mutabot.report.sections import plural
+from mutabot.errors import plural
 
 from .drawing import FAINT, INK, PAPER, Picture, Rectangle, Words
 from .ends import End

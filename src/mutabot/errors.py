@@ -205,6 +205,11 @@ def in_short(names: Sequence[str], most: int = 3) -> str:
     return ", ".join(names[:most]) + more
 
 
+def plural(count: int, singular: str, several: str | None = None) -> str:
+    """Return ``1 mutant``, ``2 mutants``."""
+    return f"{count} {singular if count == 1 else several or singular + 's'}"
+
+
 def shortened(text: str, most: int = _SHOWN) -> str:
     """A text as a message shows it."""
     return text if len(text) <= most else f"{text[:most]}…"

@@ -19,6 +19,7 @@ from random import Random
 from typing import TYPE_CHECKING
 
 from mutabot.campaign.engines.engine import run_trials
+from mutabot.errors import plural
 from mutabot.model.graded import MagnitudeResult, bracket_of, seen
 
 if TYPE_CHECKING:
@@ -165,6 +166,7 @@ def run_ladders(
     whole = len(rounds) * sum(map(len, ladders.values()))
     runs = sum(len(row) for search in searches.values() for row in search.found.values())
     campaign.progress.note(
-        f"thresholds: {len(ladders)} ladders in {len(rounds)} rounds took {runs} runs; all their magnitudes "
+        f"thresholds: {plural(len(ladders), 'ladder')} in {plural(len(rounds), 'round')} took "
+        f"{plural(runs, 'run')}; all their magnitudes "
         f"would have taken {whole}"
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING
 
@@ -9,12 +10,16 @@ from mutabot.campaign.faults.providers import operators_of_packages
 from mutabot.errors import SelectionError
 from mutabot.faults import known_families
 from mutabot.languages.registry import program_files
-from mutabot.model.mutant import Role, means_numbers
+from mutabot.model.mutant import Role, line_of, means_numbers
 from mutabot.model.selection import nothing_fits
 from mutabot.operators import registry
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from mutabot.campaign.request import Request
+
+_WILD = re.compile(r"[*?]")
 
 
 def refuse_typos(request: Request) -> None:
@@ -24,20 +29,30 @@ def refuse_typos(request: Request) -> None:
     names = [*registry.names(), *known_families(), *(role.value for role in Role)]
     mistakes = []
     for option, words in (("--only", request.only), ("--skip", request.skip)):
-        if unknown := [word for word in words if not _may_fit(word, files, names)]:
+        if unknown := [word for word in words if not _may_fit(word, files, names, request.root)]:
             mistakes.append(str(nothing_fits(option, unknown, [*names, *operators_of_packages(), *files])))
     if mistakes:
         raise SelectionError("\n".join(mistakes))
 
 
-def _may_fit(word: str, files: Sequence[str], names: Collection[str]) -> bool:
-    """Whether there may be such a mutant. What holds wild signs, numbers or a list is for the plan to say."""
+def _may_fit(word: str, files: Sequence[str], names: Collection[str], root: Path) -> bool:
+    """Whether there may be such a mutant. What numbers and lists mean is for the plan to say."""
     file, colon, _ = word.partition(":")
-    if means_numbers(word) or word.startswith("@") or {"*", "?"} & {*file}:
+    if means_numbers(word) or word.startswith("@"):
         return True
+    if wild := _WILD.search(file):  # ids and places begin with a file
+        before = file[: wild.start()]
+        return any(known.startswith(before) or before.startswith(known) for known in files)
     if not colon and (word in names or word in operators_of_packages()):
         return True
-    return any(_is_file(file, known) for known in files)
+    meant = [known for known in files if _is_file(file, known)]
+    lines = line_of(word)
+    return bool(meant) and (lines is None or any(lines[1].start <= _length(root / one) for one in meant))
+
+
+def _length(file: Path) -> int:
+    """The number of lines of a file."""
+    return file.read_bytes().count(b"\n") + 1
 
 
 def _is_file(word: str, file: str) -> bool:

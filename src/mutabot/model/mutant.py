@@ -305,6 +305,9 @@ def fits(pattern: str, mutant: Mutant) -> bool:
     line = line_of(pattern)
     if line is not None and _is_at(mutant, *line):
         return True
+    span = mutant.site.span
+    if any(is_like(pattern, f"{span.file}:{number}") for number in range(span.line, span.end_line + 1)):
+        return True
     names = (mutant.operator, mutant.family, mutant.site.role.value)
     file = mutant.site.span.file
     return (

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from mutabot.errors import in_short
+from mutabot.errors import in_short, plural
 from mutabot.frozen import frozen
 from mutabot.journal.records import RAN_OVER, REMARKS, SIMULATION, Repeated, Untested
 from mutabot.model import LeftOut, Mutant, Span, Verdict
@@ -318,11 +318,6 @@ def numbered(numbers: Sequence[int]) -> str:
     """Return ``mutants 1, 2 and 9 more``."""
     different = [str(number) for number in dict.fromkeys(numbers)]
     return f"mutant{'s' if len(different) > 1 else ''} {in_short(different, _NUMBERS)}"
-
-
-def plural(count: int, singular: str, several: str | None = None) -> str:
-    """Return ``1 mutant``, ``2 mutants``."""
-    return f"{count} {singular if count == 1 else several or singular + 's'}"
 
 
 def size_text(results: Results) -> str:

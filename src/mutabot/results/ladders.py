@@ -13,6 +13,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from enum import StrEnum
 
+from mutabot.errors import plural
 from mutabot.frozen import frozen
 from mutabot.model import By, Mutant, Outcome, Quantity, Verdict
 from mutabot.model.graded import OFFSET, Bracket, bracket_of, is_same, seen
@@ -291,7 +292,8 @@ class Ladder:
             return ""
         reasons = Counter(one.why_out for one in self.rounds)
         ranked = [
-            f"{reason} ({count} of {len(self.rounds)} rounds)" for reason, count in reasons.most_common()
+            f"{reason} ({count} of {plural(len(self.rounds), 'round')})"
+            for reason, count in reasons.most_common()
         ]
         return ranked[0].partition(" (")[0] if len(reasons) == 1 else "; ".join(ranked)
 

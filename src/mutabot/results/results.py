@@ -12,7 +12,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from mutabot.errors import SelectionError, UsageError, in_short, unknown_name_text
+from mutabot.errors import SelectionError, UsageError, in_short, plural, unknown_name_text
 from mutabot.frozen import frozen
 from mutabot.journal import records
 from mutabot.journal.files import is_written
@@ -322,7 +322,9 @@ class Results:
     @property
     def known(self) -> str:
         """``12 of 20 outcomes are known``."""
-        return f"{self.done} of {self.planned} outcomes are known"
+        return (
+            f"{self.done} of {plural(self.planned, 'outcome')} {'is' if self.planned == 1 else 'are'} known"
+        )
 
     @property
     def done(self) -> int:

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from mutabot.errors import unknown_name_text
+from mutabot.errors import plural, unknown_name_text
 from mutabot.families import GRADED
 from mutabot.model import Outcome, Verdict
 from mutabot.model.graded import Demand, MagnitudeResult, is_at_least, is_same, seen
@@ -83,7 +83,7 @@ def _never_noticed(ladder: Ladder) -> Iterator[str]:
     rounds = [one for one in ladder.counted if one.bracket.high is None]
     total = len(ladder.counted)
     for text, count in Counter(_never(ladder, one) for one in rounds).items():
-        yield f"{text} ({count} of {total} rounds)"
+        yield f"{text} ({count} of {plural(total, 'round')})"
 
 
 def _never(ladder: Ladder, one: LadderRound) -> str:

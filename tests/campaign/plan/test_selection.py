@@ -36,6 +36,8 @@ from tests.results.samples import BY_TO, LEFT_OUT, MUTANTS, NEGATE, NOISE, REVER
         ("tests/sensors.py:2", [NEGATE, NOISE]),
         ("sensors.py:2", [NEGATE, NOISE]),
         ("*.py:2", [SKIP, NEGATE, NOISE]),
+        ("mission.py:?", [REVERSE, SKIP, BY_TO]),
+        ("mission.py:3*", [REVERSE]),
     ],
 )
 def test_only_and_skip_take_ids_numbers_names_and_globs(word: str, chosen: list[object]) -> None:

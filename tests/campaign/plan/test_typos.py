@@ -40,6 +40,9 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
         ("progam", "program"),
         ("misson.py", "mission.py"),
         ("misson.py:2", "mission.py"),
+        ("misson*", ""),
+        ("misson.*:2", ""),
+        ("mission.py:20", "mission.py"),
         ("misson.py:run:arm.move_by#1:dx:reverse", "mission.py"),
         ("cel/", ""),
         ("", ""),
@@ -59,7 +62,7 @@ def test_what_can_fit_nothing_is_told_with_the_nearest(
     "word",
     [
         "3", "2-4", "1,3-9", "reverse", "robot", "program", "oracle", "mission.py",
-        "mission.py:2", "mission.py:1-3", "mission.py:20", "cell", "cell/", "cell/parts",
+        "mission.py:2", "mission.py:1-3", "mission.py:2*", "cell", "cell/", "cell/parts",
         "gripper.py", "gripper.py:1",
         "…/gripper.py:1", "*.py", "*:revers",
         "mission.py:run:*",

@@ -37,18 +37,18 @@ def test_a_pipe_gets_the_beginning_and_the_end_of_a_stage_and_little_between() -
 
 def test_a_pipe_is_told_the_time_left() -> None:
     out = io.StringIO()
-    with Lines(make_console(out), every=0.0) as progress:
-        progress.stage("mutants", 2)
-        progress.advance()
+    progress = Lines(make_console(out), every=0.0)
+    progress.stage("mutants", 2)
+    progress.advance()
     assert "mutants 1/2: 0:00 elapsed, 0:00 left" in out.getvalue()
 
 
 def test_the_time_left_is_not_guessed_from_the_first_few() -> None:
     out = io.StringIO()
-    with Lines(make_console(out), every=0.0) as progress:
-        progress.stage("mutants", 100)
-        for _ in range(10):
-            progress.advance()
+    progress = Lines(make_console(out), every=0.0)
+    progress.stage("mutants", 100)
+    for _ in range(10):
+        progress.advance()
     *first, last = out.getvalue().splitlines()[1:]
     assert not any("left" in line for line in first)
     assert last == "mutants 10/100: 0:00 elapsed, 0:00 left"
@@ -56,9 +56,9 @@ def test_the_time_left_is_not_guessed_from_the_first_few() -> None:
 
 def test_a_stage_of_unknown_length_only_counts() -> None:
     out = io.StringIO()
-    with Lines(make_console(out), every=0.0) as progress:
-        progress.stage("baseline")
-        progress.advance("round 1")
+    progress = Lines(make_console(out), every=0.0)
+    progress.stage("baseline")
+    progress.advance("round 1")
     assert out.getvalue().splitlines() == ["baseline", "baseline 1: 0:00 elapsed (round 1)"]
 
 

@@ -16,7 +16,7 @@ from itertools import takewhile
 from typing import TYPE_CHECKING
 
 from mutabot.campaign.request import FORK, REPLAY
-from mutabot.errors import in_short
+from mutabot.errors import in_short, plural
 from mutabot.execution.task import Task
 from mutabot.journal.records import ControlEnd
 from mutabot.model import Mutant, Outcome, Verdict
@@ -190,7 +190,7 @@ def _tell(campaign: Campaign, left: Unhandled) -> None:
         campaign.progress.note(f"{where}: {reason}; mutants there run in processes of their own")
     if left.apart:
         text = "that are active before any point at which they could be forked run in processes of their own"
-        campaign.progress.note(f"{len(left.apart)} mutants {text}")
+        campaign.progress.note(f"{plural(len(left.apart), 'mutant')} {text}")
     for note in left.notes:
         campaign.progress.note(note)
 

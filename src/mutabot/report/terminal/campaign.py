@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console, RenderableType
 from rich.text import Text
 
+from mutabot.errors import plural
 from mutabot.report.document import data_of
-from mutabot.report.sections import Section, plural, sections, size_text, skipped, untested
+from mutabot.report.sections import Section, sections, size_text, skipped, untested
 from mutabot.results.thresholds import Thresholds, amount, line_of, rounds_left_out, violations_in_words
 
 from .console import Breakable, below, heading, legend, letters, make_table, plain, print_section, short_place

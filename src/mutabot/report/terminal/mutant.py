@@ -9,8 +9,9 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from mutabot.errors import plural
 from mutabot.model.outcome import end_in_words
-from mutabot.report.sections import Section, between, plural
+from mutabot.report.sections import Section, between
 from mutabot.report.texts import acceptance_text, effect_text, telling
 from mutabot.results.divergence import numbers_text
 
