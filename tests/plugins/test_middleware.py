@@ -96,6 +96,56 @@ SITE = {
             return True
         """,
 }
+#: the same with a simulation of the bus, of which each message comes so many times
+SIMULATED = {
+    "toybus_mutabot/__init__.py": """
+        from mutabot.api.faults import Extension
+
+        EXTENSION = Extension(
+            interface=2,
+            middlewares={"toybus": "toybus_mutabot.hooks"},
+            environments={"toybus": "toybus_mutabot.environment"},
+            simulations={"toybus": "toybus_mutabot.simulation:InMemory"},
+        )
+        """,
+    "toybus_mutabot/simulation.py": """
+        from mutabot.api.processes import SimulatedMiddleware
+
+        class InMemory(SimulatedMiddleware):
+            name, title, real = "toybus", "a bus in memory", "the real bus"
+            clock = "toybus_mutabot.in_memory:Clock.advance"
+
+            def arguments(self, root, given, tables):
+                return ["-p", "toybus_mutabot.in_memory"]
+        """,
+    "toybus_mutabot/in_memory.py": """
+        import toybus
+
+        kept = []
+
+        class Clock:
+            now = 0.0
+
+            def advance(self):
+                self.now += 0.1
+                return self.now
+
+        clock = Clock()
+
+        def publish(topic, message):
+            clock.advance()
+            kept.append((topic, vars(message)))
+
+        def look(topic, callback):
+            came = TIMES * kept
+            kept.clear()
+            for name, fields in came:
+                if name == topic:
+                    callback(toybus.Message(**fields))
+
+        toybus.publish, toybus.look = publish, look
+        """,
+}
 PROJECT = {
     "mutabot.toml": """
         program = ["mission.py"]
@@ -135,6 +185,14 @@ PROJECT = {
             assert mission.run() == [0.25]
         """,
 }
+#: a test that passes however often a message comes
+LENIENT = """
+    import mission
+
+    def test_it_moves():
+        del mission.way[:]
+        assert mission.run()[-1] == 0.25
+    """
 #: the same in a process of its own
 IN_A_PROCESS = """
     import subprocess, sys
@@ -203,6 +261,25 @@ def test_its_messages_are_mutated(tests: str, operators: tuple[str, ...], site: 
     assert verdicts(mutabot(site, project, "run", *options)) == {
         name: end for name, end in ends.items() if name.endswith(operators)
     }
+
+
+@pytest.mark.parametrize(
+    ("times", "told"),
+    [
+        ("1", "over a bus in memory; the original ends there as over the real bus (1 test compared)."),
+        ("2", "over the real bus, not over a bus in memory: tests/test_mission.py::test_it_moves differs in"),
+    ],
+    ids=["alike", "otherwise"],
+)
+def test_its_simulation_is_used_if_the_original_ends_there_as_over_the_bus(
+    times: str, told: str, site: Path, project: Path
+) -> None:
+    written(site, {name: text.replace("TIMES", times) for name, text in SIMULATED.items()})
+    written(project, {"tests/test_mission.py": LENIENT})
+    done = mutabot(site, project, "check")
+    assert done.returncode == 0, done.stderr
+    assert f"The tests ran {told}" in " ".join(done.stdout.split())
+    assert "unused clock" not in " ".join(done.stdout.split())
 
 
 @pytest.mark.needs("init")

@@ -111,7 +111,10 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def seed_of(node: pytest.Item | pytest.Collector) -> int:
-    """The seed of a test, or of a class, module, package or session, in this round."""
+    """Return the seed of a test, or of a class, module, package or session, in this round.
+
+    It is a whole number of 32 bits; outside a campaign that of ``mutabot_seed``.
+    """
     seeded = _seeded(node.config)
     if seeded is not None:
         return seeded.seed_of(node_id(node))

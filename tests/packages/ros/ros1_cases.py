@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import pytest
@@ -11,6 +11,7 @@ import pytest
 from mutabot.model.answer import keep, restore
 from mutabot.model.events import Problem
 from mutabot_ros import _master
+from tests.packages.ros.both import CLOSE, GOAL, LEVEL, Making, places
 from tests.runtime.stage import Make, Stage, take_away
 
 rospy = pytest.importorskip("rospy")
@@ -43,28 +44,6 @@ PUBLISHING = """
         goal.unregister()
         return received[0].linear, message.linear
 """
-GOAL = """
-    [[operation]]
-    topic = "/cell/goal"
-    direction = "publish"
-    type = "geometry_msgs/Twist"
-    fields."linear.y" = { kind = "translation", axis = "y", unit = "m", mode = "by" }
-"""
-CLOSE = """
-    [[operation]]
-    service = "/cell/gripper/close"
-    type = "std_srvs/SetBool"
-    request.data = { kind = "opening", values = [false, true] }
-    response.success = { kind = "flag" }
-"""
-LEVEL = """
-    [[operation]]
-    topic = "/line/level"
-    direction = "receive"
-    fields.data = { kind = "distance", unit = "m" }
-"""
-
-Making = Callable[[str, str], Stage]
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -96,12 +75,6 @@ def closing() -> Iterator[list[bool]]:
     service = rospy.Service("/cell/gripper/close", std_srvs.SetBool, close)
     yield asked
     service.shutdown("the case is over")
-
-
-def places(stage: Stage) -> set[tuple[str, str]]:
-    """What was seen, with the text of its lines."""
-    lines = (stage.folder / f"{stage.program_name}.py").read_text(encoding="utf-8").splitlines()
-    return {(seen.operation, lines[seen.span.line - 1].strip()) for seen in stage.sites()}
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import pytest
@@ -12,7 +12,8 @@ from mutabot.model.answer import keep, restore
 from mutabot.model.events import Problem
 from mutabot.model.job import Idle
 from mutabot.runtime.interception.trace import LOST
-from tests.runtime.stage import Make, Stage, take_away
+from tests.packages.ros.both import CLOSE, GOAL, LEVEL, Making, places
+from tests.runtime.stage import Make, take_away
 
 rclpy = pytest.importorskip("rclpy")
 std_srvs = pytest.importorskip("std_srvs.srv")
@@ -40,28 +41,6 @@ BEGIN = """
     def begin(name="mission"):
         return Node(name, namespace="/cell", enable_rosout=False, start_parameter_services=False)
 """
-GOAL = """
-    [[operation]]
-    topic = "/cell/goal"
-    direction = "publish"
-    type = "geometry_msgs/Twist"
-    fields."linear.y" = { kind = "translation", axis = "y", unit = "m", mode = "by" }
-"""
-CLOSE = """
-    [[operation]]
-    service = "/cell/gripper/close"
-    type = "std_srvs/SetBool"
-    request.data = { kind = "opening", values = [false, true] }
-    response.success = { kind = "flag" }
-"""
-LEVEL = """
-    [[operation]]
-    topic = "/line/level"
-    direction = "receive"
-    fields.data = { kind = "distance", unit = "m" }
-"""
-
-Making = Callable[[str, str], Stage]
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -104,12 +83,6 @@ def closing(serving: Any) -> list[bool]:
 
     serving.create_service(std_srvs.SetBool, "gripper/close", close)
     return asked
-
-
-def places(stage: Stage) -> set[tuple[str, str]]:
-    """What was seen, with the text of its lines."""
-    lines = (stage.folder / f"{stage.program_name}.py").read_text(encoding="utf-8").splitlines()
-    return {(seen.operation, lines[seen.span.line - 1].strip()) for seen in stage.sites()}
 
 
 PUBLISHING = """

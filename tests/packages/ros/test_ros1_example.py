@@ -5,7 +5,6 @@ from __future__ import annotations
 import shutil
 import subprocess
 import sys
-from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -13,11 +12,10 @@ import pytest
 from campaign.project import run
 from mutabot.model import Verdict
 
+from .both import needs_ros1
+
 EXAMPLE = Path(__file__).parents[3] / "examples" / "ros1"
-pytestmark = pytest.mark.skipif(
-    find_spec("rospy") is None or find_spec("rosmaster") is None,
-    reason="no rospy: install Debian's python3-rospy and python3-rosmaster",
-)
+pytestmark = needs_ros1
 
 #: verdict, with the reason why it must be this one
 EXPECTED = {

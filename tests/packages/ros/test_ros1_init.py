@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import textwrap
-from importlib.util import find_spec
 from pathlib import Path
-
-import pytest
 
 from mutabot.config.vocabulary import load_vocabulary
 from mutabot_init.propose import propose
+
+from .both import needs_ros1
 
 DRIVER = """
     import rospy
@@ -91,10 +90,7 @@ TESTS = """
 """
 
 
-@pytest.mark.skipif(
-    find_spec("rospy") is None or find_spec("rosmaster") is None,
-    reason="no rospy: install Debian's python3-rospy and python3-rosmaster",
-)
+@needs_ros1
 def test_what_a_node_of_ros_1_does_is_proposed_by_name(tmp_path: Path) -> None:
     files = {"driver.py": DRIVER, "robot.py": ROBOT, "mission.py": MISSION, "tests/test_it.py": TESTS}
     for name, text in files.items():

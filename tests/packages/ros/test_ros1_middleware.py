@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 
-from tests.campaign.project import run, write_project
+from tests.campaign.project import write_project
+
+from .both import CONFIGURATION, MASTER, check_faults_of_the_middleware, needs_ros1
 
 MISSION = '''
     """Sends four targets, one after the other: the next one when the last is reached."""
@@ -49,11 +50,8 @@ MISSION = '''
         main()
 '''
 TESTS = """
-    import os
-    import socket
     import subprocess
     import sys
-    import time
 
     import pytest
     import rospy
@@ -61,23 +59,9 @@ TESTS = """
     from std_msgs.msg import Float64
 
     @pytest.fixture(scope="session", autouse=True)
-    def graph(tmp_path_factory):
-        port = 32000 + os.getpid() % 700  # none that the system gives to connections
-        os.environ["ROS_MASTER_URI"] = f"http://127.0.0.1:{port}"
-        os.environ["ROS_LOG_DIR"] = str(tmp_path_factory.mktemp("ros"))
-        code = "import rosmaster; rosmaster.rosmaster_main()"
-        master = subprocess.Popen([sys.executable, "-c", code, "--core", "-p", str(port)])
-        while True:
-            with socket.socket() as probe:
-                if probe.connect_ex(("127.0.0.1", port)) == 0:
-                    break
-            time.sleep(0.01)
+    def graph(master):
         rospy.init_node("tests", disable_rosout=True, disable_signals=True)
         rospy.set_param("/step", 0.25)
-        yield
-        master.kill()
-        master.wait()
-
 
     def test_all_targets_are_reached_in_order():
         got = []
@@ -109,11 +93,6 @@ VOCABULARY = """
     [[operation]]
     parameter = "/step"
 """
-CONFIGURATION = """
-    program = ["mission.py"]
-    vocabulary = ["robot.toml"]
-    pytest_args = ["-o", "pythonpath=.", "-W", "default"]
-"""
 #: what becomes of each, and what of its kill says why
 WANTED = {
     "target.publish#1:call:drop=every-3rd": ("killed", "assert 1 == 0"),
@@ -128,21 +107,11 @@ WANTED = {
 }
 
 
-@pytest.mark.skipif(
-    find_spec("rospy") is None or find_spec("rosmaster") is None,
-    reason="no rospy: install Debian's python3-rospy and python3-rosmaster",
-)
+@needs_ros1
 @pytest.mark.whole
 def test_faults_of_the_middleware_act_in_the_node_and_the_suite_notices_those_it_checks(
     tmp_path: Path,
 ) -> None:
-    write_project(tmp_path, MISSION, TESTS, vocabulary=VOCABULARY, configuration=CONFIGURATION)
-    only = tuple(f"*:{name}" for name in WANTED)
-    found = run(tmp_path, families=("middleware",), only=only, rounds=1)
-    ends = {name.split(":", 2)[2]: one for name, one in found.items()}
-    assert {name: str(one.verdict) for name, one in ends.items()} == {
-        name: verdict for name, (verdict, _) in WANTED.items()
-    }
-    for name, one in ends.items():
-        assert one.acted, name
-        assert WANTED[name][1] in (one.message or ""), name
+    more = {"conftest.py": MASTER}
+    write_project(tmp_path, MISSION, TESTS, vocabulary=VOCABULARY, configuration=CONFIGURATION, more=more)
+    check_faults_of_the_middleware(tmp_path, WANTED)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -11,6 +10,8 @@ from mutabot.campaign.run import run_campaign
 from mutabot.journal.journal import Journal
 from mutabot.model import Role, Verdict
 from tests.campaign.project import Quiet, request_for, write_project
+
+from .both import needs_ros1
 
 DRIVER = '''
     """Goes where it is told, tells where it is, and refuses by data."""
@@ -122,10 +123,7 @@ CONFIGURATION = """
 """
 
 
-@pytest.mark.skipif(
-    find_spec("rospy") is None or find_spec("rosmaster") is None,
-    reason="no rospy: install Debian's python3-rospy and python3-rosmaster",
-)
+@needs_ros1
 @pytest.mark.whole
 def test_a_vocabulary_of_names_is_enough_for_nodes_in_processes_of_their_own(tmp_path: Path) -> None:
     write_project(

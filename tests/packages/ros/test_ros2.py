@@ -9,36 +9,22 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from importlib.util import find_spec
 from pathlib import Path
-
-import pytest
 
 from ros2_domain import domain
 
-ROOT = Path(__file__).parents[3]
+from .both import needs_ros2, run_cases
 
 
-@pytest.mark.skipif(find_spec("rclpy") is None, reason="no ROS 2: pip install -r requirements-ros2.lock")
+@needs_ros2
 def test_every_case_holds_over_a_real_middleware() -> None:
-    asked = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-W", "default"]
     with domain() as number:
-        ours = {
+        environment = {
             "ROS_DOMAIN_ID": str(number),
             "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
             "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4",
-            "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1",
         }
-        done = subprocess.run(
-            [*asked, "tests/packages/ros/ros2_cases.py"],
-            cwd=ROOT,
-            env={**os.environ, **ours},
-            capture_output=True,
-            text=True,
-            timeout=200,
-            check=False,
-        )
-    assert done.returncode == 0, done.stdout + done.stderr
+        run_cases("ros2_cases.py", 200.0, environment)
 
 
 _NODE = """
@@ -57,7 +43,7 @@ rclpy.shutdown()
 """
 
 
-@pytest.mark.skipif(find_spec("rclpy") is None, reason="no ROS 2: pip install -r requirements-ros2.lock")
+@needs_ros2
 def test_workers_have_domains_of_their_own_and_share_no_memory(tmp_path: Path) -> None:
     environment = {key: value for key, value in os.environ.items() if not key.startswith(("ROS_", "FAST"))}
     nodes = [

@@ -15,10 +15,10 @@ import pytest
 
 from ros2_domain import domain
 
+from .both import needs_ros2
+
 EXAMPLE = Path(__file__).parents[3] / "examples" / "ros2_docking"
-needs_ros = pytest.mark.skipif(
-    find_spec("rclpy") is None, reason="no ROS 2: pip install -r requirements-ros2.lock"
-)
+pytestmark = needs_ros2
 
 
 @pytest.fixture
@@ -41,7 +41,6 @@ def run_suite(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]
         )
 
 
-@needs_ros
 @pytest.mark.whole
 def test_the_program_passes_its_tests(example: Path) -> None:
     done = run_suite(example)
@@ -49,7 +48,6 @@ def test_the_program_passes_its_tests(example: Path) -> None:
 
 
 @pytest.mark.whole
-@needs_ros
 def test_a_robot_that_drives_the_wrong_way_is_noticed(example: Path) -> None:
     program = example / "docking.py"
     text = program.read_text()
@@ -68,7 +66,6 @@ RACE = (
 SEED = 5
 
 
-@needs_ros
 @pytest.mark.skipif(find_spec("greenlet") is None, reason="the simulation needs greenlet")
 @pytest.mark.usefixtures("plugins")
 @pytest.mark.whole

@@ -6,7 +6,6 @@ import os
 import shutil
 import subprocess
 import sys
-from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -15,9 +14,9 @@ from campaign.project import run
 from mutabot.model import Verdict
 from ros2_domain import domain
 
-pytestmark = pytest.mark.skipif(
-    find_spec("rclpy") is None, reason="no ROS 2: pip install -r requirements-ros2.lock"
-)
+from .both import needs_ros2
+
+pytestmark = needs_ros2
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "ros2"
 

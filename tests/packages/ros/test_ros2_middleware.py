@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.campaign.project import run, write_project
+from tests.campaign.project import write_project
 
-pytest.importorskip("rclpy", reason="no ROS 2 in this environment (requirements-ros2.lock)")
+from .both import CONFIGURATION, check_faults_of_the_middleware, needs_ros2
 
 MISSION = '''
     """Sends four targets, one after the other: the next one when the last is reached."""
@@ -142,11 +142,6 @@ VOCABULARY = """
     [[operation]]
     parameter = "step"
 """
-CONFIGURATION = """
-    program = ["mission.py"]
-    vocabulary = ["robot.toml"]
-    pytest_args = ["-o", "pythonpath=.", "-W", "default"]
-"""
 #: what becomes of each, and what of its kill says why
 WANTED = {
     "self.get_parameter#1:value:use-default": ("killed", "[0.5, 1.0, 1.5, 2.0]"),
@@ -159,17 +154,10 @@ WANTED = {
 }
 
 
+@needs_ros2
 @pytest.mark.whole
 def test_faults_of_the_middleware_act_in_the_node_and_the_suite_notices_those_it_checks(
     tmp_path: Path,
 ) -> None:
     write_project(tmp_path, MISSION, TESTS, vocabulary=VOCABULARY, configuration=CONFIGURATION)
-    only = tuple(f"*:{name}" for name in WANTED)
-    found = run(tmp_path, families=("middleware",), only=only, rounds=1, engine="replay")
-    ends = {name.split(":", 2)[2]: one for name, one in found.items()}
-    assert {name: str(one.verdict) for name, one in ends.items()} == {
-        name: verdict for name, (verdict, _) in WANTED.items()
-    }
-    for name, one in ends.items():
-        assert one.acted, name
-        assert WANTED[name][1] in (one.message or ""), name
+    check_faults_of_the_middleware(tmp_path, WANTED, engine="replay")

@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
-from textwrap import dedent
 
 import pytest
 
-from mutabot.campaign.run import run_campaign
-from mutabot.model import Outcome, Verdict
-from tests.campaign.outside import killer
-from tests.campaign.project import Quiet, outcomes, request_for, write_project
+from mutabot.model import Verdict
+from tests.campaign.project import write_project
 
-pytest.importorskip("rclpy", reason="no ROS 2 in this environment (requirements-ros2.lock)")
+from .both import (
+    CONFIGURATION,
+    End,
+    check_that_a_driver_that_does_not_come_up_kills_no_mutant,
+    check_that_a_node_killed_from_outside_kills_no_mutant,
+    end_with_driver,
+    needs_ros2,
+)
+
+pytestmark = needs_ros2
 
 #: it calls its arm many times more than the queue holds, before the one target that counts
 MISSION = """
@@ -103,65 +111,42 @@ VOCABULARY = """
     type = "std_msgs/Float64"
     fields.data = { kind = "position", axis = "x", unit = "m", noise = 0.1 }
 """
-CONFIGURATION = """
-    program = ["mission.py"]
-    vocabulary = ["robot.toml"]
-    pytest_args = ["-o", "pythonpath=.", "-W", "default"]
-"""
 #: the target that counts, in the direction that is looked at, and in one that nobody looks at
 LOOKED_AT, IGNORED = "*target.publish#2:x:reverse", "*target.publish#2:y:reverse"
 
 
-def end_of(
-    folder: Path, monkeypatch: pytest.MonkeyPatch, mutant: str, limit: int = 1000, drivers: int = 1
-) -> tuple[Outcome, list[str]]:
-    """How the mutant ends, and what the campaign told."""
-    tests = TESTS.format(drivers=drivers)
-    project = write_project(folder, MISSION, tests, vocabulary=VOCABULARY, configuration=CONFIGURATION)
-    (project / "driver.py").write_text(dedent(DRIVER))
-    starts = Path(f"/var/tmp/mutabot-{folder.name}-{id(folder)}")  # a place that no run keeps to itself
-    monkeypatch.setenv("STARTS", str(starts))
-    monkeypatch.setenv("LIMIT", str(limit))
-    progress = Quiet()
-    try:
-        request = request_for(project, only=(mutant,), rounds=1, jobs=1, fresh=True, engine="replay")
-        (found,) = outcomes(run_campaign(request, progress))
-    finally:
-        starts.unlink(missing_ok=True)
-    return found, progress.lines
+@pytest.fixture
+def end_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., End]:
+    """How a mutant ends where so many drivers are started."""
+
+    def write(mutant: str, drivers: int = 1) -> End:
+        tests = TESTS.format(drivers=drivers)
+        more = {"driver.py": DRIVER}
+        write_project(tmp_path, MISSION, tests, vocabulary=VOCABULARY, configuration=CONFIGURATION, more=more)
+        return partial(end_with_driver, tmp_path, monkeypatch, mutant, engine="replay")
+
+    return write
 
 
 @pytest.mark.whole
-def test_a_node_that_is_killed_from_outside_kills_no_mutant(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    with killer():
-        found, _ = end_of(tmp_path, monkeypatch, LOOKED_AT)
-    assert (found.verdict, found.acted) == (Verdict.ERROR, 1)
-    assert found.message == "the process /driver was killed from outside, by signal 9"
+def test_a_node_that_is_killed_from_outside_kills_no_mutant(end_of: Callable[..., End]) -> None:
+    check_that_a_node_killed_from_outside_kills_no_mutant(end_of(LOOKED_AT))
 
 
 @pytest.mark.whole
-def test_a_driver_that_does_not_come_up_kills_no_mutant(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    # it comes up in the two runs of the baseline and in those of the two controls
-    found, _ = end_of(tmp_path, monkeypatch, LOOKED_AT, limit=4)
-    assert (found.verdict, found.acted) == (Verdict.UNSTABLE, 0)
-    assert (found.message or "").startswith("failed before the mutant changed anything")
+def test_a_driver_that_does_not_come_up_kills_no_mutant(end_of: Callable[..., End]) -> None:
+    check_that_a_driver_that_does_not_come_up_kills_no_mutant(end_of(LOOKED_AT))
 
 
 def test_a_full_queue_kills_no_mutant_and_a_topic_without_messages_is_told(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    end_of: Callable[..., End],
 ) -> None:
-    found, lines = end_of(tmp_path, monkeypatch, IGNORED)
+    found, lines = end_of(IGNORED)(1000)
     assert (found.verdict, found.acted) == (Verdict.SURVIVED, 1)
     assert any("no test received anything on /nothing" in line for line in lines)
 
 
 @pytest.mark.whole
-def test_with_two_nodes_of_one_name_the_tests_judge_as_ever(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    found, _ = end_of(tmp_path, monkeypatch, IGNORED, drivers=2)
+def test_with_two_nodes_of_one_name_the_tests_judge_as_ever(end_of: Callable[..., End]) -> None:
+    found, _ = end_of(IGNORED, drivers=2)(1000)
     assert (found.verdict, found.acted) == (Verdict.SURVIVED, 1)
