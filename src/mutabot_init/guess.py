@@ -58,6 +58,8 @@ _RANGES = (
 _SCALED = frozenset({"speed", "acceleration", "angle", "force", "torque"})
 #: where a scale without a unit ends: a fraction, or so many bits
 _TOPS = (1.0, 127.0, 255.0, 1023.0, 4095.0)
+#: how docstrings tell that a number counts
+_COUNT = re.compile(r"\b(?:number of|steps|samples|iterations|points)\b", re.IGNORECASE)
 #: how the line of another argument begins
 _NEXT = re.compile(r"\s*(?:[:@]|[-*] |\w+\s*(?:\([^)]*\))?:|$)")
 #: more different numbers than these are no settings, but a scale
@@ -158,8 +160,8 @@ def _by_verb(noun: str, stem: str, setting: NameContext) -> Motion | None:
     verb, subject = first(VERBS, setting.words), noun_of(setting.words)
     is_axis = _AXIS.fullmatch(stem) is not None
     is_vector = len({"x", "y", "z", "dx", "dy", "dz"} & setting.names) > 1
-    if (noun in ("generic", "") or is_axis) and subject in SUBJECTS and verb is None and not is_vector:
-        return KINDS[subject][0], stem if is_axis and stem != "x" else None, None
+    if (noun in ("generic", "") or is_axis) and subject in SUBJECTS and verb is None:
+        return KINDS[subject][0], stem if is_axis and (stem != "x" or is_vector) else None, None
     is_amount = noun in ("generic", "length", "angle") or is_axis
     axis = first(DIRECTIONS, setting.words)
     verb = verb or ("translation" if axis else None)
@@ -228,6 +230,8 @@ def measured(table: Table, dimension: str, unit: str | None, name: str, setting:
     if dimension in _SCALED and "percent" in units_in(about, "ratio"):
         asked = [f"the unit: {', '.join(said)}, or a ratio in percent?"] if said else []
         return Guess({**table, "unit": said[0]} if said else {"kind": "ratio", "unit": "percent"}, asked)
+    if dimension == "time" and _COUNT.search(about):
+        return Guess({**table, "unit": "s"}, ["a time, in which unit (s, ms), or a number of steps?"])
     limits = _documented_range(about, setting) if dimension in _SCALED else None
     if limits is not None and limits[1] in _TOPS[1:]:
         return Guess({"kind": "output", "range": limits})

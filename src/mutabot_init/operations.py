@@ -13,9 +13,26 @@ from typing import Any
 from .guess import Guess, NameContext, guess_argument, guess_elements, guess_reading
 from .layout import with_compared
 from .watched import Command, WatchedCallable, WatchedPart
-from .words import COMMANDS, GRIPPER, HOUSEKEEPING, OPPOSITES, READERS, REPLIES, SETUP, TALK, words_of
+from .words import (
+    CAMERAS,
+    COMMANDS,
+    GRIPPER,
+    HOUSEKEEPING,
+    OPPOSITES,
+    READERS,
+    REPLIES,
+    SETUP,
+    SIMULATORS,
+    STEPS,
+    SUBJECTS,
+    TALK,
+    noun_of,
+    words_of,
+)
 
 _REFUSAL = re.compile(r"refus|reach|limit|reject|range|unable|collision|violation", re.IGNORECASE)
+#: types of numbers; of those that are not finite no values are kept
+_NUMBERS = frozenset({"int", "float", "bool"})
 #: what tells where something is that a motion of this kind moves, and what kinds of readings tell that
 _MOVED = {"translation": "position", "rotation": "orientation"}
 _TOLD = {"position": "position", "orientation": "orientation", "angle": "orientation"}
@@ -58,6 +75,12 @@ class Proposal:
         return [name for name in self.call.raised if _REFUSAL.search(name.partition(":")[2])]
 
     @property
+    def is_clock(self) -> bool:
+        """Whether it looks like what lets a simulation go on by one step."""
+        words = {*words_of(self.call.owner), *words_of(self.target.partition(":")[0])}
+        return self.call.name in STEPS and not self.call.arguments and bool(SIMULATORS & words)
+
+    @property
     def is_reading(self) -> bool:
         """Whether it takes nothing that matters and answers something."""
         return bool(self.result) and not self.arguments and self.message is None
@@ -65,7 +88,12 @@ class Proposal:
     @property
     def is_operation(self) -> bool:
         """Whether it can be proposed as it is."""
-        if self.call.problem or (self.call.is_property and self.arguments) or _is_setup(self.call):
+        if (
+            self.is_clock
+            or self.call.problem
+            or (self.call.is_property and self.arguments)
+            or _is_setup(self.call)
+        ):
             return False
         if self.call.told_by and self.message == self.call.told_by and self.reads_by_name:
             return any(guess.table for _, guess in self.patterns)  # else nothing can be misread
@@ -76,7 +104,7 @@ class Proposal:
 
 def proposals(calls: Sequence[WatchedCallable], groups: Sequence[Sequence[Any]] = ()) -> list[Proposal]:
     """What becomes of calls; ``groups``: constants that the program compares one and the same thing with."""
-    found = [_proposal(call, groups) for call in calls if not _is_housekeeping(call)]
+    found = [_proposal(call, groups) for call in calls if not (_is_housekeeping(call) or _computes(call))]
     taken = {one.target: one for one in found if one.is_operation}
     for proposal in taken.values():
         proposal.is_taken = True
@@ -127,6 +155,12 @@ def _is_housekeeping(call: WatchedCallable) -> bool:
     return bool(words & HOUSEKEEPING) and ("is" in words or bool(REPLIES & set(words_of(call.owner))))
 
 
+def _computes(call: WatchedCallable) -> bool:
+    """Whether it makes or computes something of its arguments: the robot has no part in that."""
+    is_constructor = call.is_of_class and call.owner != "" and call.result.type == call.owner
+    return is_constructor or (call.only_computes and bool(call.arguments) and not _reads(call))
+
+
 def _is_setup(call: WatchedCallable) -> bool:
     words = set(words_of(call.name))
     return bool(SETUP & words) or {"pin", "mode"} <= words
@@ -134,7 +168,10 @@ def _is_setup(call: WatchedCallable) -> bool:
 
 def _is_command(call: WatchedCallable) -> bool:
     words = set(words_of(call.name))
-    return not (call.is_property or words & TALK or _reads(call)) and bool(words & COMMANDS)
+    is_picture = "grab" in words and bool(CAMERAS & {*words, *words_of(call.owner)})
+    if call.is_property or call.only_computes or is_picture:
+        return False
+    return not (words & TALK or _reads(call)) and bool(words & COMMANDS)
 
 
 def _reads(call: WatchedCallable) -> bool:
@@ -159,9 +196,12 @@ def _argument(name: str, part: WatchedPart, call: WatchedCallable) -> Iterator[t
     if part.length is not None:
         yield from guess_elements(part, own, setting, written=True).items()
         return
+    if not part.values and part.type not in _NUMBERS:
+        return  # an object of which no part is known
     if not is_whole:
         mode = ("to",) if not {"by", "relative"} & set(setting.words) else ()
-        words = (*setting.words, *words_of(name), *mode)
+        is_told = noun_of(setting.words) in SUBJECTS  # a velocity has parts that are velocities
+        words = (*setting.words, *(() if is_told else (*words_of(name), *mode)))
         doc = f"{part.doc}\n{setting.doc}"
         setting = replace(setting, words=words, doc=doc, annotation="", names=frozenset({"x", "y"}))
     guess = guess_argument(own, setting)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterator, Sequence
-from typing import Any
+from typing import Any, TypeGuard
 
 from .guess import Guess
 from .messages import DescribedPart, MessageEntry
@@ -15,6 +15,9 @@ from .watched import ANY, WatchedPart
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 #: the longest text that is shown as an example, and values of each part
 _LONGEST, _EXAMPLES = 60, 4
+#: notes that many operations may have
+_ON_MOCK = "  # seen on a mock or a fake that stands for it"
+_PLAIN = "  # it is left out and made twice; say what its values mean"
 _DONE = {
     "topic": "message", "service": "call", "action": "goal, feedback or result", "parameter": "reading",
     "timer": "tick", "rate": "turn", "tf": "reading",
@@ -30,14 +33,32 @@ def vocabulary_text(drafts: Sequence[Proposal | MessageEntry], program: Sequence
     texts = [
         (entry_text(one) if isinstance(one, MessageEntry) else operation_text(one), one) for one in drafts
     ]
-    blocks = [head, *(text for text, one in texts if one.is_taken)]
-    others = [_commented(text) for text, one in texts if not one.is_taken]
+    clocks = [_clock_line(one.target) for one in drafts if _is_clock(one)]
+    blocks = [head, *clocks, *(text for text, one in texts if one.is_taken)]
+    others = [_commented(text) for text, one in texts if not (one.is_taken or _is_clock(one))]
     if others:
         blocks.append(
             "# Also seen, but nothing shows what it means to the robot. For an operation, take the number\n"
             "# signs away and say what its arguments or its result mean."
         )
-    return "\n\n".join([*blocks, *others]) + "\n"
+    return _with_notes_once("\n\n".join([*blocks, *others]) + "\n")
+
+
+def _is_clock(draft: Proposal | MessageEntry) -> TypeGuard[Proposal]:
+    return isinstance(draft, Proposal) and draft.is_clock
+
+
+def _clock_line(target: str) -> str:
+    clock = f"{{ tick = {value_text(target)}, step = 0.01 }}"
+    return f"# clock = {clock}  # question: how many seconds of simulated time does each call take?"
+
+
+def _with_notes_once(text: str) -> str:
+    """The text in which each general note stands at its first line alone."""
+    for note in (_ON_MOCK, _PLAIN):
+        first, found, rest = text.partition(note)
+        text = f"{first}{found}{rest.replace(note, '')}"
+    return text
 
 
 def questions_in(text: str) -> int:
@@ -89,7 +110,7 @@ def operation_text(proposal: Proposal) -> str:
     lines += _subject(proposal)
     is_asked = not any(guess.is_sure for guess in [*proposal.arguments.values(), *proposal.result.values()])
     if proposal.is_plain:
-        lines.append("command = true  # it is left out and made twice; say what its values mean")
+        lines.append(f"command = true{_PLAIN}")
     elif proposal.is_operation and is_asked and proposal.message is None:
         lines.append("command = true")
     any_object = f"{ANY}."
@@ -112,7 +133,7 @@ def _subject(proposal: Proposal) -> Iterator[str]:
     """What is called."""
     call = proposal.call
     is_any = call.target.startswith(ANY)
-    why = "  # seen on a mock or a fake that stands for it" if call.stands_in and not is_any else ""
+    why = _ON_MOCK if call.stands_in and not is_any else ""
     if is_any:
         yield f"method = {value_text(call.name)}  # of any object: the tests stand in for the robot"
     else:

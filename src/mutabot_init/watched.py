@@ -75,6 +75,8 @@ class WatchedCallable:
         own: whether the program itself defines it.
         doc, owner, owner_doc: its docstring, its class, and that class's docstring.
         is_property: whether it is read like an attribute.
+        is_of_class: whether it is a method of its class, and not of its objects.
+        only_computes: whether its text shows that it changes nothing.
         signature: its arguments as a vocabulary writes them; empty if nothing tells them.
         is_documented: whether only a docstring tells the signature.
         annotations: types of the arguments as written, in their order.
@@ -98,6 +100,8 @@ class WatchedCallable:
     owner: str = ""
     owner_doc: str = ""
     is_property: bool = False
+    is_of_class: bool = False
+    only_computes: bool = False
     signature: str = ""
     is_documented: bool = False
     annotations: dict[str, str] = field(default_factory=dict)

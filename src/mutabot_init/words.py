@@ -51,8 +51,8 @@ MODES = _by_word(
 )
 #: callables that make the robot do something, and those that only read
 COMMANDS = _words(
-    "home park move movej movel movep movec go goto pick place grasp grip release open close wait "
-    "sleep stop lift lower raise drop rotate turn translate attach detach push start feed insert "
+    "home park move movej movel movep movec go goto pick place grasp grip grab release open close lock "
+    "unlock wait sleep stop lift lower raise drop rotate turn translate attach detach push start feed insert "
     "press screw weld dock undock servo servoj servol speedj speedl step write jog drive set send "
     "command enable disable ptp lin calibrate takeoff land fly up down left right forward "
     "forwards back backward backwards curve flip clockwise counterclockwise on off toggle blink "
@@ -63,12 +63,17 @@ READERS = _words(
 )
 #: what is made ready before the robot does anything, and the clock of a simulator
 SETUP = _words("create connect disconnect load make init initialize configure simulation reset safety")
+#: what lets a simulation go on, and what has such a clock
+STEPS = _words("step tick advance stepSimulation step_simulation")
+SIMULATORS = _words("sim simulation simulator world physics scene engine")
 TALK = _words("log print say show info warn warning debug error display")
 #: predicates of replies and of connections, which no sensor reads
 HOUSEKEEPING = _words("error ok success connected alive valid failed exception")
 REPLIES = _words("response reply result error exception future pdu packet message status")
 #: what a person moves, and not the robot
 INPUTS = _words("joystick gamepad stick xbox keyboard mouse")
+#: what takes pictures: it grabs no part
+CAMERAS = _words("camera cam video capture frame picture image")
 GRIPPER = _words("gripper grip hand finger fingers claw jaw vacuum suction suck grasp grasping hande robotiq")
 OUTPUT = _words("output outputs digital signal valve relay lamp coil io do out led gpio solenoid")
 
@@ -107,8 +112,8 @@ NOUNS = _by_word(
         "generic": "value val command cmd setpoint data",
         "action": "action actions act ctrl",
         "none": "boot stamp timestamp mask rate axis code status err errno id index idx port channel "
-        "timeout name mode number num count blocking radius gain gains limit limits size rgb "
-        "lookahead key flag flags tolerance tolerances threshold epsilon unit units",
+        "timeout name mode number num count steps samples iterations n blocking radius gain gains limit "
+        "limits size rgb lookahead key flag flags tolerance tolerances threshold epsilon unit units",
     }
 )
 #: what a setter may be about, whatever its argument is called
@@ -126,7 +131,11 @@ _LENGTHS = {
     "cm": r"cm|(?i:centimet(?:er|re)s?)",
     "m": r"m|(?i:met(?:er|re)s?)",
 }
-_ANGLES = {"deg": r"(?i:deg|degrees?)|°", "rad": r"(?i:rad|radians?)"}
+#: degrees of freedom, and those of motion, are no unit
+_ANGLES = {
+    "deg": r"(?i:deg|degrees?)(?![\s-]+of[\s-]+(?:\w+[\s-]+)?(?i:freedom|motion|mobility))|°",
+    "rad": r"(?i:rad|radians?)",
+}
 _PER_SECOND = r"(?:\s*/\s*s(?:ec(?:ond)?s?)?|\s+per\s+second)"
 _SQUARED = r"\s*/\s*s(?:ec)?\s*(?:\^2|²|\*\*2|2|/\s*s(?:ec)?)"
 #: how docstrings and names write each unit; what is longer comes first

@@ -17,6 +17,7 @@ from typing import Any
 
 from mutabot.api.values import parse_signature, resolve
 from mutabot_init.watched import ANY, WatchedCallable
+from mutabot_init.watching.effects import only_computes
 
 #: what pybind11 writes for a default that is no literal, in front of each overload, and of arguments
 _OBJECT, _OVERLOAD = re.compile(r"<[^<>]*>"), re.compile(r"^\s*\d+\. ", re.MULTILINE)
@@ -154,6 +155,8 @@ def described(callee: Callee, *, of_tests: bool, own: bool) -> WatchedCallable:
         owner=owner.__name__ if owner is not None else "",
         owner_doc=(owner.__doc__ or "")[:1500] if owner is not None else "",
         is_property=isinstance(callee.raw, property | functools.cached_property),
+        is_of_class=isinstance(callee.raw, classmethod | staticmethod),
+        only_computes=not callee.stands_in and only_computes(callee.raw, owner),
         signature=spell_signature(signature) if signature is not None else "",
         is_documented=callee.is_documented,
         annotations={one.name: _written(one.annotation) for one in parameters if one.name != "self"},

@@ -20,6 +20,8 @@ _LARGEST = 4096
 _MOST_FIELDS = 12
 #: messages that mean something only as a whole
 _WHOLE = frozenset({"geometry_msgs/Quaternion"})
+#: properties that are parts of a vector or a pose
+_COORDINATES = ("x", "y", "z", "w", "roll", "pitch", "yaw", "theta")
 #: what is worth a look in objects of a package written in C
 _OF_NATIVE = {"MjData": ("ctrl",)}
 
@@ -132,6 +134,8 @@ def _names(value: Any) -> tuple[str, ...]:
     if kind.__name__ in _OF_NATIVE:
         return _OF_NATIVE[kind.__name__]
     names: Any = getattr(kind, "_fields", None)  # the type's: a mock has any attribute
+    if names is None and any(hasattr(kind, name) for name in _COORDINATES):  # of a vector written in C
+        names = tuple(name for name in _COORDINATES if hasattr(kind, name))
     if names is None and (dataclasses.is_dataclass(value) or _is_record(value)):
         names = vars(value) if hasattr(value, "__dict__") else getattr(kind, "__slots__", ())
     return (names,) if isinstance(names, str) else tuple(names or ())

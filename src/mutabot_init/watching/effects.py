@@ -1,0 +1,186 @@
+"""Whether a function only computes: then calling it, or not, changes nothing on a robot."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import sys
+import textwrap
+from functools import cached_property
+from types import BuiltinFunctionType, FunctionType, ModuleType
+from typing import Any, TypeGuard
+
+#: functions that are followed from one
+_DEPTH = 6
+#: modules by which a program reaches what is outside it
+_OUTSIDE = frozenset(
+    {
+        "asyncio", "ctypes", "http", "io", "multiprocessing", "os", "requests", "select", "serial", "shutil",
+        "signal", "socket", "subprocess", "threading", "time", "urllib", "usb", "websocket", "zmq",
+    }
+)  # fmt: skip
+#: expressions that make an object
+_MAKING = (
+    ast.BinOp, ast.Dict, ast.DictComp, ast.JoinedStr, ast.List, ast.ListComp, ast.Set, ast.SetComp, ast.Tuple,
+)  # fmt: skip
+_EFFECTS = (
+    ast.Await,
+    ast.Yield,
+    ast.YieldFrom,
+    ast.Global,
+    ast.Nonlocal,
+    ast.Delete,
+    ast.AsyncFor,
+    ast.AsyncWith,
+)
+
+
+def only_computes(function: Any, owner: type | None = None) -> bool:
+    """Whether the text of a function shows that it computes what it returns, and does nothing else.
+
+    A function whose text is not there, that returns no computed value, that writes to its arguments or calls
+    what cannot be followed may do anything.
+    """
+    return _Function.of(function, owner, frozenset()).only_computes
+
+
+class _Function:
+    """The text of a function.
+
+    Args:
+        tree: its definition; None if there is no text.
+        names: the global names of its module.
+        owner: the class of its ``self``.
+        callers: the functions that call it here.
+    """
+
+    def __init__(self, tree: Any, names: dict[str, Any], owner: type | None, callers: frozenset[Any]) -> None:
+        self._tree, self._names, self._owner, self._callers = tree, names, owner, callers
+
+    @classmethod
+    def of(cls, function: Any, owner: type | None, callers: frozenset[Any]) -> _Function:
+        function = getattr(function, "__func__", function)
+        if isinstance(function, property | cached_property):
+            function = function.fget if isinstance(function, property) else function.func
+        function = inspect.unwrap(function) if callable(function) else function
+        try:
+            tree: Any = ast.parse(textwrap.dedent(inspect.getsource(function))).body[0]
+        except (OSError, TypeError, SyntaxError, IndexError):
+            tree = None
+        names = getattr(function, "__globals__", {})
+        return cls(tree if isinstance(tree, ast.FunctionDef) else None, names, owner, callers | {function})
+
+    @property
+    def only_computes(self) -> bool:
+        """Whether it returns what it computes, and does nothing else."""
+        if self._tree is None or len(self._callers) > _DEPTH:
+            return False
+        nodes = list(ast.walk(self._tree))
+        returned = [node.value for node in nodes if isinstance(node, ast.Return) and node.value is not None]
+        is_computed = any(not isinstance(one, ast.Constant) for one in returned)
+        return is_computed and self._uses_arguments(nodes) and self._has_no_effect(nodes)
+
+    def _uses_arguments(self, nodes: list[ast.AST]) -> bool:
+        """Whether it looks at what it is given; a stand-in for the robot does not."""
+        names = {node.arg for node in nodes if isinstance(node, ast.arg)} - {"self", "cls"}
+        return not names or any(isinstance(node, ast.Name) and node.id in names for node in nodes)
+
+    def _has_no_effect(self, nodes: list[ast.AST]) -> bool:
+        if any(isinstance(node, _EFFECTS) for node in nodes):
+            return False
+        if any(_root(node) not in self._own for node in nodes if _is_stored(node)):
+            return False
+        return all(self._is_harmless(node) for node in nodes if isinstance(node, ast.Call))
+
+    @cached_property
+    def _own(self) -> set[str]:
+        """Names of objects that are made in it, and not only looked up."""
+        made, others = set[str](), set[str]()
+        values = {id(node): node for node in ast.walk(self._tree) if isinstance(node, ast.Assign)}
+        for node in values.values():
+            for target in node.targets:
+                names = made if isinstance(target, ast.Name) and self._is_made(node.value) else others
+                names.update(one.id for one in ast.walk(target) if _is_bound(one))
+        assigned = {
+            id(one) for node in values.values() for target in node.targets for one in ast.walk(target)
+        }
+        others.update(one.id for one in ast.walk(self._tree) if _is_bound(one) and id(one) not in assigned)
+        return made - others
+
+    def _is_made(self, value: ast.expr) -> bool:
+        if isinstance(value, ast.Call):
+            found = self._found(value.func)
+            module = (getattr(found, "__module__", "") or "").partition(".")[0]
+            return isinstance(found, type) or module in _COMPUTING
+        return isinstance(value, _MAKING)
+
+    def _is_harmless(self, call: ast.Call) -> bool:
+        function, root = call.func, _root(call.func)
+        if root in self._own:
+            return True
+        if isinstance(function, ast.Name) and root == "cls":
+            return True  # an object is made
+        if isinstance(function, ast.Attribute) and root in ("self", "cls") and self._owner is not None:
+            found = inspect.getattr_static(self._owner, function.attr, None)
+            return isinstance(function.value, ast.Name) and self._may_be_called(found, self._owner)
+        if root is None or (root not in self._names and not hasattr(_builtins(), root)):
+            return isinstance(function, ast.Attribute) and function.attr in _METHODS
+        return self._may_be_called(self._found(function), None)
+
+    def _may_be_called(self, found: Any, owner: type | None) -> bool:
+        if isinstance(found, type):
+            return True  # an object is made
+        if getattr(found, "__func__", found) in self._callers:
+            return True
+        module = (getattr(found, "__module__", "") or "").partition(".")[0]
+        if module in _OUTSIDE or found in _WRITING:
+            return False
+        if isinstance(found, BuiltinFunctionType) or module in _COMPUTING or module == "builtins":
+            return True
+        is_text = isinstance(found, FunctionType | staticmethod | classmethod | property)
+        return is_text and _Function.of(found, owner, self._callers).only_computes
+
+    def _found(self, node: ast.expr) -> Any:
+        """What a name, or attributes of one, stand for now."""
+        if isinstance(node, ast.Name):
+            return self._names.get(node.id, getattr(_builtins(), node.id, None))
+        if isinstance(node, ast.Attribute):
+            holder = self._found(node.value)
+            is_known = isinstance(holder, ModuleType | type)
+            return inspect.getattr_static(holder, node.attr, None) if is_known else None
+        return None
+
+
+#: libraries that compute
+_COMPUTING = frozenset(
+    {"math", "cmath", "numpy", "scipy", "itertools", "functools", "operator", "copy", "statistics"}
+)
+#: built-in functions that do more than compute
+_WRITING = (print, open, input, setattr, delattr, exec, eval)
+#: methods of numbers, arrays and texts that compute
+_METHODS = frozenset(
+    {
+        "astype", "conjugate", "copy", "count", "dot", "endswith", "flatten", "format", "get", "index", "inv",
+        "item", "items", "join", "keys", "lower", "max", "mean", "min", "ravel", "reshape", "split",
+        "startswith", "strip", "sum", "tolist", "transpose", "upper", "values",
+    }
+)  # fmt: skip
+
+
+def _builtins() -> ModuleType:
+    return sys.modules["builtins"]
+
+
+def _is_stored(node: ast.AST) -> bool:
+    return isinstance(node, ast.Attribute | ast.Subscript) and isinstance(node.ctx, ast.Store)
+
+
+def _is_bound(node: ast.AST) -> TypeGuard[ast.Name]:
+    return isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
+
+
+def _root(node: Any) -> str | None:
+    """The name at which attributes and items begin; None if they begin at another expression."""
+    while isinstance(node, ast.Attribute | ast.Subscript | ast.Starred):
+        node = node.value
+    return node.id if isinstance(node, ast.Name) else None
