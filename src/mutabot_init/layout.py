@@ -17,6 +17,9 @@ _SKIPPED = frozenset(
 _TEST_FOLDERS = ("tests", "test", "testing", "features")
 _NO_PROGRAMS = frozenset({"setup.py", "noxfile.py", "fabfile.py", "conftest.py", "__init__.py"})
 _MOST_FILES = 1000
+#: what stands at the top of a project
+_OF_PROJECTS = ("pyproject.toml", "setup.py", "setup.cfg", "pytest.ini", "tox.ini")
+NOTHING_WRITTEN = "nothing was written: `mutabot init` runs the tests to see what the program calls"
 #: words in a file's name that say "this is a robot program", where there is a choice
 _PROGRAM_NAMES = (
     "mission", "program", "main", "task", "job", "app", "process", "pick", "place", "pallet", "sort",
@@ -64,6 +67,30 @@ def look(root: Path, given: Sequence[Path]) -> Layout:
     others = [path for path in tests if path not in program]
     arguments = _arguments(root, tests)
     return Layout(root, program, others, arguments, guessed=not chosen)
+
+
+def refuse_mistakes(layout: Layout) -> None:
+    """Raise UsageError for a file of the program, or a conftest, that is no Python."""
+    for path in (*layout.program, *(one for one in layout.tests if one.name == "conftest.py")):
+        try:
+            ast.parse(path.read_bytes())
+        except SyntaxError as error:
+            raise UsageError(
+                f"{layout.relative(path)}:{error.lineno}: {error.msg}; {NOTHING_WRITTEN}"
+            ) from None
+        except (OSError, ValueError) as error:
+            raise UsageError(f"{layout.relative(path)}: {error}; {NOTHING_WRITTEN}") from None
+
+
+def project_above(folder: Path) -> Path:
+    """The folder of the project: this one, or if it has no tests the nearest above it that has a build file.
+
+    So ``mutabot init`` works in any folder of a project.
+    """
+    if any(_is_test_side(path.relative_to(folder)) for path in _python_files(folder)):
+        return folder
+    above = (one for one in folder.parents if any((one / name).is_file() for name in _OF_PROJECTS))
+    return next(above, folder)
 
 
 def imported_modules(path: Path) -> set[str]:

@@ -33,7 +33,7 @@ def watch(layout: Layout, limit: float = LIMIT) -> Observed[WatchedCalls]:
 
 def merged(processes: Iterable[WatchedCalls]) -> WatchedCalls:
     """One call for each callable and side, one use for each form, name and side, whichever process saw it."""
-    calls: dict[tuple[str, bool], WatchedCallable] = {}
+    calls: dict[tuple[str, bool, bool], WatchedCallable] = {}
     uses: dict[tuple[Any, ...], Use] = {}
     for seen in processes:
         for call in seen.calls:
@@ -43,9 +43,9 @@ def merged(processes: Iterable[WatchedCalls]) -> WatchedCalls:
     return WatchedCalls(list(calls.values()), list(uses.values()))
 
 
-def _add_call(calls: dict[tuple[str, bool], WatchedCallable], call: WatchedCallable) -> None:
+def _add_call(calls: dict[tuple[str, bool, bool], WatchedCallable], call: WatchedCallable) -> None:
     """Add what a process saw of a callable; the values are those of the first process that saw it."""
-    first = calls.setdefault((call.target, call.of_tests), call)
+    first = calls.setdefault((call.target, call.of_tests, call.is_set), call)
     if first is not call:
         first.leads_to_names |= call.leads_to_names
         first.sites = dict(Counter(first.sites) + Counter(call.sites))

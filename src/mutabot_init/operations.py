@@ -88,13 +88,11 @@ class Proposal:
     @property
     def is_operation(self) -> bool:
         """Whether it can be proposed as it is."""
-        if (
-            self.is_clock
-            or self.call.problem
-            or (self.call.is_property and self.arguments)
-            or _is_setup(self.call)
-        ):
+        if self.is_clock or self.call.problem or _is_setup(self.call):
             return False
+        if self.call.is_set:  # without a line that holds, an entry means what is read
+            is_sure = any(guess.is_sure for guess in self.arguments.values())
+            return is_sure or any(guess.table for _, guess in self.patterns)
         if self.call.told_by and self.message == self.call.told_by and self.reads_by_name:
             return any(guess.table for _, guess in self.patterns)  # else nothing can be misread
         sure = any(guess.is_sure for guess in [*self.arguments.values(), *self.result.values()])
@@ -105,6 +103,8 @@ class Proposal:
 def proposals(calls: Sequence[WatchedCallable], groups: Sequence[Sequence[Any]] = ()) -> list[Proposal]:
     """What becomes of calls; ``groups``: constants that the program compares one and the same thing with."""
     found = [_proposal(call, groups) for call in calls if not (_is_housekeeping(call) or _computes(call))]
+    assigned = {one.target for one in found if one.call.is_set and one.is_operation}
+    found = [one for one in found if one.call.is_set or one.target not in assigned]
     taken = {one.target: one for one in found if one.is_operation}
     for proposal in taken.values():
         proposal.is_taken = True
@@ -192,7 +192,7 @@ def _message(call: WatchedCallable) -> str | None:
 def _argument(name: str, part: WatchedPart, call: WatchedCallable) -> Iterator[tuple[str, Guess]]:
     is_whole = part.path == name
     setting = _setting(call, part, call.annotations.get(name, "") if is_whole else "")
-    own = part.name or name
+    own = part.name or (call.name if call.is_set else name)
     if part.length is not None:
         yield from guess_elements(part, own, setting, written=True).items()
         return

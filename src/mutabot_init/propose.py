@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -11,7 +12,15 @@ from tempfile import TemporaryDirectory
 from mutabot.api.reports import MutabotError, UsageError
 from mutabot.api.values import Vocabulary, load_vocabulary, shipped_vocabularies
 
-from .layout import Layout, compared_with, imported_modules, look
+from .layout import (
+    NOTHING_WRITTEN,
+    Layout,
+    compared_with,
+    imported_modules,
+    look,
+    project_above,
+    refuse_mistakes,
+)
 from .messages import MessageEntry, entries
 from .observe import LIMIT, merged, watch
 from .operations import Proposal, commands_of, proposals, tells_commands
@@ -19,6 +28,8 @@ from .text import counted, questions_in, value_text, vocabulary_text
 from .watched import ANY, WatchedCallable
 
 CONFIGURATION, VOCABULARY = "mutabot.toml", "robot.toml"
+#: what a test file tells that imports one that is no Python
+_MISTAKE = re.compile(r": (?:Syntax|Indentation|Tab)Error: ")
 #: vocabularies of environments that are reached through the wrappers of another one
 _BEHIND = {"metaworld": "gymnasium"}
 
@@ -97,8 +108,13 @@ class _Look:
 
     def __init__(self, root: Path, given: Sequence[Path], limit: float, tell: Callable[[str], None]) -> None:
         self.layout = look(root, given)
+        refuse_mistakes(self.layout)
         tell("running the tests once, to see what the program calls")
         self.run = watch(self.layout, limit)
+        mistake = next((one for one in self.run.problems if _MISTAKE.search(one)), None)
+        if mistake is not None and not self.run.outcomes:
+            collected, _, what = mistake.partition(": ")
+            raise UsageError(f"{what} (while pytest collects {collected}); {NOTHING_WRITTEN}")
         self.seen = merged(self.run.seen)
         self.program = [self.layout.relative(path) for path in self.layout.program]
         self.calls = without_doubles([call for call in self.seen.calls if call.sites])
@@ -188,9 +204,12 @@ def propose(
     without any they are guessed. The tests are run once, for ``limit`` seconds at most, to see what the
     program calls; ``tell`` is told before. No existing file is touched.
 
-    Raises UsageError if there is a configuration already, or no program.
+    Raises UsageError if there is a configuration already, no program, or a file that is no Python.
     """
-    root = root.resolve()
+    given = root.resolve()
+    root = project_above(given) if given.is_dir() else given
+    if root != given:
+        tell(f"project: {root}")
     _refuse_existing(root)
     found = _Look(root, program, limit, tell)
     text = found.text()

@@ -104,7 +104,8 @@ def _line(table: str, path: str, part: WatchedPart, guess: Guess | None) -> str:
 def operation_text(proposal: Proposal) -> str:
     """One ``[[operation]]``, with what is not known as comments."""
     call = proposal.call
-    lines = [f"[[operation]]  # seen: {counted(call.count, 'call')}, first at {next(iter(call.sites), '?')}"]
+    done = "assignment" if call.is_set or call.name == "__setitem__" else "call"
+    lines = [f"[[operation]]  # seen: {counted(call.count, done)}, first at {next(iter(call.sites), '?')}"]
     if call.problem:
         lines.append(f"# {call.problem}")
     lines += _subject(proposal)

@@ -75,6 +75,7 @@ class WatchedCallable:
         own: whether the program itself defines it.
         doc, owner, owner_doc: its docstring, its class, and that class's docstring.
         is_property: whether it is read like an attribute.
+        is_set: whether it is a property that is assigned.
         is_of_class: whether it is a method of its class, and not of its objects.
         only_computes: whether its text shows that it changes nothing.
         signature: its arguments as a vocabulary writes them; empty if nothing tells them.
@@ -100,6 +101,7 @@ class WatchedCallable:
     owner: str = ""
     owner_doc: str = ""
     is_property: bool = False
+    is_set: bool = False
     is_of_class: bool = False
     only_computes: bool = False
     signature: str = ""

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import os
 import re
 import signal
 import sys
@@ -160,7 +161,15 @@ app = typer.Typer(
 @app.callback()
 def options(
     context: typer.Context,
-    project: Annotated[Path, typer.Option("-C", "--project", metavar="FOLDER", help="The project.")] = Path(),
+    project: Annotated[
+        Path | None,
+        typer.Option(
+            "-C",
+            "--project",
+            metavar="FOLDER",
+            help="The project; by default this folder, or the nearest above it with a configuration.",
+        ),
+    ] = None,
     version: Version = False,
 ) -> None:
     """Mutation testing for robot programs: would your tests notice?"""
@@ -168,7 +177,24 @@ def options(
         raise UsageError(
             f"mutabot runs on Linux only; this is {sys.platform}: use a container or a virtual machine"
         )
-    context.obj = project
+    context.obj = project if project is not None else project_of(Path.cwd())
+
+
+def project_of(folder: Path) -> Path:
+    """The nearest project from this folder upwards, relative to it; this folder if there is none."""
+    above = (one for one in (folder, *folder.parents) if _is_project(one))
+    return Path(os.path.relpath(next(above, folder), folder))
+
+
+def _is_project(folder: Path) -> bool:
+    """Whether a folder has a configuration, or a journal."""
+    if any((folder / name).exists() for name in ("mutabot.toml", ".mutabot")):
+        return True
+    try:
+        text = (folder / "pyproject.toml").read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return False
+    return "[tool.mutabot" in text
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import time
 from typing import Any
 
@@ -15,6 +16,8 @@ from mutabot.runtime.targets.target import prepare
 
 #: least seconds between two writings of what was found so far
 _PAUSE = 2.0
+#: what a file that is no Python raises, and where a traceback says so
+_MISTAKE, _PLACE = re.compile(r"(?:Syntax|Indentation|Tab)Error: "), re.compile(r'File "([^"]+)", line (\d+)')
 #: problems that are kept
 _MOST_PROBLEMS = 20
 
@@ -29,15 +32,18 @@ class _ObservationHooks:
 
     def pytest_collectreport(self, report: Any) -> None:
         """A file that cannot be collected."""
-        if report.failed:
-            self._problems.append(f"{report.nodeid}: {_last_line(report.longreprtext)}")
+        self._note(report)
 
     def pytest_runtest_logreport(self, report: Any) -> None:
         """A phase of a test is over."""
-        if report.failed:
-            self._problems.append(f"{report.nodeid}: {_last_line(report.longreprtext)}")
+        self._note(report)
         if report.when == "call" or report.outcome != "passed":
             self._outcomes[report.nodeid] = report.outcome
+
+    def _note(self, report: Any) -> None:
+        problem = f"{report.nodeid}: {_last_line(report.longreprtext)}" if report.failed else ""
+        if problem and problem not in self._problems:
+            self._problems.append(problem)
 
     def pytest_runtest_logfinish(self) -> None:
         """A test is over: the run may be cut short in the next one."""
@@ -57,10 +63,12 @@ class _ObservationHooks:
 
 
 def _last_line(text: str) -> str:
-    """The line of a traceback that says what went wrong."""
+    """The line of a traceback that says what went wrong; for a mistake in a file, with its file and line."""
     lines = [line.strip().removeprefix("E").strip() for line in text.splitlines() if line.startswith("E ")]
     plain = [line.strip() for line in text.splitlines() if line.strip()]
-    return (lines or plain[-1:] or ["no message"])[-1][:300]
+    last = (lines or plain[-1:] or ["no message"])[-1][:300]
+    places = _PLACE.findall(text) if _MISTAKE.match(last) else []
+    return f"{os.path.relpath(places[-1][0])}:{places[-1][1]}: {last}" if places else last
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -83,6 +83,17 @@ class Observer(ABC):
         """The attribute ``name`` of ``receiver`` was read, and is ``found``."""
 
     @abstractmethod
+    def assigned(self, name: str, receiver: Any, values: Sequence[Any], caller: CallOrigin) -> None:
+        """An attribute or an item is about to be assigned.
+
+        Args:
+            name: the attribute's, or ``__setitem__``.
+            receiver: the object that has it.
+            values: the new value; of an item, its key and the new value.
+            caller: the assignment.
+        """
+
+    @abstractmethod
     def used(
         self, form: Form, name: str, caller: CallOrigin | None, written: Sequence[Any], *, is_callback: bool
     ) -> Callable[[Any], None] | None:
@@ -159,7 +170,10 @@ def questions(observer: Observer, locator: Locator) -> CallSites:
         observer.read(site.name, found, receiver, caller_of(site))
         return found
 
-    return CallSites(_PublicNames(), locator.role, called, hands=read, are_read=True)
+    def stored(site: CallSite, holder: Any, values: list[Any]) -> None:
+        observer.assigned(site.name, holder, values, caller_of(site))
+
+    return CallSites(_PublicNames(), locator.role, called, hands=read, are_read=True, stored=stored)
 
 
 class _PublicNames:

@@ -34,6 +34,7 @@ class Callee:
         owner: its class, or None.
         file: where its text stands; empty for a native one.
         stands_in: whether a mock or a fake was called in its place.
+        is_set: whether it is a property that is assigned.
     """
 
     target: str
@@ -41,6 +42,12 @@ class Callee:
     owner: type | None
     file: str
     stands_in: bool = False
+    is_set: bool = False
+
+    @property
+    def function(self) -> Any:
+        """What is called in the end."""
+        return self.raw.fset if self.is_set else _function(self.raw)
 
     @functools.cached_property
     def signature(self) -> inspect.Signature | None:
@@ -55,7 +62,7 @@ class Callee:
     @functools.cached_property
     def _told(self) -> tuple[inspect.Signature | None, bool]:
         try:
-            signature = inspect.signature(_function(self.raw))
+            signature = inspect.signature(self.function)
         except (TypeError, ValueError):
             documented = self._documented()
             return documented, documented is not None
@@ -127,6 +134,15 @@ def any_method(name: str, seen: Callee | None = None) -> Callee:
     )
 
 
+def assigned_by(value: Any, name: str) -> Callee | None:
+    """The property or ``__setitem__`` that an assignment to an object calls; None if it calls nothing."""
+    callee = method_of(type(value), name)
+    if name == "__setitem__" or callee is None:
+        return callee
+    is_set = isinstance(callee.raw, property) and callee.raw.fset is not None
+    return replace(callee, is_set=True) if is_set else None
+
+
 def function_of(found: Any, spelt: str = "") -> Callee | None:
     """A function by the name it has where it is defined, or as it is spelt."""
     if isinstance(found, MethodType):
@@ -145,7 +161,7 @@ def function_of(found: Any, spelt: str = "") -> Callee | None:
 
 def described(callee: Callee, *, of_tests: bool, own: bool) -> WatchedCallable:
     """A call with all that the callable says about itself."""
-    function, signature, owner = _function(callee.raw), callee.signature, callee.owner
+    function, signature, owner = callee.function, callee.signature, callee.owner
     parameters = signature.parameters.values() if signature is not None else ()
     return WatchedCallable(
         callee.target,
@@ -155,8 +171,9 @@ def described(callee: Callee, *, of_tests: bool, own: bool) -> WatchedCallable:
         owner=owner.__name__ if owner is not None else "",
         owner_doc=(owner.__doc__ or "")[:1500] if owner is not None else "",
         is_property=isinstance(callee.raw, property | functools.cached_property),
+        is_set=callee.is_set,
         is_of_class=isinstance(callee.raw, classmethod | staticmethod),
-        only_computes=not callee.stands_in and only_computes(callee.raw, owner),
+        only_computes=not callee.stands_in and only_computes(function, owner),
         signature=spell_signature(signature) if signature is not None else "",
         is_documented=callee.is_documented,
         annotations={one.name: _written(one.annotation) for one in parameters if one.name != "self"},

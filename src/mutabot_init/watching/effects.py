@@ -7,7 +7,7 @@ import inspect
 import sys
 import textwrap
 from functools import cached_property
-from types import BuiltinFunctionType, FunctionType, ModuleType
+from types import FunctionType, ModuleType
 from typing import Any, TypeGuard
 
 #: functions that are followed from one
@@ -60,8 +60,6 @@ class _Function:
     @classmethod
     def of(cls, function: Any, owner: type | None, callers: frozenset[Any]) -> _Function:
         function = getattr(function, "__func__", function)
-        if isinstance(function, property | cached_property):
-            function = function.fget if isinstance(function, property) else function.func
         function = inspect.unwrap(function) if callable(function) else function
         try:
             tree: Any = ast.parse(textwrap.dedent(inspect.getsource(function))).body[0]
@@ -135,9 +133,9 @@ class _Function:
         module = (getattr(found, "__module__", "") or "").partition(".")[0]
         if module in _OUTSIDE or found in _WRITING:
             return False
-        if isinstance(found, BuiltinFunctionType) or module in _COMPUTING or module == "builtins":
+        if module in _COMPUTING:
             return True
-        is_text = isinstance(found, FunctionType | staticmethod | classmethod | property)
+        is_text = isinstance(found, FunctionType | staticmethod | classmethod)
         return is_text and _Function.of(found, owner, self._callers).only_computes
 
     def _found(self, node: ast.expr) -> Any:
@@ -153,7 +151,18 @@ class _Function:
 
 #: libraries that compute
 _COMPUTING = frozenset(
-    {"math", "cmath", "numpy", "scipy", "itertools", "functools", "operator", "copy", "statistics"}
+    {
+        "math",
+        "cmath",
+        "numpy",
+        "scipy",
+        "itertools",
+        "functools",
+        "operator",
+        "copy",
+        "statistics",
+        "builtins",
+    }
 )
 #: built-in functions that do more than compute
 _WRITING = (print, open, input, setattr, delattr, exec, eval)

@@ -12,7 +12,7 @@ import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, is_dataclass, replace
 from fnmatch import fnmatchcase
 from functools import cache, cached_property, partial
 from types import ModuleType
@@ -24,6 +24,7 @@ from mutabot_init.watched import Command, Use, Values, WatchedCallable, WatchedC
 from mutabot_init.watching.callee import (
     Callee,
     any_method,
+    assigned_by,
     class_name,
     described,
     function_of,
@@ -52,6 +53,8 @@ _TELLING = frozenset(
 _TALKS = re.compile(r"(?:^|_)(?:read|write|get|set|send|publish)(?:_|$)", re.IGNORECASE)
 #: more commands than these, and longer texts, are no list of commands
 _MOST_COMMANDS, _LONGEST = 24, 60
+#: a larger key is the address of something, and no index
+_MOST_ELEMENTS = 255
 
 
 @dataclass(slots=True)
@@ -78,7 +81,7 @@ class Watch(Observer):
 
     def __init__(self, libraries: Sequence[str], is_test: Callable[[str], bool | None]) -> None:
         super().__init__(libraries, is_test)
-        self._seen: dict[tuple[str, bool], _Seen] = {}
+        self._seen: dict[tuple[str, bool, bool], _Seen] = {}
         self._method_of = cache(method_of)
         self._only_class = cache(_only_class)
         self._uses: dict[tuple[Form, str, bool, bool], Use] = {}
@@ -100,6 +103,14 @@ class Watch(Observer):
             seen = self._of(method_of(receiver, name), caller)
             if seen is not None and self._counts(seen, caller):
                 self._answer(seen, found)
+
+    def assigned(self, name: str, receiver: Any, values: Sequence[Any], caller: CallOrigin) -> None:
+        """Note what is assigned to a property, or to an item of what is no plain container."""
+        with suppress(Exception):  # as above
+            seen = self._of(assigned_by(receiver, name), caller)
+            if seen is not None and self._counts(seen, caller):
+                known = self._arguments(seen, tuple(values), {}, receiver)
+                _command(seen, receiver, known)
 
     def used(
         self, form: Form, name: str, caller: CallOrigin | None, written: Sequence[Any], *, is_callback: bool
@@ -158,7 +169,7 @@ class Watch(Observer):
         """What this side, program or tests, has seen of a callable; None for one that is no robot's."""
         if callee is None:
             return None
-        key = (callee.target, caller.is_test)
+        key = (callee.target, caller.is_test, callee.is_set)
         known = self._seen.get(key)
         if known is None or (known.callee.raw is None and callee.raw is not None):
             top = callee.target.partition(":")[0].partition(".")[0]
@@ -245,7 +256,7 @@ class Watch(Observer):
 
     def _call(self, seen: _Seen) -> WatchedCallable:
         """Return a callable with what it raised on either side: tests make robots refuse."""
-        sides = (self._seen.get((seen.call.target, of_tests)) for of_tests in (False, True))
+        sides = (self._seen.get((seen.call.target, of_tests, seen.call.is_set)) for of_tests in (False, True))
         raised = dict.fromkeys(
             name for side in (seen, *sides) if side is not None for name in side.call.raised
         )
@@ -294,34 +305,60 @@ def _command(seen: _Seen, instance: Any, values: Mapping[str, Any]) -> Command |
     call = seen.call
     if seen.has_no_commands:
         return None
-    by, text = _told_by(call.name, instance, values)
+    by, text, beside = _told_by(call, instance, values)
     if not by or call.told_by not in ("", by) or len(text) > _LONGEST or len(call.commands) > _MOST_COMMANDS:
         seen.has_no_commands, call.told_by = True, ""
         call.commands.clear()
         return None
     call.told_by = by
     command = call.commands.setdefault(text, Command())
-    for name, value in values.items():
-        if name != by:
-            look(command.arguments.setdefault(name, Values()), value, name)
+    for path, value in beside.items():
+        look(command.arguments.setdefault(path, Values()), value, path)
     return command
 
 
-def _told_by(name: str, instance: Any, values: Mapping[str, Any]) -> tuple[str, str]:
-    """Path and text of what tells a command apart; empty texts if nothing does."""
-    if not _TALKS.search(name):
-        return "", ""
-    for argument, value in values.items():
+#: what tells a command apart: its path and text, and the values beside it by their paths
+_Told = tuple[str, str, Mapping[str, Any]]
+
+
+def _told_by(call: WatchedCallable, instance: Any, values: Mapping[str, Any]) -> _Told:
+    """What tells a command apart; an empty path if nothing does."""
+    is_item = call.name == "__setitem__"
+    if not (is_item or call.is_set or _TALKS.search(call.name)):
+        return "", "", {}
+    for name, value in values.items():
+        beside = {other: one for other, one in values.items() if other != name}
+        if is_item:
+            return (name, str(value), beside) if _is_address(value) else ("", "", {})
         is_plain = isinstance(value, str | int) and not isinstance(value, bool)
-        if argument.lower() in _TELLING and (is_plain or _prints_itself(value)):
-            return argument, str(value)
-    return ("self", str(instance)) if _prints_itself(instance) else ("", "")
+        if name.lower() in _TELLING and (is_plain or _prints_itself(value)):
+            return name, str(value), beside
+        pair = _pair(name, value)
+        if pair is not None:
+            path, text, written = pair
+            return f"{path}[0]", text, {f"{path}[1]": written}
+    return ("self", str(instance), values) if _prints_itself(instance) else ("", "", {})
+
+
+def _is_address(key: Any) -> bool:
+    """Whether a key names a tag or an object, rather than an element of a list."""
+    return isinstance(key, str) or (type(key) is int and key > _MOST_ELEMENTS)
+
+
+def _pair(path: str, value: Any) -> tuple[str, str, Any] | None:
+    """The first pair of a name and what is written under it: its path, the name and the value."""
+    if not isinstance(value, tuple | list) or not value:
+        return None
+    if len(value) == 2 and isinstance(value[0], str) and not isinstance(value[1], str | tuple):
+        return path, value[0], value[1]
+    return _pair(f"{path}[0]", value[0])
 
 
 def _prints_itself(value: Any) -> bool:
     """Whether an object prints as a name of its own, as a node does by its id."""
-    own: Any = type(value).__str__
-    if value is None or own is object.__str__ or not hasattr(value, "__dict__"):
+    kind: Any = type(value)
+    prints = kind.__str__ is not object.__str__ or kind.__repr__ is not object.__repr__
+    if value is None or not prints or not hasattr(value, "__dict__") or is_dataclass(value):
         return False
     text = str(value)
     return "\n" not in text and " object at " not in text

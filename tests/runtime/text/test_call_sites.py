@@ -199,3 +199,45 @@ def test_messages_of_pytest_stay_as_they_are(tmp_path: Path) -> None:
     assert "asked 6" in text
     assert any("where 3.0 = position(" in line for line in plain)
     assert ours == plain
+
+
+def test_assignments_are_told_before_they_are_made_and_worked_out_as_ever() -> None:
+    told: list[Any] = []
+
+    def stored(site: CallSite, holder: Any, values: list[Any]) -> None:
+        told.append((site.name, site.extent[0], type(holder).__name__, values))
+
+    text = """
+def go(order, arm, tags):
+    order("value", 1)
+    tags[order("key", "gate")] = order("value", 2)
+    order("holder", arm).speed = order("value", tags["gate"] + 1)
+    arm.first = arm.second = 3
+    tags[1:2], arm._hidden = [], 5
+    arm._hidden = 6
+    return arm.speed
+"""
+    sites = CallSites({"speed", "first", "second"}, _program, _as_it_stands, are_read=True, stored=stored)
+    sites.install()
+    try:
+        go = _function(text, sites)
+        worked_out: list[str] = []
+
+        def order(name: str, value: Any) -> Any:
+            worked_out.append(name)
+            return value
+
+        class Tags(dict[Any, Any]):
+            def __setitem__(self, key: Any, value: Any) -> None:
+                if isinstance(key, str):
+                    super().__setitem__(key, value)
+
+        assert go(order, Arm(), Tags()) == 3
+    finally:
+        forget(sites)
+    assert worked_out == ["value", "value", "key", "value", "holder"]
+    assert told == [("__setitem__", 4, "Tags", ["gate", 2]), ("speed", 5, "Arm", [3])]
+
+
+class Arm:
+    """An object that has any attribute."""

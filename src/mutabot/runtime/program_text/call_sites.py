@@ -119,6 +119,10 @@ class CallSite:
 #: (``NOTHING`` where it was read from a name) and the frame
 Decide = Callable[[CallSite, Any, Any, FrameType], Any]
 
+#: told of an assignment: the site, the object that it changes, and what ``__setattr__`` or ``__setitem__``
+#: would be given of it beside the name of an attribute
+Stored = Callable[[CallSite, Any, list[Any]], None]
+
 #: the receiver of what was read from a name
 NOTHING = object()
 #: a guard that never holds
@@ -138,6 +142,7 @@ class CallSites(SourceStep):
         sees_itself: handlers of what sees its calls itself: of that nothing is asked.
         hands: decides what is handed on; None to leave that as it is.
         are_read: whether ``hands`` decides about each attribute that is read, handed on or not.
+        stored: told of each assignment to an attribute or an item, before it is made; None if nobody asks.
 
     Attributes:
         loaded: files that were given questions.
@@ -152,8 +157,11 @@ class CallSites(SourceStep):
     sees_itself: Collection[Any] = ()
     hands: Decide | None = None
     are_read: bool = False
+    stored: Stored | None = None
     loaded: set[str] = field(default_factory=set)
     _numbers: dict[tuple[str, Extent, str], int] = field(default_factory=dict)
+    #: what was worked out of the assignment that a frame is about to make, by the frame's identity
+    _parts: dict[int, list[Any]] = field(default_factory=dict)
 
     def install(self) -> None:
         """Put questions into all files that are loaded from now on."""
@@ -176,7 +184,7 @@ class CallSites(SourceStep):
         assert role is not None
         are_handed = self.hands is not None and role is Role.PROGRAM and not self.are_read
         number = partial(self._number, path, role)
-        writer = _Writer(self.names, number, are_handed, self.are_read)
+        writer = _Writer(self.names, number, are_handed, self.are_read, self.stored is not None)
         writer.visit(tree)
         if writer.written:
             declare_global(tree, CALLS)
@@ -255,6 +263,38 @@ class CallSites(SourceStep):
 
         return read
 
+    def _stored_value(self, site: CallSite) -> Callable[[Any], Any]:
+        def read(value: Any) -> Any:
+            self._parts[id(sys._getframe(1))] = [value]
+            return value
+
+        return read
+
+    def _stored_holder(self, site: CallSite) -> Callable[[Any], Any]:
+        def read(holder: Any) -> Any:
+            self._parts.setdefault(id(sys._getframe(1)), []).append(holder)
+            return holder
+
+        return read
+
+    def _stored_item(self, site: CallSite) -> Callable[[Any], Any]:
+        def read(key: Any) -> Any:
+            value, holder = self._parts.pop(id(sys._getframe(1)))
+            assert self.stored is not None
+            self.stored(site, holder, [key, value])
+            return key
+
+        return read
+
+    def _stored_attribute(self, site: CallSite) -> Callable[[Any], Any]:
+        def read(holder: Any) -> Any:
+            (value,) = self._parts.pop(id(sys._getframe(1)))
+            assert self.stored is not None
+            self.stored(site, holder, [value])
+            return holder
+
+        return read
+
     def _got(
         self, site: CallSite, sites: dict[str, CallSite], frame: FrameType, /, receiver: Any, name: str,
         *default: Any,
@@ -282,6 +322,7 @@ class _Writer(ast.NodeTransformer):
     number: Callable[[ast.expr, str, str], int]
     are_handed: bool
     are_read: bool
+    are_stored: bool
     written: bool = False
     _read: dict[str, ast.expr] = field(default_factory=dict)
 
@@ -307,7 +348,22 @@ class _Writer(ast.NodeTransformer):
         target = node.targets[0]
         if isinstance(target, ast.Name) and target.id.startswith("@py_"):
             self._read[target.id] = node.value
+        elif self.are_stored and len(node.targets) == 1:
+            self._ask_stored(node, target)
         return node
+
+    def _ask_stored(self, node: ast.Assign, target: ast.expr) -> None:
+        """Ask about an assignment: its value is worked out first, then what holds it, then the key."""
+        if isinstance(target, ast.Attribute) and target.attr in self.names:
+            forms = [("stored_attribute", target.attr, "value")]
+        elif isinstance(target, ast.Subscript) and not isinstance(target.slice, ast.Slice | ast.Tuple):
+            forms = [("stored_holder", "__setitem__", "value"), ("stored_item", "__setitem__", "slice")]
+        else:
+            return
+        node.value = self._question(self.number(target, "", "stored_value"), node.value, [node.value])
+        for form, name, part in forms:
+            inner = getattr(target, part)
+            setattr(target, part, self._question(self.number(target, name, form), inner, [inner]))
 
     def visit_Call(self, node: ast.Call) -> ast.AST:  # as above
         function = node.func

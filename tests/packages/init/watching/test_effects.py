@@ -1,0 +1,106 @@
+"""Which functions only compute, by their text."""
+
+from __future__ import annotations
+
+import math
+import os
+import socket
+import time
+from typing import Any
+
+import pytest
+
+from mutabot_init.watching.effects import only_computes
+
+
+class Robot:
+    def __init__(self, line: socket.socket) -> None:
+        self.line, self.joints, self.angle = line, [self], 0.0
+
+    @classmethod
+    def at(cls, line: socket.socket) -> Robot:
+        return cls(line)
+
+    def forward(self, q: list[float]) -> list[float]:
+        return [math.sin(one) for one in self._turned(q)]
+
+    def _turned(self, q: list[float]) -> list[float]:
+        found = []
+        for one in q:
+            found.append(-one)  # noqa: PERF401  # the text is the test
+        return found
+
+    def where(self) -> float:
+        return self.angle
+
+    def ask(self, text: str) -> Any:
+        return self.line.send(text.encode())
+
+    def move(self, x: float) -> Any:
+        return self.ask(f"MOVE {x}")
+
+    def alias(self, x: float) -> float:
+        line = self.line
+        line.send(b"%d" % x)
+        return x
+
+    def each(self, q: list[float]) -> list[Any]:
+        return [joint.move(one) for joint, one in zip(self.joints, q, strict=True)]
+
+    def turn(self, angle: float) -> float:
+        self.angle = angle
+        return self.angle
+
+    def wait(self, seconds: float) -> float:
+        time.sleep(seconds)
+        return seconds
+
+    def stands_in(self, x: float) -> Any:
+        return self.angle
+
+    def agrees(self, x: float) -> bool:
+        return True
+
+    async def later(self, x: float) -> float:
+        return x
+
+
+def fill(target: list[float], value: float) -> list[float]:
+    target[0] = value
+    return target
+
+
+def filled(value: float) -> list[float]:
+    target = [0.0]
+    target[0] = value
+    return target
+
+
+def shown(value: float) -> float:
+    print(value)
+    return value
+
+
+def factorial(value: int) -> int:
+    return 1 if value < 2 else value * factorial(value - 1)
+
+
+def remove(name: str) -> Any:
+    return os.rmdir(name)  # noqa: PTH106  # as above
+
+
+@pytest.mark.parametrize(
+    ("function", "expected"),
+    [
+        (Robot.__dict__["at"], True), (Robot.forward, True), (Robot.where, True), (filled, True),
+        (factorial, True), (Robot.ask, False), (Robot.move, False), (Robot.alias, False),
+        (Robot.each, False), (Robot.turn, False), (Robot.wait, False), (Robot.stands_in, False),
+        (Robot.agrees, False), (Robot.later, False), (fill, False), (shown, False), (remove, False),
+        (math.sin, False), (None, False),
+    ],
+)  # fmt: skip
+def test_only_functions_whose_text_shows_it_compute(function: Any, expected: bool) -> None:
+    owner = (
+        Robot if "Robot." in getattr(getattr(function, "__func__", function), "__qualname__", "") else None
+    )
+    assert only_computes(function, owner) is expected
