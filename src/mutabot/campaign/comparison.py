@@ -8,12 +8,16 @@ mutant and original have in common.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
-from typing import TYPE_CHECKING, Any
+from fnmatch import fnmatchcase
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from mutabot.frozen import frozen
-from mutabot.model import Compared, Operation, Pattern, Probe, Quantity
+from mutabot.model import Compared, Kind, Operation, Path, Pattern, Probe, Quantity
+from mutabot.model.deviation import TOLERANCES, deviation_of
+from mutabot.model.path import Step
 from mutabot.model.quantity import distinct_texts, is_number, value_text
 from mutabot.model.units import apart
 
@@ -22,7 +26,7 @@ if TYPE_CHECKING:
 
 #: an operation and the notation of its command
 CommandName = tuple[str, str | None]
-_PARTS = (("w", "x", "y", "z"), ("x", "y", "z"))
+_PARTS = (("w", "x", "y", "z"), ("theta_x", "theta_y", "theta_z"), ("x", "y", "z"))
 
 
 def _angles_of(operations: Sequence[Operation]) -> dict[CommandName, dict[str, Quantity]]:
@@ -67,10 +71,30 @@ def _value(quantity: Quantity, keys: Sequence[str], values: Mapping[str, Any]) -
 
 
 def parts_of(name: str, quantity: Quantity, values: Mapping[str, Any]) -> Iterator[Any]:
-    """The value of a quantity in a reading of a probe, if it is there."""
-    keys = _keys(name, quantity, values)
-    if keys and all(key in values for key in keys):
-        yield _value(quantity, keys, values)
+    """The values of a quantity in a reading of a probe, as far as they are there."""
+    for one in _meant(name, quantity, values):
+        keys = _keys(name, one, values)
+        if keys and all(key in values for key in keys):
+            yield _value(one, keys, values)
+
+
+def is_pattern(quantity: Quantity) -> bool:
+    """Whether it stands for all parts whose names fit, such as ``["*tool"]``, and there may be none."""
+    last = quantity.path.steps[-1].item if quantity.path.steps else None
+    return isinstance(last, str) and "*" in last
+
+
+def _meant(name: str, quantity: Quantity, values: Mapping[str, Any]) -> Iterator[Quantity]:
+    """The quantities that a pattern stands for, or the quantity itself if it is none."""
+    if not is_pattern(quantity):
+        yield quantity
+        return
+    *before, last = quantity.path.steps
+    tails = [key[len(name) + 1 :] for key in values if key.startswith(f"{name}.")]
+    owners = [tail.rpartition(".")[0] if quantity.is_whole else tail for tail in tails]
+    for owner in dict.fromkeys(owners):
+        if fnmatchcase(owner, last.item):
+            yield replace(quantity, path=Path(None, (*before, Step(item=owner))))
 
 
 def readings_of(probe: Probe, values: Mapping[str, Any]) -> list[str]:
@@ -112,6 +136,10 @@ def _step(item: Any) -> str:
     return f"[{item}]" if isinstance(item, int) else f".{item}"
 
 
+def _step_text(step: Step) -> str:
+    return str(step) if step.bounds is not None else _step(step.attribute or step.item)
+
+
 #: share of a test's processor time that readings along the way may take, and the seconds that any test may
 _SHARE, _LEAST = 0.01, 0.005
 #: after every how many commands; a coarser one where this takes too long
@@ -146,6 +174,8 @@ def _readings_at(commands: int, stride: int) -> int:
 DEFAULT_TOLERANCE = 1e-6
 #: multiples of its tolerance that a difference counts which is not one of numbers
 OTHER_WORLD = 1e9
+#: where a call's text begins and ends
+_EXTENT = re.compile(r"(:\d+):\d+-\d+:\d+")
 _NO_RETURNS: dict[str, Any] = {"prepared": None, "returned": None}
 _NO_MOMENTS: dict[str, Any] = {"moments": None}
 
@@ -199,12 +229,11 @@ class Difference:
     Attributes:
         indistinguishable: whether all that was compared is equal within the tolerance; None if that is not
             to be claimed.
-        distance: greatest difference of a probe, in multiples of its tolerance (``OTHER_WORLD`` for one
+        distance: greatest difference of a probe, in units of the original's spread (``OTHER_WORLD`` for one
             that is not of numbers); None without probes, or if none that differs more is all that is known.
         divergence: one line per difference: the outcome, the worst probe first, the first call that differs.
         gaps: what could not be compared, one line each.
-        way: greatest difference of a probe along the way, in multiples of its tolerance; None if none was
-            compared.
+        way: greatest difference of a probe along the way, likewise; None if none was compared.
         compared: how much was; None if nothing was.
     """
 
@@ -221,6 +250,7 @@ def compare(
     mutant: Observation,
     probes: Sequence[Probe] = (),
     operations: Sequence[Operation] = (),
+    spread: ProbeSpread | None = None,
 ) -> Difference:
     """Compare a mutant's test with the original's.
 
@@ -229,8 +259,10 @@ def compare(
     between them, angles modulo a full turn. All else is compared by equality.
     Two cut-off traces are compared as far as they go. What the program returned is compared by the finest of
     these tolerances if it is a fraction, and exactly if not.
+    ``spread``: how far runs of the original with different seeds are apart; None if that is not known.
     """
-    probe_lines = _probe_differences(original, mutant, probes)
+    spread = spread or ProbeSpread()
+    found = sorted(_probe_differences(original, mutant, probes), key=lambda one: one.rank(spread.ends))
     gaps = tuple(
         f"{_short(target)} cannot be read: {mutant.unread[target]}"
         for target in original.unread
@@ -241,13 +273,12 @@ def compare(
     tolerance = max((probe.tolerance for probe in probes), default=DEFAULT_TOLERANCE)
     trace_line = _first_difference(original, mutant, tolerance, _angles_of(operations))
     returned_line = _returned_difference(original, mutant, probes)
-    distances = [distance for distance, _ in probe_lines]
-    different = [line for distance, line in probe_lines if distance > 1.0]
+    distances = [one.deviation(spread.ends) for one in found]
+    different = [one.text for one in found if one.distance > 1.0]
 
-    way, way_line, moments = _on_the_way(original, mutant, probes)
+    way, way_line, moments = _on_the_way(original, mutant, probes, spread)
     is_same_end = original.outcome == mutant.outcome
     end_line = "" if is_same_end else f"the test ended {mutant.outcome} instead of {original.outcome}"
-    way_line = way_line if (way or 0.0) > 1.0 else ""
     lines = [one for one in (end_line, *different, way_line, returned_line, trace_line) if one]
     distance = max(distances, default=None)
     if gaps and not different:  # what cannot be read may be anywhere
@@ -257,26 +288,107 @@ def compare(
 
 
 def _on_the_way(
-    original: Observation, mutant: Observation, probes: Sequence[Probe]
+    original: Observation, mutant: Observation, probes: Sequence[Probe], spread: ProbeSpread
 ) -> tuple[float | None, str, int]:
     """How far readings after the same calls are apart, as far as both made the same calls.
 
-    Returns the greatest distance, in multiples of its probe's tolerance (None if there is nothing to
-    compare), that difference in words, and how many moments were compared.
+    Returns the greatest deviation (None if there is nothing to compare), the greatest difference in words,
+    empty if it is within the tolerance, and how many moments were compared.
     """
-    before, after = _readings(original.moments or ()), _readings(mutant.moments or ())
-    same = _same_calls(original, mutant)
-    common = [call for call in before if before[call] and call in after and call <= same]
-    worst, line = 0.0, ""
-    for call in common:
-        if before[call] == after[call]:
-            continue
-        sides = Observation(probes=before[call]), Observation(probes=after[call])
-        for far, text in _probe_differences(*sides, probes)[:1]:
-            if far > worst:
-                worst = far
-                line = f"on the way, after call {call}, {mutant.events[call - 1].key}: {text}"
+    common = _common_moments(original, mutant)
+    found = [
+        (one, call)
+        for call, before, after in common
+        if before != after
+        for one in _probe_differences(Observation(probes=before), Observation(probes=after), probes)
+    ]
+    worst = max((one.deviation(spread.ways) for one, _ in found), default=0.0)
+    told = min(
+        (pair for pair in found if pair[0].distance > 1.0),
+        key=lambda pair: pair[0].rank(spread.ways),
+        default=None,
+    )
+    line = ""
+    if told is not None:
+        place = _place_text(mutant.events[told[1] - 1].key)
+        line = f"on the way, after call {told[1]}, {place}: {told[0].text}"
     return worst if common else None, line, len(common)
+
+
+def _common_moments(one: Observation, other: Observation) -> list[tuple[int, dict[str, Any], dict[str, Any]]]:
+    """After which calls both were read, as far as they made the same calls, and what was read."""
+    before, after = _readings(one.moments or ()), _readings(other.moments or ())
+    same = _same_calls(one, other)
+    return [
+        (call, before[call], after[call])
+        for call in before
+        if before[call] and call in after and call <= same
+    ]
+
+
+@frozen
+class ProbeSpread:
+    """How far probes are apart in runs of the original of one test with different seeds.
+
+    Attributes:
+        ends: by what is compared, at the ends.
+        ways: along the way, after the same calls.
+    """
+
+    ends: Mapping[str, float] = field(default_factory=dict)
+    ways: Mapping[str, float] = field(default_factory=dict)
+
+    @classmethod
+    def between(
+        cls, first: Observation, others: Iterable[Observation], probes: Sequence[Probe]
+    ) -> ProbeSpread:
+        """How far the other runs are from the first."""
+        ends: dict[str, float] = {}
+        ways: dict[str, float] = {}
+        for other in others:
+            pairs = [(ways, before, after) for _, before, after in _common_moments(first, other)]
+            for sizes, before, after in [(ends, first.probes, other.probes), *pairs]:
+                sides = Observation(probes=before), Observation(probes=after)
+                for one in _probe_differences(*sides, probes):
+                    if math.isfinite(one.size):
+                        sizes[one.key] = max(one.size, sizes.get(one.key, 0.0))
+        return cls(ends, ways)
+
+
+class _ProbeDifference(NamedTuple):
+    """How far one part of a probe is from the original's.
+
+    Attributes:
+        key: which part.
+        size: the difference, in the unit of the part; infinite if it is not one of numbers.
+        tolerance: difference up to which it counts as the same.
+        unit: of the part, if the vocabulary says it.
+        is_clock: whether it is a time, which is no distance.
+        text: the difference in words.
+    """
+
+    key: str
+    size: float
+    tolerance: float
+    unit: str | None
+    is_clock: bool
+    text: str
+
+    @property
+    def distance(self) -> float:
+        """The difference in multiples of the tolerance."""
+        return min(self.size / self.tolerance, OTHER_WORLD)
+
+    def deviation(self, spread: Mapping[str, float]) -> float:
+        """The difference in units of the original's spread; of clocks, which tell of mere delay, none."""
+        if self.is_clock:
+            return 0.0
+        tolerance = max(self.tolerance, TOLERANCES.get(self.unit or "", 0.0))
+        return min(deviation_of(self.size, spread.get(self.key, 0.0), tolerance), OTHER_WORLD)
+
+    def rank(self, spread: Mapping[str, float]) -> tuple[float, float]:
+        """Lowest for the largest deviation."""
+        return -self.deviation(spread), -self.distance
 
 
 def _same_calls(original: Observation, mutant: Observation) -> int:
@@ -334,32 +446,50 @@ def farthest(comparisons: Sequence[Difference]) -> Difference:
 
 def _probe_differences(
     original: Observation, mutant: Observation, probes: Sequence[Probe]
-) -> list[tuple[float, str]]:
+) -> Iterator[_ProbeDifference]:
     unread = original.unread.keys() | mutant.unread.keys()
-    found = [
-        (OTHER_WORLD, f"{_short(target)}: {_readable(original, mutant, target)}")
-        for target in sorted(original.unread.keys() ^ mutant.unread.keys())
-    ]
+    for target in sorted(original.unread.keys() ^ mutant.unread.keys()):
+        text = f"{_short(target)}: {_readable(original, mutant, target)}"
+        yield _ProbeDifference(target, math.inf, 1.0, None, is_clock=False, text=text)
     done: set[str] = set()
     for name, quantity in _parts(original.probes, probes):
         keys = _keys(name, quantity, original.probes)
         if not keys or not all(key in original.probes and key in mutant.probes for key in keys):
             continue
         before, after = (_value(quantity, keys, values) for values in (original.probes, mutant.probes))
-        angle = _angle_between(quantity, before, after)
-        if angle is not None:
+        found = _of_quantity(name, quantity, before, after, _tolerance(keys[0], probes))
+        if found is not None:
             done.update(keys)
-            part = f"{name}{quantity.path}"
-            shown = " instead of ".join(distinct_texts(after, before, value_text, 4))
-            text = f"{_short(part)}: {shown} (turned by {angle:.3g} {quantity.unit or 'rad'})"
-            found.append((min(angle / _tolerance(part, probes), OTHER_WORLD), text))
+            yield found
     for key in dict.fromkeys([*original.probes, *mutant.probes]):
         if key in done or any(key == target or _lies_below(key, target) for target in unread):
             continue
         before, after = original.probes.get(key), mutant.probes.get(key)
-        distance = _distance(before, after) / _tolerance(key, probes)
-        found.append((min(distance, OTHER_WORLD), f"{_short(key)}: {_change(before, after)}"))
-    return sorted(found, key=lambda item: -item[0])
+        text = f"{_short(key)}: {_change(before, after)}"
+        size = _distance(before, after)
+        yield _ProbeDifference(key, size, _tolerance(key, probes), None, is_clock=False, text=text)
+
+
+def _of_quantity(
+    name: str, quantity: Quantity, before: Any, after: Any, tolerance: float
+) -> _ProbeDifference | None:
+    """How far a part is apart whose meaning is known; None if its values are compared as any others."""
+    part = f"{name}{quantity.path}"
+    short = _short(f"{name}{''.join(map(_step_text, quantity.path.steps))}")
+    if quantity.kind is Kind.STAMP and is_number(before) and is_number(after):
+        late = f"{abs(after - before):.3g} s {'later' if after > before else 'earlier'}"
+        text = f"the clock {short}: {after:.4g} s instead of {before:.4g} s ({late})"
+        return _ProbeDifference(part, abs(after - before), tolerance, "s", is_clock=True, text=text)
+    angle = _angle_between(quantity, before, after)
+    unit = quantity.unit or ("rad" if angle is not None else None)
+    if angle is not None:
+        shown = " instead of ".join(distinct_texts(after, before, value_text, 4))
+        text = f"{short}: {shown} (turned by {angle:.3g} {unit})"
+        return _ProbeDifference(part, angle, tolerance, unit, is_clock=False, text=text)
+    if not (is_number(before) and is_number(after)):
+        return None
+    text = f"{short}: {_change(before, after)}"
+    return _ProbeDifference(part, _distance(before, after), tolerance, unit, is_clock=False, text=text)
 
 
 def _parts(values: Mapping[str, Any], probes: Sequence[Probe]) -> Iterator[tuple[str, Quantity]]:
@@ -367,7 +497,7 @@ def _parts(values: Mapping[str, Any], probes: Sequence[Probe]) -> Iterator[tuple
     for probe in probes:
         for name in readings_of(probe, values) if probe.result else ():
             for quantity in probe.result:
-                yield name, quantity
+                yield from ((name, one) for one in _meant(name, quantity, values))
 
 
 def _readable(original: Observation, mutant: Observation, target: str) -> str:
@@ -412,14 +542,14 @@ def _first_difference(
 ) -> str | None:
     for index, (before, after) in enumerate(zip(original.events, mutant.events, strict=False), start=1):
         if before.key != after.key:
-            return f"call {index}: {after.key} instead of {before.key}"
+            return f"call {index}: {_place_text(after.key)} instead of {_place_text(before.key)}"
         known = angles.get(before.what, {})
         for verb, was, is_now in (
             ("wrote", before.written, after.written),
             ("read", before.read, after.read),
         ):
             if _values_apart(was, is_now, known) > tolerance:
-                return f"call {index}, {after.key}: {verb} {_change(was, is_now)}"
+                return f"call {index}, {_place_text(after.key)}: {verb} {_change(was, is_now)}"
     more = len(mutant.events) - len(original.events)
     if more == 0 or original.truncated or mutant.truncated:
         return None
@@ -493,6 +623,11 @@ def _event_text(name: str, value: Any) -> str:
     if isinstance(value, Mapping):
         return f"{name} raised {value['raised']}"
     return f"{name} returned {value_text(value[0])}"
+
+
+def _place_text(key: str) -> str:
+    """A call's place without its columns: ``sorting.py:118 Arm.move_by``."""
+    return _EXTENT.sub(r"\1", key)
 
 
 def _short(key: str) -> str:

@@ -389,8 +389,9 @@ def _compared(campaign: Campaign, outcome: Outcome, run: Run) -> Outcome:
         if key in baseline.nondeterministic:
             return replace(outcome, gaps=(f"equal runs of the original differ in {test}",))
         if key in baseline.observations:
-            known = (vocabulary.probes, vocabulary.operations)
-            difference = compare(baseline.observations[key], found, *known)
+            spread = baseline.probe_spread(*key, vocabulary.probes)
+            known = vocabulary.probes, vocabulary.operations
+            difference = compare(baseline.observations[key], found, *known, spread)
             # a test that has nothing to do with the mutant need not make what a probe reads
             comparisons.append(difference if test in hit else replace(difference, gaps=()))
     worst = farthest(comparisons)

@@ -182,9 +182,9 @@ def why_alone(result: MutantResult) -> str:
 def effect_text(result: MutantResult) -> str:
     """Return the line about a mutant with the test in which it happened, and how many rounds killed it."""
     why, rate = why_alone(result), result.kill_rate
-    _, diverged = telling(result) or (0, None)
+    number, diverged = telling(result) or (0, None)
     if diverged is not None and diverged.story and diverged.story in why:
-        why += f" (in {diverged.test.rpartition('::')[2]})"
+        why += f" (in {place_text(result, number, diverged)})"
     if result.lets_through and rate.killed:
         where = "" if result.survived else f" in {rate.valid - rate.killed} of {rate.valid} rounds"
         why += f"{where}; killed in {rate.killed} of {rate.valid} rounds"
@@ -203,6 +203,12 @@ def telling(result: MutantResult) -> tuple[int, Diverged | None] | None:
         return next(((one.round, None) for one in result.outcomes), None)
     worst = max(outcomes, key=weight_of)
     return worst.round, worst.told
+
+
+def place_text(result: MutantResult, number: int, diverged: Diverged) -> str:
+    """Return the test in which something happened, and the round if there are several."""
+    test = diverged.test.rpartition("::")[2]
+    return test if len(result.rounds) == 1 else f"{test}, round {number + 1}"
 
 
 def short_reason(result: MutantResult) -> str:

@@ -38,11 +38,16 @@ def explain(mutant: Mutant, outcomes: Sequence[Outcome], vocabulary: Vocabulary 
 
 
 def change_text(mutant: Mutant, outcome: Outcome, quantity: Quantity | None = None) -> str | None:
-    """What the mutant changed when it first acted: ``read -0.0014 m instead of 0.0014 m``."""
-    if mutant.quantity is None or outcome.example is None or len(outcome.example) != 2:
+    """What the mutant changed when it first acted: ``read -0.0014 m instead of 0.0014 m``.
+
+    That is in the test whose story is told, if there is one.
+    """
+    told = outcome.told.example if outcome.told is not None else None
+    example = told if told is not None else outcome.example
+    if mutant.quantity is None or example is None or len(example) != 2:
         return None
     text = quantity.text if quantity is not None else value_text
-    before, after = distinct_texts(*outcome.example, text, 6 if quantity is not None else 4)
+    before, after = distinct_texts(*example, text, 6 if quantity is not None else 4)
     if before == after:
         return None
     return f"{_verb(quantity)} {after} instead of {before}"

@@ -21,7 +21,7 @@ from mutabot.model import By, LeftOut, Mutant, Outcome, Quantity, Role, Verdict
 from mutabot.model.mutant import fits
 from mutabot.model.selection import select
 from mutabot.model.suppression import Acceptance, Accepted
-from mutabot.results.divergence import change_text, explain, quantity_of
+from mutabot.results.divergence import change_text, explain, quantity_of, weight_of
 from mutabot.results.score import Group, RoundScores, Score, groups_of
 from mutabot.results.statistics import Confirmed
 
@@ -110,10 +110,9 @@ class MutantResult:
 
     @property
     def change(self) -> str | None:
-        """What it changed when it first acted, in words; None if that is not known."""
-        return next(
-            filter(None, (change_text(self.mutant, one, self.quantity) for one in self.outcomes)), None
-        )
+        """What it changed when it first acted, in words, where its story is told; None if not known."""
+        outcomes = sorted(self.survived, key=weight_of, reverse=True) or self.outcomes
+        return next(filter(None, (change_text(self.mutant, one, self.quantity) for one in outcomes)), None)
 
     @property
     def indistinguishable(self) -> bool:

@@ -62,7 +62,7 @@ def test_a_fault_that_is_seen_on_the_way_alone_is_told(tmp_path: Path) -> None:
     assert (reverse.verdict, reverse.indistinguishable) == (Verdict.SURVIVED, False)
     assert (reverse.distance, reverse.way) == (0.0, pytest.approx(500))
     (line,) = reverse.divergence
-    assert line.startswith("on the way, after call 2, mission.py:4:")
+    assert line.startswith("on the way, after call 2, mission.py:4 ")
     assert line.endswith("Arm.move_by: Arm.where: -0.125 instead of 0.375 (off by 0.5)")
     negate = named(found, "position#1:result:negate")
     assert (negate.indistinguishable, negate.way) == (True, 0.0)

@@ -7,12 +7,12 @@ of one place returned says what a mutant that leaves them out answers.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mutabot.campaign.comparison import Observation, TraceCall, as_steady
+from mutabot.campaign.comparison import Observation, ProbeSpread, TraceCall, as_steady
 from mutabot.families import CALLS, CONTROL, MESSAGES
 from mutabot.faults import Planned, PlannedMutant, Preparation
 from mutabot.journal.records import Untested
@@ -28,7 +28,7 @@ from mutabot.original import Original
 
 if TYPE_CHECKING:
     from mutabot.execution.task import Result
-    from mutabot.model import Vocabulary
+    from mutabot.model import Probe, Vocabulary
 
 
 @dataclass(slots=True)
@@ -153,6 +153,7 @@ class Baseline(Original):
         shares_files: whether runs see each other's files.
         may_share: whether the original runs alike in copies of one process that has collected the tests.
         untested: what no test reaches of the program.
+        further: by test, what is compared in runs with seeds of rounds in which no mutant runs.
     """
 
     reaching: dict[tuple[int, Place], list[str]] = field(default_factory=dict)
@@ -177,6 +178,8 @@ class Baseline(Original):
     may_share: bool = True
     collected: dict[int, frozenset[str]] = field(default_factory=dict)
     untested: Untested = field(default_factory=Untested)
+    further: dict[str, list[Observation]] = field(default_factory=dict)
+    _probe_spreads: dict[tuple[int, str], ProbeSpread] = field(default_factory=dict)
 
     def suite(self, round: int) -> tuple[str, ...]:
         """The tests that a mutant is run with, in their order: all that can be relied on."""
@@ -273,6 +276,23 @@ class Baseline(Original):
             self.nondeterministic.add(key)
         else:
             self.observations[key] = steady
+
+    def add_seed(self, found: Mapping[str, Observation]) -> None:
+        """Add a run of the original with the seed of a round in which no mutant runs, by test."""
+        for test, one in found.items():
+            self.further.setdefault(test, []).append(one)
+
+    def probe_spread(self, round: int, test: str, probes: Sequence[Probe]) -> ProbeSpread:
+        """How far probes are apart in runs of a test with other seeds than that of the round."""
+        key = (round, test)
+        if key not in self._probe_spreads:
+            rounds = range(len(self.tests))
+            others = [
+                self.observations[other, test] for other in rounds if (other, test) in self.observations
+            ]
+            others += self.further.get(test, [])
+            self._probe_spreads[key] = ProbeSpread.between(self.observations[key], others, probes)
+        return self._probe_spreads[key]
 
     def set_aside(self, round: int, test: str, reason: str) -> None:
         """A test turned out to be flaky: from now on no mutant is judged by it in this round."""

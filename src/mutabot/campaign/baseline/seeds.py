@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from mutabot.campaign.baseline.baseline import Sources, observation
 from mutabot.execution.task import Task
 from mutabot.model.deadline import Limit
 
@@ -25,15 +26,19 @@ def record_more_seeds(campaign: Campaign) -> None:
     if evidence is None or not rounds or not evidence.has_tracks:
         return
     campaign.progress.stage("original with other seeds", len(rounds))
+    details = {"known": baseline.known, "moments": baseline.probe_intervals.get(0, {})}
     tasks = (
         Task(
             (round, 0),
-            request.job(round, record=True, known=baseline.known),
+            request.job(round, record=True, **details),
             startup=Limit(300.0),
             may_share=baseline.may_share,
         )
         for round in rounds
     )
+    sources = Sources(request.root)
     for result in campaign.executor.run(tasks):
-        evidence.add_seed(result.task.key[0], result.ends)
+        ends, places = [end for end in result.ends if end.outcome == "passed"], sources.places(result.sites)
+        evidence.add_seed(result.task.key[0], ends)
+        baseline.add_seed({end.test: observation(end, places) for end in ends})
         campaign.progress.advance()

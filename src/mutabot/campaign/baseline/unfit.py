@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
-from mutabot.campaign.comparison import parts_of, readings_of
+from mutabot.campaign.comparison import is_pattern, parts_of, readings_of
 from mutabot.config.mistakes import problem_error
 from mutabot.extensions import brought
 from mutabot.model.events import Problem, Remark, TestEnd
@@ -126,6 +126,8 @@ def _of_probes(baseline: Baseline, vocabulary: Vocabulary) -> Iterator[Problem]:
             values = [
                 value for one, names in known for name in names for value in parts_of(name, quantity, one)
             ]
+            if not values and is_pattern(quantity):
+                continue
             wrong = _wrong(quantity, values) if values else "the probe never reads such a part"
             if wrong is not None:
                 yield Problem(probe.source, f"result.{quantity.name}", wrong)

@@ -24,7 +24,7 @@ from mutabot.model import By
 from mutabot.model.quantity import value_text
 from mutabot.report.document import data_of, finite
 from mutabot.report.terminal.console import mark_of
-from mutabot.report.texts import acceptance_text, effect_text, mapped, state_of
+from mutabot.report.texts import acceptance_text, effect_text, mapped, place_text, state_of, telling
 from mutabot.results.divergence import weight_of
 from mutabot.results.results import MutantResult, Results, killing_tests, unlooked
 from mutabot.results.stored import StoredEvidence
@@ -334,7 +334,9 @@ _NOTHING: tuple[Any, ...] = (None, (), [], {}, "")
 
 def mutant_page(result: MutantResult) -> dict[str, Any]:
     """Return all but the recordings: the mutant of the results document, without what is empty."""
-    return {**told(data_of(result)), "change": result.change}
+    number, diverged = telling(result) or (0, None)
+    place = place_text(result, number, diverged) if diverged is not None and diverged.example else ""
+    return {**told(data_of(result)), "change": result.change, "told": place}
 
 
 def told(value: Any) -> Any:

@@ -2,7 +2,7 @@
 "use strict";
 (() => {
   const { h, address, amount, between, count, number, empty, marks } = mutabot;
-  const AROUND = 3, CHECKS = 40;
+  const AROUND = 3, CHECKS = 40, LINES = 6;
 
   mutabot.views.set("mutant", (body, parts) => {
     const campaign = mutabot.campaign;
@@ -39,7 +39,7 @@
   });
 
   const NOTHING = { test: null, exception: null, message: null, place: null, away: {}, example: null, divergence: [], gaps: [], indistinguishable: null, repeats: 0, beside: null, kills: [], diverged: [], looked: [] };
-  const ALIKE = { at: null, what: "", story: "", apart: [], fault: null };
+  const ALIKE = { at: null, what: "", story: "", apart: [], measurements: [], fault: null, example: null };
   /** The data of the page, with what they leave out where nothing is to be said. */
   function whole(one, page) {
     const { recordings, without } = mutabot.taken(`recordings ${one.number}`) || { recordings: [], without: 0 };
@@ -70,7 +70,7 @@
         const a = at === one.line ? characters(line, one.span.column) : line.search(/\S|$/), b = at === one.endLine ? characters(line, one.span.end_column) : line.length;
         box.append(h("div", { class: `line${inside ? " marked" : ""}` }, h("span", { class: "at" }, at), h("code", null, inside ? [line.slice(0, a), h("mark", null, line.slice(a, b)), line.slice(b)] : line || " ")));
       }
-      section.append(box, page.change ? h("p", null, `At first, the program ${page.change}.`) : "",
+      section.append(box, page.change ? h("p", null, `At first, the program ${page.change}`, page.told ? [" (", page.told, ")"] : null, ".") : "",
         h("p", null, h("a", { class: "more", href: address(["source", one.file], { line: String(one.line) }) }, "The whole file")));
     }, (error) => section.append(h("p", null, error.message)));
     return section;
@@ -147,14 +147,14 @@
       drawn.append(h("div", { class: "multiples" }, mutabot.charts(usual, mutant, clock, diverged ? diverged.apart : [])));
       holder.append(slider(clock, mutant, made.canvas, stop), drawn);
     }
-    holder.append(h("h3", null, "Commands, readings and contacts"), mutabot.timeline.lanes(usual, mutant, clock), mutabot.timeline.table(usual, mutant, clock, fault(one, outcome)), apart(diverged));
+    holder.append(h("h3", null, "Commands, readings and contacts"), mutabot.timeline.lanes(usual, mutant, clock), mutabot.timeline.table(usual, mutant, clock, fault(one, diverged)), apart(diverged));
     if (mutant.problems.length) holder.append(h("p", { class: "hint" }, `Not recorded: ${mutant.problems.join("; ")}`));
     if (!mutant.simulated) holder.append(h("p", { class: "hint" }, "Times are of the wall clock: the vocabulary names no simulated clock."));
   }
 
-  /** What the fault sends or reads in place of the program's value. */
-  function fault(one, outcome) {
-    const [before, after] = (outcome && outcome.example) || [];
+  /** What the fault sends or reads in place of the program's value, when it acts first in this test. */
+  function fault(one, diverged) {
+    const [before, after] = (diverged && diverged.example) || [];
     const isValue = one.quantity && after !== undefined;
     return { name: isValue ? one.quantity : null, value: after, isSkipped: !one.quantity && Array.isArray(after) && !after.length,
       text: isValue ? `${one.quantity} ${value(after, one.unit)} instead of ${value(before, one.unit)}` : one.description };
@@ -200,11 +200,16 @@
   }
 
   function apart(diverged) {
-    if (!diverged || !diverged.apart.length) return "";
-    return h("div", { class: "columns" }, h("div", null, h("h3", null, "How far apart"), h("div", { class: "scroll", role: "region", tabindex: "0", "aria-label": "How far apart" }, h("table", null,
-        h("thead", null, h("tr", null, ["", "first", "largest", "at", "at the end", "off its way"].map((name, index) => h("th", { scope: "col", class: index ? "n" : null }, name || h("span", { class: "unseen" }, "what"))))),
-        h("tbody", null, diverged.apart.map((each) => h("tr", null, h("th", { scope: "row" }, each.name), h("td", { class: "n" }, `${number(each.first, 3)} s`), h("td", { class: "n" }, amount(each.largest, each.unit)),
-          h("td", { class: "n" }, `${number(each.at, 3)} s`), h("td", { class: "n" }, amount(each.final, each.unit)), h("td", { class: "n" }, each.aside === null || each.aside === undefined ? "–" : amount(each.aside, each.unit)))))))));
+    if (!diverged || !(diverged.apart.length || diverged.measurements.length)) return "";
+    const known = (found, unit) => found === null || found === undefined ? "–" : amount(found, unit);
+    const units = (one) => `${number(one.deviation ?? 0, 2)}×`;
+    const table = (title, names, rows) => rows.length ? h("div", null, h("h3", null, title), h("div", { class: "scroll", role: "region", tabindex: "0", "aria-label": title }, h("table", null,
+      h("thead", null, h("tr", null, names.map((name, index) => h("th", { scope: "col", class: index ? "n" : null }, name || h("span", { class: "unseen" }, "what"))))),
+      h("tbody", null, rows.map(([name, ...cells]) => h("tr", null, h("th", { scope: "row" }, name), cells.map((cell) => h("td", { class: "n" }, cell)))))))) : null;
+    return h("div", { class: "measured" },
+      table("What was measured", ["", "mutant", "original", "at", "deviation"], diverged.measurements.map((one) => [`${one.name} of ${one.thing}`, known(one.value, one.unit), known(one.original, one.unit), one.at === null || one.at === undefined ? "–" : `${number(one.at, 3)} s`, one.unit === "s" ? "–" : units(one)])),
+      table("How far apart", ["", "first", "largest", "at", "at the end", "off its path", "deviation"], diverged.apart.map((one) => [one.name, `${number(one.first, 3)} s`, amount(one.largest, one.unit), `${number(one.at, 3)} s`, amount(one.final, one.unit), known(one.aside, one.unit), units(one)])),
+      h("p", { class: "hint" }, "Deviation: the difference in units of the original's own spread over seeds, in this test."));
   }
 
   // Who looked, suggestion, rounds
@@ -267,7 +272,7 @@
       outcome.test ? h("p", null, "in ", h("code", null, outcome.test), outcome.place ? [" at ", h("code", null, outcome.place)] : null) : null,
       outcome.message ? h("pre", { tabindex: "0", "aria-label": "What the test said" }, `${outcome.exception ? `${outcome.exception.replace(/^.*:/, "")}: ` : ""}${outcome.message.trimEnd()}`) : null,
       outcome.kills.length > 1 ? h("p", null, "Also killed by ", outcome.kills.slice(1).map(({ test, by }, index) => [index ? ", " : "", h("code", null, test), ` (${by})`])) : null,
-      outcome.divergence.length || outcome.gaps.length ? h("ul", { class: "plain" }, outcome.divergence.map((line) => h("li", null, line)), outcome.gaps.map((line) => h("li", null, `not compared: ${line}`))) : null,
+      outcome.divergence.length || outcome.gaps.length ? h("ul", { class: "plain" }, outcome.divergence.slice(0, LINES).map((line) => h("li", null, line)), outcome.divergence.length > LINES ? h("li", null, `and ${count(outcome.divergence.length - LINES, "more difference")}`) : null, outcome.gaps.map((line) => h("li", null, `not compared: ${line}`))) : null,
       values.length ? h("div", { class: "scroll", role: "region", tabindex: "0", "aria-label": "Values" }, h("table", { class: "values" }, h("thead", null, h("tr", null, ["round", "value", "in its place"].map((name, index) => h("th", { scope: "col", class: "n" }, name)))),
         h("tbody", null, those.map((each) => [each, page.rounds[each]]).filter(([, each]) => each && each.example && each.example.length === 2).map(([each, found]) => h("tr", null, h("td", { class: "n" }, each + 1), h("td", { class: "n" }, value(found.example[0], one.unit)), h("td", { class: "n" }, value(found.example[1], one.unit))))))) : null,
       h("p", { class: "hint" }, [`acted at ${outcome.acted} of ${count(outcome.hits, "hit")}`, `${count(outcome.tests, "test")} run`, outcome.indistinguishable && "no measured difference",

@@ -2,7 +2,7 @@
 "use strict";
 (() => {
   const { h, number } = mutabot;
-  const BEFORE = 3, AFTER = 14;
+  const BEFORE = 3, AFTER = 14, LATE = 0.3;
   const text = (value) => typeof value === "number" ? number(value, 5) : String(value);
   const shown = (pairs) => pairs.map(([name, value]) => [name, text(value)]);
   const same = (one, other) => JSON.stringify([shown(one.written), shown(one.read)]) === JSON.stringify([shown(other.written), shown(other.read)]);
@@ -43,20 +43,29 @@
     return [...calls, ...moments].map((one, index) => [one, index]).sort(([a, i], [b, j]) => (a.time ?? 0) - (b.time ?? 0) || i - j).map(([one]) => one);
   }
 
-  const differs = ([one, other]) => !one || !other || (one.call ? !same(one.call, other.call) : Math.abs((one.time ?? 0) - (other.time ?? 0)) > 0.3);
+  const differs = ([one, other]) => !one || !other || (one.call ? !same(one.call, other.call) : Math.abs((one.time ?? 0) - (other.time ?? 0)) > LATE);
   const name = (call) => call.operation.replace(/^.*:/, "");
   const amounts = (pairs, fault) => pairs.filter(([what, value]) => value !== 0 || pairs.length === 1 || (fault && what === fault.name))
     .map(([what, value]) => h("span", { class: "amount" }, `${what.replace(/^\./, "")} `, h("b", null, text(value))));
   /** The values as the fault changed them. */
   const changed = (pairs, fault) => pairs.map(([what, value]) => [what, fault && what === fault.name ? fault.value : value]);
 
-  function cell(one, other, fault, isMutant) {
-    if (!one) return h("td", { class: "gone" }, h("span", { class: "unseen" }, "nothing"), "—");
+  /** When it happened on its own side; of a mutant also by how much later or earlier than in the original. */
+  function moment(one, other, clock, isMutant) {
+    if (one.time === null || one.time === undefined) return null;
+    const late = isMutant && other && typeof other.time === "number" ? one.time - other.time : 0;
+    return h("span", { class: "moment" }, h("button", { type: "button", class: "time", onclick: () => clock.set(one.time), "aria-label": `show ${number(one.time, 4)} s` }, `${number(one.time, 4)} s`),
+      Math.abs(late) > LATE ? h("small", null, ` ${late > 0 ? "+" : "−"}${Math.abs(late).toFixed(1)} s`) : null);
+  }
+  function cell(one, other, fault, isMutant, clock) {
+    const side = isMutant ? "mutant" : "original";
+    if (!one) return h("td", { class: "gone", "data-side": side }, h("span", { class: "unseen" }, "nothing"), "—");
     const inside = one.call
       ? [h("span", { class: `event ${one.call.role}` }, name(one.call)), " ", isMutant && fault && fault.isSkipped ? h("strong", null, "not sent") : amounts(isMutant ? changed(one.call.written, fault) : one.call.written, fault), one.call.read.length ? [" → ", amounts(isMutant ? changed(one.call.read, fault) : one.call.read, fault)] : null, h("small", null, one.call.place)]
       : [h("span", { class: "event contact" }, one.what === "touch" ? "touch" : one.what === "part" ? "part" : "note"), " ", one.text];
     const apart = one.call && other && other.call && !same(one.call, other.call);
-    return h("td", { class: apart ? "apart" : null }, inside, fault && isMutant ? h("p", { class: "acts" }, `fault: ${fault.text}`) : null);
+    return h("td", { class: apart ? "apart" : null, "data-side": side }, moment(one, other, clock, isMutant), inside,
+      fault && isMutant ? h("p", { class: "acts" }, h("span", { class: "flag" }, "fault"), ` ${fault.text}`) : null);
   }
 
   function table(original, mutant, clock, fault) {
@@ -67,17 +76,15 @@
     const body = h("tbody");
     const box = h("div", { class: "events" });
     const make = ([one, other]) => {
-      const time = other ? other.time : one.time;
       const faulty = other && other.call && other.index === mutant.faultyCall;
       return h("tr", { class: `${differs([one, other]) ? "differs" : ""}${faulty ? " faulty" : ""}` },
-        h("td", { class: "n" }, time === null || time === undefined ? "" : h("button", { type: "button", class: "time", onclick: () => clock.set(time), "aria-label": `show ${number(time, 4)} s` }, number(time, 4)), faulty ? h("span", { class: "flag" }, "fault") : null),
-        cell(one, other, faulty ? fault : null, false), cell(other, one, faulty ? fault : null, true));
+        cell(one, other, faulty ? fault : null, false, clock), cell(other, one, faulty ? fault : null, true, clock));
     };
     const show = (from, to) => body.replaceChildren(...rows.slice(from, to).map(make));
     const from = first < 0 ? 0 : Math.max(0, first - BEFORE), to = first < 0 ? Math.min(rows.length, AFTER) : first + AFTER;
     show(from, to);
     box.append(h("div", { class: "scroll", role: "region", tabindex: "0", "aria-label": "Commands, readings and contacts" }, h("table", null,
-      h("thead", null, h("tr", null, h("th", { scope: "col", class: "n" }, "s"), h("th", { scope: "col" }, "original"), h("th", { scope: "col" }, "mutant"))), body)));
+      h("thead", null, h("tr", null, h("th", { scope: "col" }, "original"), h("th", { scope: "col" }, "mutant"))), body)));
     if (from > 0 || to < rows.length) {
       const button = h("button", { type: "button", onclick: () => { show(0, rows.length); button.remove(); } }, `Show all ${rows.length} events`);
       box.append(button);
