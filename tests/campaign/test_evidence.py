@@ -250,3 +250,60 @@ def test_what_a_process_of_its_own_does_is_recorded_in_its_order(tmp_path: Path)
     assert second.began is not None
     assert second.began - first.began >= 0.05
     assert not original.is_simulated
+
+
+TWICE = """
+
+    def test_carries_again():
+        cell = Cell()
+        mission.run(Arm(cell))
+        assert cell.x > 0.5
+"""
+
+
+def test_where_several_tests_differ_each_line_names_its_test(tmp_path: Path) -> None:
+    probe = '\n    [[probe]]\n    call = "robot:Arm.position"\n'
+    folder = write_project(
+        tmp_path, MISSION, TESTS + TWICE, robot=ROBOT, vocabulary=VOCABULARY + probe,
+        configuration='program = ["mission.py"]\nvocabulary = ["robot.toml"]\n'
+        'pytest_args = ["-o", "pythonpath=."]\n',
+    )  # fmt: skip
+    (outcome,) = ran(folder, rounds=1, only=("*arm.move_by#3*skip*",)).values()
+    assert outcome.verdict is Verdict.SURVIVED
+    named = {line.rpartition(" (in ")[2] for line in outcome.divergence}
+    assert named == {"test_carries)", "test_carries_again)"}
+
+
+#: an arm whose part lies elsewhere with each seed
+SEEDED = ROBOT.replace(
+    "self.part, self.held = 0.0, 0.0, 0.5, False", "self.part, self.held = 0.0, 0.0, part, False"
+).replace("def __init__(self):", "def __init__(self, part):")
+SEEDED_TESTS = """
+    import mission
+    from robot import Arm, Cell
+
+    def test_carries(mutabot_seed):
+        cell = Cell(0.5)
+        mission.run(Arm(cell))
+        cell.part += (mutabot_seed % 1000) / 1000  # bumped by whatever goes by
+        cell.step()
+        assert cell.x > 0.5
+"""
+
+
+def test_with_one_round_the_original_runs_with_more_seeds(tmp_path: Path) -> None:
+    folder = write_project(
+        tmp_path, MISSION, SEEDED_TESTS, robot=SEEDED, vocabulary=VOCABULARY,
+        configuration='program = ["mission.py"]\nvocabulary = ["robot.toml"]\n'
+        'pytest_args = ["-o", "pythonpath=."]\n',
+    )  # fmt: skip
+    (outcome,) = ran(folder, rounds=1, only=("*arm.grip#2*skip*",)).values()
+    assert outcome.verdict is Verdict.SURVIVED
+    (diverged,) = outcome.diverged
+    assert diverged.scatters.startswith("part by ")
+    (part,) = [one for one in diverged.apart if one.name == "part"]
+    assert part.spread > 0.1
+    assert part.deviation == pytest.approx(max(part.final / part.spread, part.aside / part.aside_spread))
+    assert "part ended" not in diverged.story
+    with evidence(folder) as found:
+        assert not found.tests(outcome.mutant, 1)

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from math import cos, radians, sin
+
 import pytest
 
+from mutabot.evidence import tape as tapes
+from mutabot.evidence.feed import Feed
 from mutabot.evidence.paths import RecordedPaths
 from mutabot.evidence.recording import Recording
 from mutabot.evidence.spread import spread_between
@@ -100,3 +104,36 @@ def test_angles_are_the_same_a_full_turn_apart(unit: str, one: float, other: flo
 def test_of_one_run_there_is_no_spread() -> None:
     assert spread_of([3.0]) == 0.0
     assert deviation_of(3.0, 0.0, 0.5) == 6.0
+
+
+def turning(*angles: float) -> Recording:
+    """A tool that stands still and turns about the vertical, deg."""
+    tape = tapes.begin()
+    now = [0]
+    feed = Feed(lambda: now[0] / 10)
+    half = [radians(angle) / 2 for angle in angles]
+    feed.pose("tool", lambda: (0.0, 0.0, 1.0, cos(half[now[0]]), 0.0, 0.0, sin(half[now[0]])))
+    for now[0] in range(len(angles)):
+        feed.tick()
+    tapes.stop()
+    tape.recording.is_simulated = True
+    return tape.recording
+
+
+def test_a_tool_that_is_turned_on_its_way_is_told_by_the_angle_from_all_that_the_original_has() -> None:
+    usual = turning(0, 30, 60, 90)
+    assert told(turning(0, 30, 60, 200, 90), usual).story.startswith(
+        "tool was turned by up to 110 deg on its way"
+    )
+    late = told(turning(0, 0, 30, 60, 90), usual)
+    assert "turned by" not in late.story
+    assert late.deviation <= 1.0
+
+
+def test_things_that_left_their_paths_are_told_together() -> None:
+    way = [(x, y + (0.2 if 5 < number < 10 else 0.0), z) for number, (x, y, z) in enumerate(WAY)]
+    story = told(recorded(way, way), recorded(WAY, WAY)).story
+    assert (
+        "box and tool left their paths by up to 0.2 m and 0.2 m but reached the correct end positions"
+        in story
+    )

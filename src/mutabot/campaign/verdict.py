@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import traceback
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mutabot.campaign.baseline.baseline import Baseline, Sources, observation
-from mutabot.campaign.comparison import Observation, compare, farthest
+from mutabot.campaign.comparison import Difference, Observation, compare, farthest
 from mutabot.errors import MutabotError, in_short
 from mutabot.model import By, Kill, Looked, Mutant, Outcome, Verdict
 from mutabot.model.codec import shallow
@@ -373,12 +373,22 @@ def _collected_otherwise(run: Run) -> tuple[str, ...]:
     return tuple(told)
 
 
+def _with_tests(comparisons: Mapping[str, Difference]) -> list[Difference]:
+    """What differs in each test; if that is several, each line names its test."""
+    if sum(bool(one.divergence) for one in comparisons.values()) < 2:
+        return [*comparisons.values()]
+    return [
+        replace(one, divergence=tuple(f"{line} (in {test.rpartition('::')[2]})" for line in one.divergence))
+        for test, one in comparisons.items()
+    ]
+
+
 def _compared(campaign: Campaign, outcome: Outcome, run: Run) -> Outcome:
     """The outcome of a survivor with how far its world is from the original's."""
     baseline, vocabulary = campaign.baseline, campaign.request.vocabulary
     if otherwise := _collected_otherwise(run):
         return replace(outcome, divergence=otherwise, indistinguishable=False)
-    comparisons = []
+    comparisons: dict[str, Difference] = {}
     first = next((number for number, end in enumerate(run.ends) if end.hits), 0)
     since_hit = {end.test for end in run.ends[first:]}  # before it is hit, a mutant is the original
     hit = {end.test for end in run.ends if end.hits}
@@ -393,8 +403,8 @@ def _compared(campaign: Campaign, outcome: Outcome, run: Run) -> Outcome:
             known = vocabulary.probes, vocabulary.operations
             difference = compare(baseline.observations[key], found, *known, spread)
             # a test that has nothing to do with the mutant need not make what a probe reads
-            comparisons.append(difference if test in hit else replace(difference, gaps=()))
-    worst = farthest(comparisons)
+            comparisons[test] = difference if test in hit else replace(difference, gaps=())
+    worst = farthest(_with_tests(comparisons))
     # Without a probe, equal traces say only that the program did the same, not that the world ended so.
     is_claimed = worst.divergence or (worst.distance is not None and not worst.gaps)
     return replace(outcome, **shallow(worst if is_claimed else replace(worst, indistinguishable=None)))

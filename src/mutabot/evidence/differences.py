@@ -17,6 +17,8 @@ from mutabot.model.outcome import Apart
 BodyPair = tuple[str, ...]
 #: the share of a value's own range that counts as the same
 SHARE = 0.01
+#: orientations of a run that are compared with those of another one
+_MOST_TURNED = 150
 #: what the name of an orientation ends with
 TURNED = " turned"
 
@@ -50,6 +52,11 @@ def measures_of(path: TrackPath) -> Iterator[Measure]:
     yield Measure(track.name, "m", LENGTH, lambda one, other: dist(one[:3], other[:3]))
     if track.kind is TrackKind.POSE:
         yield Measure(f"{track.name}{TURNED}", "deg", TOLERANCES["deg"], turned)
+
+
+def _some(rows: Sequence[Row]) -> Sequence[Row]:
+    """Rows at equal distances, as many as are compared with each other in a moment."""
+    return rows[:: len(rows) // _MOST_TURNED + 1]
 
 
 def turned(one: Row, other: Row) -> float:
@@ -149,7 +156,13 @@ def _apart(
 
 
 def aside_of(measure: Measure, before: TrackPath, after: TrackPath) -> float | None:
-    """How far something left the path or range that it has in the original; None for angles."""
+    """How far something left the path, orientations or range that it has in the original.
+
+    None for angles that are values: in which range they are depends on how full turns are counted.
+    """
+    if measure.name.endswith(TURNED):
+        known = _some(before.rows)
+        return max((min(turned(one, row) for one in known) for row in _some(after.rows)), default=0.0)
     if measure.unit in TURNS:
         return None
     if before.track.kind is TrackKind.VALUE:

@@ -32,6 +32,8 @@ from mutabot.model.outcome import Apart, Diverged, Measurement
 
 #: parts of a sentence, how many of them may be contacts, and differences that are kept
 _MOST_PARTS, _MOST_CONTACTS, _MOST = 3, 2, 8
+#: things of which it is told how far they left their paths
+_MOST_PATHS = 2
 #: s by which a test must end earlier, and by which a thing must be let go at another time
 _EARLY, _OTHER_TIME = 1.0, 0.5
 #: m: a thing that is let go lower than this is set down
@@ -137,11 +139,13 @@ class _ComparedRuns:
         """The sentence, most important part first; empty if the world was the same."""
         parts = [*self._cut(), *list(self._contacts(measured))[:_MOST_CONTACTS]]
         others = [(one.deviation, self._motion(one)) for one in measured]
-        others += [(one.deviation, _strayed(one, is_whole=not self.is_cut)) for one in apart if _is_told(one)]
+        told = [one for one in apart if _is_told(one)]
+        others += [(one.deviation, _strayed(one, is_whole=not self.is_cut)) for one in told]
+        others += _detours(told, is_whole=not self.is_cut)
         parts += [text for _, text in sorted(others, key=lambda one: -one[0]) if text]
         parts = parts or [self._delay()] if apart else parts
         late = next((one for one in measured if one.name == DURATION), None)
-        if late is not None:
+        if late is not None and any(not one.is_delay for one in apart):  # else the delay says so
             parts.append(f"the test took {_beside(late, 3)}")
         text = "; ".join(list(dict.fromkeys(parts))[:_MOST_PARTS])
         if text and self.spread.scatters:
@@ -295,19 +299,34 @@ def _is_told(one: Apart) -> bool:
 def _strayed(one: Apart, *, is_whole: bool) -> str:
     """How far one thing was from its path, and where it ended; empty if not farther than the original."""
     strayed, final = one.aside or 0.0, one.final if is_whole and one.of_end > 1.0 else 0.0
-    left = f"{one.name} left its path by up to {amount(strayed)}"
-    if final > one.tolerance:
-        thing = one.name.removesuffix(TURNED)
-        if thing != one.name:
-            return f"{thing} ended turned by {amount(final, one.unit)}"
-        if one.unit != "m" or one.is_value:
-            return f"{one.name} ended {amount(final, one.unit)} from its value in the original"
-        if strayed > 2.0 * final:
-            return f"{left} and ended {amount(final)} from its original position"
-        return f"{one.name} ended {amount(final)} from its position in the original"
-    if strayed <= max(one.tolerance, one.aside_spread) or one.unit != "m" or one.is_value:
+    if final <= one.tolerance:
         return ""
-    return f"{left}{' but reached the correct end position' if is_whole else ''}"
+    thing = one.name.removesuffix(TURNED)
+    if thing != one.name:
+        return f"{thing} ended turned by {amount(final, one.unit)}"
+    if one.unit != "m" or one.is_value:
+        return f"{one.name} ended {amount(final, one.unit)} from its value in the original"
+    if strayed > 2.0 * final:
+        left = f"{one.name} left its path by up to {amount(strayed)}"
+        return f"{left} and ended {amount(final)} from its original position"
+    return f"{one.name} ended {amount(final)} from its position in the original"
+
+
+def _detours(apart: Sequence[Apart], *, is_whole: bool) -> Iterator[tuple[float, str]]:
+    """What left its path, or was turned on its way, and reached its end, each with its deviation."""
+    found = [one for one in apart if one.aside is not None and not _strayed(one, is_whole=is_whole)]
+    found = [one for one in found if one.aside > max(one.tolerance, one.aside_spread)]  # type: ignore[operator]
+    paths = [one for one in found if one.unit == "m" and not one.is_value]
+    if paths:
+        names = " and ".join(one.name for one in paths[:_MOST_PATHS])
+        far = " and ".join(amount(one.aside or 0.0) for one in paths[:_MOST_PATHS])
+        its, plural = ("its path", "") if len(paths) == 1 else ("their paths", "s")
+        end = f" but reached the correct end position{plural}" if is_whole else ""
+        yield paths[0].deviation, f"{names} left {its} by up to {far}{end}"
+    for one in found:
+        if one.name.endswith(TURNED):
+            thing, far = one.name.removesuffix(TURNED), amount(one.aside or 0.0, one.unit)
+            yield one.deviation, f"{thing} was turned by up to {far} on its way"
 
 
 def amount(value: float, unit: str = "m") -> str:

@@ -96,7 +96,8 @@ class Apart:
         largest: greatest difference, and ``at`` when, s.
         final: difference at the end.
         aside: of a position, the greatest distance from the path of the original, whenever that was there; of
-            a value, how far it left the original's range; None for orientations.
+            an orientation, the greatest angle from all that the original has; of a value, how far it left
+            the original's range; None for angles that are values.
         tolerance: difference up to which it counts as the same.
         spread: how far apart it ends in runs of the original with different seeds.
         aside_spread: how far these runs leave the paths or ranges of each other.

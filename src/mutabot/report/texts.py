@@ -184,7 +184,8 @@ def effect_text(result: MutantResult) -> str:
     why, rate = why_alone(result), result.kill_rate
     number, diverged = telling(result) or (0, None)
     if diverged is not None and diverged.story and diverged.story in why:
-        why += f" (in {place_text(result, number, diverged)})"
+        place = place_text(result, number, diverged)
+        why += f" (in {place})" if place else ""
     if result.lets_through and rate.killed:
         where = "" if result.survived else f" in {rate.valid - rate.killed} of {rate.valid} rounds"
         why += f"{where}; killed in {rate.killed} of {rate.valid} rounds"
@@ -206,9 +207,10 @@ def telling(result: MutantResult) -> tuple[int, Diverged | None] | None:
 
 
 def place_text(result: MutantResult, number: int, diverged: Diverged) -> str:
-    """Return the test in which something happened, and the round if there are several."""
-    test = diverged.test.rpartition("::")[2]
-    return test if len(result.rounds) == 1 else f"{test}, round {number + 1}"
+    """Return the test in which something happened if several ran, and the round if there are several."""
+    outcome = result.rounds[number]
+    test = diverged.test.rpartition("::")[2] if outcome is None or outcome.tests != 1 else ""
+    return ", ".join(filter(None, (test, f"round {number + 1}" if len(result.rounds) > 1 else "")))
 
 
 def short_reason(result: MutantResult) -> str:
