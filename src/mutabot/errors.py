@@ -3,8 +3,7 @@
     MutabotError
     ├── UsageError                  wrong command line, nothing to do with the user's files    (exit 2)
     │   ├── SelectionError          an id or a pattern that selects nothing
-    │   ├── MergeError              journals that are not the shards of one campaign
-    │   └── ClusterError            a cluster that cannot be reached, or whose workers do not fit
+    │   └── MergeError              journals that are not the shards of one campaign
     ├── ConfigurationError          a configuration or vocabulary file that cannot be used     (exit 2)
     │   ├── VocabularyError         a mistake in a vocabulary
     │   └── UnknownNameError        a name that does not exist, with the nearest that does
@@ -80,10 +79,6 @@ class SelectionError(UsageError):
 
 class MergeError(UsageError):
     """Journals cannot be put together: they are not the shards of one campaign."""
-
-
-class ClusterError(UsageError):
-    """A cluster cannot be used: nobody answers there, or its workers run with something else."""
 
 
 class ConfigurationError(MutabotError):

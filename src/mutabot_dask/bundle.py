@@ -20,7 +20,7 @@ from .environment import decided
 from .shipping import Shipment
 
 if TYPE_CHECKING:
-    from mutabot.config.configuration import Configuration
+    from mutabot.api.processes import Request
 
 
 #: bytes of a bundle that go with one message
@@ -140,22 +140,16 @@ def warnings(shipment: Shipment, bundle: Bundle) -> Iterator[str]:
         yield f"sent though it is named like a secret, since {why}: {listed(shipment.suspicious)}"
 
 
-def explained(shipment: Shipment, why: str) -> str:
-    """What was wrong on a worker, with the files that it lacks, if that is what it speaks of."""
-    names = shipment.named_in(why)
-    return f"{why} (not sent: {listed(names)}; {_ADVICE})" if names else why
-
-
 @dataclass(frozen=True, slots=True)
 class Forecast:
-    """See ``mutabot.campaign.request.Preview``: what workers will be sent."""
+    """See ``Preview`` of the core: what workers will be sent."""
 
     shipment: Shipment
 
     @classmethod
-    def of(cls, configuration: Configuration) -> Forecast:
-        """That of a project. Raises ClusterError where git cannot tell what it tracks."""
-        return cls(Shipment.of_configuration(configuration))
+    def of(cls, request: Request) -> Forecast:
+        """That of a project. Raises UsageError where git cannot tell what it tracks."""
+        return cls(Shipment.of(request))
 
     @property
     def folders_left_out(self) -> set[str]:

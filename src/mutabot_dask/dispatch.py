@@ -11,21 +11,16 @@ import queue
 import time
 from collections import deque
 from collections.abc import Collection, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from itertools import count
 from secrets import token_hex
-from typing import TYPE_CHECKING
 
-from mutabot.execution.interruption import interruptible
-from mutabot.execution.task import Result, Task
-from mutabot.model.events import Event, ForkDied
+from mutabot.api.processes import Answer, Result, Task, interruptible
 
 from . import far
+from .connection import ClusterConnection
 from .link import News, shown
-from .unit import Ground, Misfit, UnitAnswer, WorkUnit
-
-if TYPE_CHECKING:
-    from .cluster import Cluster
+from .unit import Misfit, UnitAnswer, WorkUnit
 
 #: how often a unit is tried: at first, and three times elsewhere
 TRIES = 4
@@ -38,8 +33,6 @@ _COMING = 60.0
 #: seconds without any worker until that is told, and until nobody waits any more
 _TOLD, _PATIENCE = 5.0, 600.0
 
-Heard = Result | tuple[Task, Event]
-
 
 @dataclass(slots=True)
 class _Trial:
@@ -49,7 +42,7 @@ class _Trial:
         task: the task.
         faults: how it was lost, one entry each.
         avoided: the workers with which it was.
-        answer, lines: the last answer, if there was one, and what its process reported.
+        answer: what became of the task where it was lost last, if that is known.
         unit: what the worker that runs it was given.
         until: when (``time.monotonic``) it must have ended, whatever it does.
         number: tells it from others.
@@ -59,8 +52,7 @@ class _Trial:
     task: Task
     faults: list[str] = field(default_factory=list)
     avoided: set[str] = field(default_factory=set)
-    answer: UnitAnswer | None = None
-    lines: list[Event] = field(default_factory=list)
+    answer: Answer | None = None
     unit: WorkUnit | None = None
     until: float = 0.0
     number: int = field(default_factory=count(1).__next__)
@@ -71,23 +63,22 @@ class Dispatch:
     """Runs tasks on a cluster.
 
     Args:
-        cluster: it.
-        ground: what units stand on.
+        connection: the cluster.
         tasks: what is to be run; taken as places free up.
     """
 
-    def __init__(self, cluster: Cluster, ground: Ground, tasks: Iterator[Task]) -> None:
-        self._cluster, self._ground, self._tasks = cluster, ground, tasks
+    def __init__(self, connection: ClusterConnection, tasks: Iterator[Task]) -> None:
+        self._connection, self._tasks = connection, tasks
+        self._ground = connection.ground
         self._again: deque[_Trial] = deque()
         self._running: dict[int, tuple[str, _Trial]] = {}
-        self._at_home: list[Task] = []
-        self._settled: deque[Heard] = deque()
+        self._settled: deque[Answer] = deque()
         self._next = self._taken()
         self._lonely_since: float | None = None
         self._was_told = False
 
-    def events(self) -> Iterator[Heard]:
-        """Lines and results; what has to run at home comes last."""
+    def answers(self) -> Iterator[Answer | Task]:
+        """Yield answers, and the tasks that have to run on this machine if the cluster is given up."""
         try:
             while self._running or self._again or self._next is not None:
                 self._assign()
@@ -95,29 +86,25 @@ class Dispatch:
                 while self._settled:
                     yield self._settled.popleft()
                 if not self._can_go_on():
-                    yield from self._cluster.home.events(self._rest())
+                    yield from self._rest()
                     return
-            yield from self._cluster.home.events(self._at_home)
         finally:
-            self._cluster.link.forget(*self._running)
+            self._connection.link.forget(*self._running)
 
     def _taken(self) -> _Trial | None:
-        for task in self._tasks:
-            if not is_for_home(task):
-                return _Trial(task)
-            self._at_home.append(task)
-        return None
+        task = next(self._tasks, None)
+        return _Trial(task) if task is not None else None
 
     def _assign(self) -> None:
         busy = {worker for worker, _ in self._running.values()}
-        fit = self._cluster.roster.fit
+        fit = self._connection.roster.fit
         for worker in (one for one in fit if one not in busy):
             trial = self._due(worker, fit)
             if trial is None:
                 continue
             trial.unit = WorkUnit(self._ground, trial.task, token_hex(16))
             trial.until = time.monotonic() + longest(trial.task)
-            number = self._cluster.link.ask(worker, far.run_unit, trial.unit.data())
+            number = self._connection.link.ask(worker, far.run_unit, trial.unit.data())
             self._running[number] = worker, trial
 
     def _due(self, worker: str, fit: Collection[str]) -> _Trial | None:
@@ -138,11 +125,11 @@ class Dispatch:
         if worker not in trial.avoided:
             return True
         is_coming = time.monotonic() < trial.lost_at + _COMING
-        others = {*fit, *(self._cluster.roster.usable if is_coming else ())} - trial.avoided
+        others = {*fit, *(self._connection.roster.usable if is_coming else ())} - trial.avoided
         return not others
 
     def _wait(self) -> None:
-        roster, link = self._cluster.roster, self._cluster.link
+        roster, link = self._connection.roster, self._connection.link
         try:
             with interruptible():
                 news = link.news.get(timeout=_PERIOD)
@@ -167,62 +154,48 @@ class Dispatch:
             return
         if news.data is None:
             if news.is_foreign:
-                self._cluster.roster.refuse(worker, news.why)
+                self._connection.roster.refuse(worker, news.why)
             self._lost(trial, worker, f"its worker gave no answer: {news.why}")
             return
         try:
-            answer, lines = UnitAnswer.of(news.data, trial.unit)
+            answer = UnitAnswer.of(news.data, trial.unit)
         except Misfit as error:
             self._misfit(trial, worker, shown(str(error)))
             return
         if answer.fault is not None:
-            trial.answer, trial.lines = (None, []) if answer.is_unfit else (answer, lines)
+            trial.answer = None if answer.is_unfit else answer.found
             if answer.is_unfit:
-                self._cluster.roster.refuse(worker, answer.fault)
+                self._connection.roster.refuse(worker, answer.fault)
             self._lost(trial, worker, shown(answer.fault))
             return
-        self._cluster.roster.has_run(worker)
-        self._settle(trial, answer, lines)
+        self._connection.roster.has_run(worker)
+        self._connection.done += 1
+        self._settled.append(answer.found or Answer([], Result(trial.task, lost=answer.lost)))
 
     def _misfit(self, trial: _Trial, worker: str, why: str) -> None:
         """Take no answer from a worker that gives wrong ones, and make nothing of this one."""
-        self._cluster.roster.refuse(worker, f"its answer does not fit: {why}")
+        self._connection.roster.refuse(worker, f"its answer does not fit: {why}")
         lost = f"the answer of its worker does not fit: {why} ({worker})"
-        self._settled.append(Result(trial.task, lost=lost))
-
-    def _settle(self, trial: _Trial, answer: UnitAnswer, lines: list[Event]) -> None:
-        self._cluster.done += 1
-        task = trial.task
-        overdue = {line.mutant for line in lines if isinstance(line, ForkDied) and line.overdue}
-        if answer.overdue is not None and not task.is_fork_parent:
-            self._at_home.append(task)
-            return
-        if overdue:
-            # a part of the fork parent at home decides about these
-            lines = [line for line in lines if getattr(line, "mutant", None) not in overdue]
-            self._at_home.append(_only(task, overdue))
-        self._settled.extend((task, line) for line in lines)
-        if not overdue:
-            self._settled.append(answer.result(task, lines))
+        self._settled.append(Answer([], Result(trial.task, lost=lost)))
 
     def _lost(self, trial: _Trial, worker: str, why: str) -> None:
         trial.faults.append(f"{why} ({worker})")
         trial.avoided.add(worker)
         trial.lost_at = time.monotonic()
-        self._cluster.roster.has_failed(worker, trial.number, trial.avoided, why)
+        self._connection.roster.has_failed(worker, trial.number, trial.avoided, why)
         if len(trial.faults) < TRIES:
             self._again.append(trial)
             self._again = deque(sorted(self._again, key=lambda one: len(one.faults)))
             return
         if trial.answer is not None:  # what ended it each time may be the mutant after all: the judge knows
-            self._settle(trial, trial.answer, trial.lines)
+            self._settled.append(trial.answer)
             return
         lost = f"{TRIES} workers could not run it: {'; '.join(dict.fromkeys(trial.faults))}"
-        self._settled.append(Result(trial.task, lost=lost))
+        self._settled.append(Answer([], Result(trial.task, lost=lost)))
 
     def _can_go_on(self) -> bool:
         """Whether there is a cluster; it may have to be reached again, or waited for."""
-        cluster = self._cluster
+        cluster = self._connection
         if cluster.link.is_lost:
             self._again.extendleft(trial for _, trial in self._running.values())
             self._running.clear()
@@ -247,13 +220,10 @@ class Dispatch:
         return True
 
     def _rest(self) -> Iterator[Task]:
-        """What has not been run."""
-        for trial in (*(one for _, one in self._running.values()), *self._again):
-            yield trial.task
-        while self._next is not None:
-            yield self._next.task
-            self._next = self._taken()
-        yield from self._at_home
+        """What has begun and has no answer, and what comes next."""
+        for trial in (*(one for _, one in self._running.values()), *self._again, self._next):
+            if trial is not None:
+                yield trial.task
 
 
 def longest(task: Task) -> float:
@@ -264,22 +234,3 @@ def longest(task: Task) -> float:
         suite = [forking.limits.get(test, forking.limit).wall for test in task.job.tests or ()]
         walls += [task.deadline.wall, *suite, len(forking.mutants) * sum(suite)]
     return _GRACE + 2 * (task.startup.wall + sum(walls))
-
-
-def is_for_home(task: Task) -> bool:
-    """Whether a task is to run on the controller's machine: the original, and whatever shares its files."""
-    job = task.job
-    return (job.mutant is None and job.forking is None) or job.pictures is not None or task.alone
-
-
-def _only(task: Task, mutants: set[str]) -> Task:
-    """The same fork parent with some of its mutants."""
-    forking = task.job.forking
-    assert forking is not None
-    own = replace(
-        forking,
-        mutants=tuple(one for one in forking.mutants if one.id in mutants),
-        keys={mutant: found for mutant, found in forking.keys.items() if mutant in mutants},
-    )
-    active = {mutant: found for mutant, found in task.job.active.items() if mutant in mutants}
-    return replace(task, job=replace(task.job, forking=own, active=active))

@@ -7,8 +7,6 @@ import sys
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
-from mutabot.execution.processes import usual_environment
-
 #: variables that say how Python, pytest and numbers behave, each by its whole name: a prefix would also take
 #: what somebody else keeps under such a name, as a key. Those that name places stay with their machine.
 _DECIDED = {
@@ -26,15 +24,16 @@ _DECIDED = {
     "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "RAYON_NUM_THREADS",
     "MUJOCO_GL", "PYOPENGL_PLATFORM",
 }  # fmt: skip
-#: variables that nobody set and that Dask's nannies set
-_NOT_TO_BE = ("PYTHONHASHSEED", "PYTHONOPTIMIZE", "PYTHONWARNINGS", "PYTEST_ADDOPTS", "PYTEST_PLUGINS", "TZ")
+#: of these, what a worker or its nanny has set is taken away: mutabot's processes then get what they get here
+_RESET = (
+    "PYTHONHASHSEED", "PYTHONOPTIMIZE", "PYTHONWARNINGS", "PYTEST_ADDOPTS", "PYTEST_PLUGINS", "TZ",
+    "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS",
+)  # fmt: skip
 
 
 def decided() -> dict[str, str | None]:
     """The variables that this machine decides for all; None for those that are not to be set."""
-    here = usual_environment()
-    ours = {name: value for name, value in here.items() if name in _DECIDED}
-    return {**dict.fromkeys(_NOT_TO_BE), **ours}
+    return dict.fromkeys(_RESET) | {name: text for name, text in os.environ.items() if name in _DECIDED}
 
 
 def apply(environment: Mapping[str, str | None], paths: Iterable[str]) -> None:

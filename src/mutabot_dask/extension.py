@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from mutabot.extensions import Described, Extension
+from mutabot.api.faults import Described, Extension
 
 EXTENSION = Extension(
     interface=2,
     executors={
         "cluster": Described(
-            "mutabot_dask.settings:ClusterSettings",
+            "mutabot_dask.choice:ClusterChoice",
             "Run mutants on a Dask cluster: tcp://host:8786, tls://…, local:4, or a scheduler file.",
             "WHERE",
         )

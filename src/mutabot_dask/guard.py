@@ -15,7 +15,7 @@ import pickle
 from types import SimpleNamespace
 from typing import Any
 
-from mutabot.errors import ClusterError
+from mutabot.api.reports import UsageError
 
 #: how the type of bytes is pickled, which is all that an answer needs
 _BYTES = {pickle.dumps(bytes, protocol) for protocol in range(pickle.HIGHEST_PROTOCOL + 1)}
@@ -56,7 +56,7 @@ class _Reader(pickle.Unpickler):
 
 
 def install() -> None:
-    """Replace what unpickles. Raises ClusterError if Dask has changed so much that it is not where it was."""
+    """Replace what unpickles. Raises UsageError if Dask has changed so much that it is not where it was."""
     for module, name, replacement in (
         ("distributed.protocol.pickle", "loads", _loaded),
         ("distributed.protocol.core", "merge_and_deserialize", _deserialized),
@@ -67,7 +67,7 @@ def install() -> None:
     ):
         found = importlib.import_module(module)
         if not hasattr(found, name):
-            raise ClusterError(
+            raise UsageError(
                 f"this version of distributed has no {module}.{name}, so workers could run programs on this "
                 "machine: install another version of mutabot or distributed"
             )

@@ -21,12 +21,12 @@ from itertools import count
 from typing import Any
 from urllib.parse import urlsplit
 
-from mutabot.errors import ClusterError
+from mutabot.api.reports import UsageError
 
 try:
     import distributed
 except ImportError as error:  # said in words a user can act on
-    raise ClusterError(
+    raise UsageError(
         "--cluster needs the library distributed, which is not installed here: "
         f"pip install 'path/to/mutabot[cluster]' ({error})"
     ) from error
@@ -85,7 +85,7 @@ class Link:
     Attributes:
         news: answers, as they come.
 
-    Raises ClusterError if nobody answers there.
+    Raises UsageError if nobody answers there.
     """
 
     _numbers = count(1)
@@ -106,7 +106,7 @@ class Link:
             self._call_once()
         except Exception as error:
             self.close()
-            raise ClusterError(_why_not(settings, address, error)) from error
+            raise UsageError(_why_not(settings, address, error)) from error
         self._calling.start()
 
     @property
@@ -198,7 +198,7 @@ def _client(settings: ClusterSettings, address: str) -> Any:
         open_client: Any = distributed.Client
         return open_client(address, security=security, timeout=PATIENCE, set_as_default=False, name="mutabot")
     except (OSError, ValueError, TypeError, RuntimeError) as error:
-        raise ClusterError(_why_not(settings, address, error)) from error
+        raise UsageError(_why_not(settings, address, error)) from error
 
 
 def _security(settings: ClusterSettings, address: str) -> Any:

@@ -16,16 +16,15 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from mutabot.errors import ClusterError
-from mutabot.execution.interruption import interruptible
-from mutabot.execution.remains import end_below
-from mutabot.execution.task import last_line
+from mutabot.api.processes import interruptible
+from mutabot.api.reports import UsageError
 
-#: what the processes run; nothing outlives whoever started it
+#: what the processes run; the kernel kills them with whoever started them (PR_SET_PDEATHSIG)
 _CODE = (
-    "import sys\n"
-    "from mutabot.runtime.isolation.namespaces import die_with_parent\n"
-    "die_with_parent(int(sys.argv[1]))\n"
+    "import ctypes, os, signal, sys\n"
+    "ctypes.CDLL(None).prctl(1, signal.SIGKILL, 0, 0, 0)\n"
+    "if os.getppid() != int(sys.argv[1]):\n"
+    "    sys.exit(1)\n"
     "from distributed.cli.dask_{what} import main\n"
     "sys.argv[:] = ['dask-{what}', *sys.argv[2:]]\n"
     "main()\n"
@@ -59,7 +58,7 @@ class LocalCluster:
     Attributes:
         certificates: what to connect with.
 
-    Raises ClusterError if certificates cannot be made.
+    Raises UsageError if certificates cannot be made.
     """
 
     def __init__(self, workers: int, folder: Path) -> None:
@@ -70,7 +69,7 @@ class LocalCluster:
         self._workers: subprocess.Popen[bytes] | None = None
 
     def start(self) -> str:
-        """Start all anew; returns the scheduler's address. Raises ClusterError."""
+        """Start all anew; returns the scheduler's address. Raises UsageError."""
         self.close()
         file = self._folder / "scheduler.json"
         file.unlink(missing_ok=True)
@@ -78,8 +77,8 @@ class LocalCluster:
         until = time.monotonic() + _PATIENCE
         while not file.is_file() or not file.read_bytes():
             if self._scheduler.poll() is not None or time.monotonic() > until:
-                said = last_line((self._folder / "scheduler.log").read_text(errors="replace"))
-                raise ClusterError(f"a scheduler could not be started on this machine: {said}")
+                said = (self._folder / "scheduler.log").read_text(errors="replace").strip().splitlines()
+                raise UsageError(f"a scheduler could not be started on this machine: {''.join(said[-1:])}")
             with interruptible():
                 time.sleep(0.05)
         self._address = address_in(file)
@@ -98,7 +97,6 @@ class LocalCluster:
         for process in (self._workers, self._scheduler):
             if process is not None:
                 _end(process)
-        end_below(self._folder)  # what tests had started
         self._workers = self._scheduler = None
 
     def _start_workers(self) -> None:
@@ -134,11 +132,11 @@ def _end(process: subprocess.Popen[bytes]) -> None:
 
 
 def address_in(file: Path) -> str:
-    """The address in a scheduler file. Raises ClusterError."""
+    """The address in a scheduler file. Raises UsageError."""
     try:
         return str(json.loads(file.read_text(encoding="utf-8"))["address"])
     except (OSError, ValueError, KeyError, TypeError) as error:
-        raise ClusterError(
+        raise UsageError(
             f"{file} is no scheduler file: `dask scheduler --scheduler-file {file}` writes one"
         ) from error
 
@@ -159,14 +157,14 @@ class Certificates:
 
     @classmethod
     def make(cls, folder: Path) -> Certificates:
-        """New ones, in a new folder that only this user can enter. Raises ClusterError."""
+        """New ones, in a new folder that only this user can enter. Raises UsageError."""
         import distributed  # noqa: PLC0415  # addresses in scheduler files are read without Dask
 
         security: type = distributed.Security
         try:
             made = security.temporary()  # type: ignore[attr-defined]
         except ImportError as error:
-            raise ClusterError(
+            raise UsageError(
                 "--cluster local:N encrypts its connections, which needs the library cryptography: "
                 f"pip install 'path/to/mutabot[cluster]' ({error})"
             ) from error

@@ -180,12 +180,10 @@ class Roster:
     def dismiss(self) -> None:
         """The campaign is over: workers need to keep nothing of it."""
         for address in self.usable:
-            self._ask(address, far.leave, self.bundle.digest if self.bundle is not None else "")
+            self._ask(address, far.leave)
 
     def _introduce(self, address: str) -> None:
-        bundle = self.bundle
-        named = (bundle.digest, bundle.inner) if bundle is not None else ("", "")
-        self._ask(address, far.introduce, *named)
+        self._ask(address, far.introduce, self.bundle.digest if self.bundle is not None else "")
 
     def _ask(self, address: str, function: Callable[..., bytes], *arguments: object) -> None:
         number = self.link.ask(address, function, *arguments)

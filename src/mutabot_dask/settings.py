@@ -4,21 +4,15 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable
-from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING
 
-from mutabot.campaign.request import ExecutorChoice, Request
-from mutabot.config.table import ProjectFiles, Table
-from mutabot.errors import UsageError
-from mutabot.execution.task import Executor
+from mutabot.api.processes import ProjectFiles, Table
+from mutabot.api.reports import UsageError
 
 if TYPE_CHECKING:
-    from mutabot.config.configuration import Configuration
-
-    from .bundle import Forecast
+    pass
 
 _LOCAL = re.compile(r"local:([0-9]+)")
 _ADDRESS = re.compile(r"(?:tcp|tls)://(?:[^/:]+|\[[0-9a-fA-F:]+\]):0*([0-9]{1,5})")
@@ -55,14 +49,13 @@ class ClusterTable(Table):
     """
 
     @classmethod
-    def of(cls, configuration: Configuration) -> ClusterTable:
-        """The table in a configuration; an empty one if there is none."""
-        found = configuration.tables.get("cluster")
-        return found if isinstance(found, cls) else cls()
+    def of(cls, table: Table | None) -> ClusterTable:
+        """The table of a configuration; an empty one if it has none."""
+        return table if isinstance(table, cls) else cls()
 
 
 @dataclass(frozen=True, slots=True)
-class ClusterSettings(ExecutorChoice):
+class ClusterSettings:
     """A cluster.
 
     Attributes:
@@ -74,28 +67,6 @@ class ClusterSettings(ExecutorChoice):
     ca: str | None = None
     cert: str | None = None
     key: str | None = None
-
-    @classmethod
-    def parse(cls, value: str, root: Path, table: Table | None) -> Self:
-        """See ``ExecutorChoice``: with the certificate files of the configuration, if it may need them."""
-        table = table if isinstance(table, ClusterTable) else ClusterTable()
-        names = () if value.startswith(("tcp://", "local:")) else (table.ca, table.cert, table.key)
-        found = cls(value, *(None if name is None else str(root / name) for name in names))
-        found.check()
-        return found
-
-    def open(self, request: Request, tell: Callable[[str], None]) -> AbstractContextManager[Executor]:
-        """See ``ExecutorChoice``. Raises ClusterError."""
-        from .cluster import Cluster  # noqa: PLC0415  # it needs Dask
-
-        return Cluster.opened(request, self, tell)
-
-    @classmethod
-    def preview(cls, request: Request) -> Forecast:
-        """See ``ExecutorChoice``: what workers are sent."""
-        from .bundle import Forecast  # noqa: PLC0415  # it looks at the whole project
-
-        return Forecast.of(request.configuration)
 
     def check(self) -> None:
         """Raise UsageError for what cannot be a cluster."""

@@ -11,24 +11,25 @@ if TYPE_CHECKING:
     from mutabot.campaign.simulation import SimulatedMiddleware
     from mutabot.config.table import ProjectFiles, Table
     from mutabot.evidence import Feed
+    from mutabot.execution.answer import Answer
     from mutabot.execution.interruption import interruptible
     from mutabot.execution.observation import Observed, observe
-    from mutabot.execution.task import Executor, Result, Task
+    from mutabot.execution.remote import RemoteExecutor
+    from mutabot.execution.task import Result, Task
     from mutabot.execution.workers import Workers
-    from mutabot.model.job import Job
     from mutabot.runtime.observer import CallOrigin, Observer
     from mutabot.runtime.pytest_plugin import seed_of
     from mutabot.shared_memory import SharedMemory
 
 __all__ = [
+    "Answer",
     "CallOrigin",
-    "Executor",
     "ExecutorChoice",
     "Feed",
-    "Job",
     "Observed",
     "Observer",
     "ProjectFiles",
+    "RemoteExecutor",
     "Request",
     "Result",
     "SharedMemory",
@@ -51,18 +52,18 @@ _HOMES = {
         "Table",
     ),
     "mutabot.evidence": ("Feed",),
+    "mutabot.execution.answer": ("Answer",),
     "mutabot.execution.interruption": ("interruptible",),
     "mutabot.execution.observation": (
         "Observed",
         "observe",
     ),
+    "mutabot.execution.remote": ("RemoteExecutor",),
     "mutabot.execution.task": (
-        "Executor",
         "Result",
         "Task",
     ),
     "mutabot.execution.workers": ("Workers",),
-    "mutabot.model.job": ("Job",),
     "mutabot.runtime.observer": (
         "CallOrigin",
         "Observer",

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, Self
 
+from mutabot.campaign.project_files import ProjectListing
 from mutabot.config.configuration import Configuration
 from mutabot.config.options import Sample, Shard
 from mutabot.errors import UsageError, unknown_name_text
@@ -24,6 +25,7 @@ from mutabot.model.job import Job
 if TYPE_CHECKING:
     from mutabot.config.table import Table
     from mutabot.execution.task import Executor
+    from mutabot.execution.workers import Workers
     from mutabot.model.mutant_end import MutantEnd
 
 AUTO, FORK, REPLAY = "auto", "fork", "replay"
@@ -187,7 +189,11 @@ class Request:
         """Where the journal of this project lies."""
         return self.root / HOME / self.journal
 
-    def on_this_machine(self, tell: Callable[[str], None]) -> AbstractContextManager[Executor]:
+    def files(self) -> ProjectListing:
+        """List the project's files, for whoever takes some of them elsewhere. Raises UsageError."""
+        return ProjectListing.of(self.root, self.configuration)
+
+    def on_this_machine(self, tell: Callable[[str], None]) -> AbstractContextManager[Workers]:
         """Open an executor on this machine that runs ``jobs`` tasks at a time; leaving it ends all.
 
         ``tell``: told what the user should know about how tasks run.

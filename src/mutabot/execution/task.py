@@ -7,14 +7,16 @@ are, and what their results mean, is the engines' business. A package brings ano
 
 from __future__ import annotations
 
+import json
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
 from mutabot.frozen import frozen
 from mutabot.model import Span, events
+from mutabot.model.codec import from_data, to_data
 from mutabot.model.deadline import Limit
 from mutabot.model.event_file import UNWRITTEN
 from mutabot.model.job import Job
@@ -80,6 +82,40 @@ class Task:
     is_fork_parent: bool = False
     may_share: bool = False
     alone: bool = False
+
+    def to_bytes(self) -> bytes:
+        """Return it as JSON, without its key, which means something on this machine only."""
+        return json.dumps(to_data(replace(self, key=None)), separators=(",", ":")).encode()
+
+    @classmethod
+    def of_bytes(cls, data: bytes) -> Task:
+        """Return the task in what ``to_bytes`` made; its key is None."""
+        return from_data(cls, json.loads(data))
+
+    def in_folder(self, root: str) -> Task:
+        """Return the same with the project in another folder, given by its absolute path."""
+        return replace(self, job=replace(self.job, root=root))
+
+    def only(self, mutants: Collection[str]) -> Task:
+        """Return the same fork parent with some of its mutants, given by their ids."""
+        forking = self.job.forking
+        assert forking is not None
+        own = replace(
+            forking,
+            mutants=tuple(one for one in forking.mutants if one.id in mutants),
+            keys={mutant: found for mutant, found in forking.keys.items() if mutant in mutants},
+        )
+        active = {mutant: found for mutant, found in self.job.active.items() if mutant in mutants}
+        return replace(self, job=replace(self.job, forking=own, active=active))
+
+    def without_mutant(self, test: str) -> Task:
+        """Return the same with the original program, up to a test, given by its node id."""
+        tests = self.job.tests or ()
+        job = replace(
+            self.job, tests=tests[: tests.index(test) + 1] if test in tests else tests, mutant=None,
+            forking=None, active={}, stop_at_kill=False, instrumentation=None, record=False, evidence=False,
+        )  # fmt: skip
+        return replace(self, job=job, is_fork_parent=False, may_share=False)
 
 
 @dataclass(slots=True)

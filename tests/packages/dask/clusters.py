@@ -15,10 +15,14 @@ from typing import Any
 
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
+from mutabot.config.configuration import load_configuration
+from mutabot.model import Vocabulary
 from mutabot.model.codec import to_data
+from mutabot_dask.choice import ClusterChoice
 from mutabot_dask.link import Link
 from mutabot_dask.local import LocalCluster
 from mutabot_dask.settings import ClusterSettings
+from mutabot_dask.shipping import Shipment
 from tests.campaign.project import Quiet, outcomes, request_for, write_project
 
 MISSION = """
@@ -99,6 +103,11 @@ def write_slow(folder: Path) -> Path:
     return write_project(folder, SLOW_MISSION, SLOW_TESTS)
 
 
+def shipment_of(folder: Path) -> Shipment:
+    """What goes to workers of a project, whose vocabulary is not read."""
+    return Shipment.of(Request(load_configuration(folder.resolve()), Vocabulary(()), 1, 0, 1))
+
+
 def ends(path: Path) -> Ends:
     """All outcomes of a journal, bar what differs between equal runs."""
     found = {(one.mutant, one.round): to_data(one) for one in outcomes(path)}
@@ -111,7 +120,7 @@ def ends(path: Path) -> Ends:
 def on_cluster(request: Request, where: str | ClusterSettings, **changes: Any) -> Request:
     """The same campaign on a cluster."""
     there = ClusterSettings(where) if isinstance(where, str) else where
-    return replace(request, executor=replace(there, **changes), fresh=True)
+    return replace(request, executor=ClusterChoice(replace(there, **changes)), fresh=True)
 
 
 def run_twice(project: Path, where: str | ClusterSettings, **changes: Any) -> tuple[Ends, Ends, Quiet]:

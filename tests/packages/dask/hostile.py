@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-#: what a worker does when it is asked to introduce itself: ``digest`` names the attack, ``inner`` a file
-#: in which whoever unpickles its load writes the number of its process
+#: what a worker does when it is asked to introduce itself: the first argument names the attack, the other a
+#: file in which whoever unpickles its load writes the number of its process
 CODE = '''
 import builtins, importlib, os, pickle
 from distributed import get_worker
@@ -82,8 +82,8 @@ def as_bytes(file):
 
 attacks = {name: attack for name, attack in list(globals().items()) if name.startswith("as_")}
 
-def attack(digest, inner):
-    return attacks[digest](inner)
+def attack(name, file):
+    return attacks[name](file)
 
 far.introduce = attack
 
@@ -105,11 +105,12 @@ ATTACKS = (
 #: a worker that says of every unit that mutants were killed which it was not asked for
 FORGER = """
 from dataclasses import replace
+from mutabot.execution.answer import Answer
+from mutabot.execution.task import Result
 from mutabot.model.events import ForkTestEnd, SessionEnd
 from mutabot.model.events import TestEnd
 from mutabot_dask import far
 from mutabot_dask.unit import UnitAnswer, WorkUnit
-from mutabot.execution.task import Result
 
 honest = far.run_unit
 
@@ -120,8 +121,8 @@ def run_unit(data):
     (test, *_), mutant = unit.task.job.tests, unit.task.job.mutant
     killed = TestEnd(test, "failed", hits=1, acted=1)
     forged = ForkTestEnd(replace(mutant, operator="noise").id, killed)
-    answer = UnitAnswer.of_result((killed, forged, SessionEnd(1)), Result(unit.task))
-    return replace(answer, ticket=unit.ticket).data("/", "/")
+    answer = Answer([killed, forged, SessionEnd(1)], Result(unit.task))
+    return UnitAnswer(answer, ticket=unit.ticket).data(unit.ground.root)
 
 far.run_unit = run_unit
 """

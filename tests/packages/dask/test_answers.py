@@ -16,12 +16,14 @@ import pytest
 
 from mutabot.campaign.baseline.baseline import observation
 from mutabot.campaign.comparison import compare
+from mutabot.execution.answer import MOST_BYTES, Answer
 from mutabot.execution.task import Result, Task
 from mutabot.model import Mutant, Role, Site, Span, Vocabulary
 from mutabot.model.codec import to_data
 from mutabot.model.events import (
     Acted,
     Called,
+    Event,
     ForkEnded,
     ForkTestEnd,
     SessionEnd,
@@ -37,7 +39,7 @@ from mutabot_dask.dispatch import Dispatch
 from mutabot_dask.far import WorkerSession
 from mutabot_dask.link import News
 from mutabot_dask.roster import Roster
-from mutabot_dask.unit import MOST_BYTES, Ground, Introduction, Misfit, UnitAnswer, WorkUnit
+from mutabot_dask.unit import Ground, Introduction, Misfit, UnitAnswer, WorkUnit
 
 from .hostile import ODD
 
@@ -74,7 +76,7 @@ def fork_parent(ticket: str = "ticket") -> WorkUnit:
 
 def good(ticket: str = "ticket") -> dict[str, Any]:
     """The data of an answer that fits."""
-    lines = (
+    events = (
         SiteSeen(0, SPAN, "robot:Arm.move_by", None, False),
         Called(0, [0.25], None),
         Acted(""),
@@ -82,12 +84,14 @@ def good(ticket: str = "ticket") -> dict[str, Any]:
         END,
         SessionEnd(0, (TEST,)),
     )
-    data: dict[str, Any] = to_data(UnitAnswer.of_result(lines, Result(task(1), wall=0.5)))
-    return {**data, "ticket": ticket}
+    sent = UnitAnswer(Answer([*events], Result(task(1), wall=0.5)), ticket=ticket).data(GROUND.root)
+    said, ending, *lines = map(json.loads, sent.splitlines())
+    return {"said": said, "ending": ending, "lines": lines}
 
 
 def packed(data: Any) -> bytes:
-    return json.dumps(data).encode()
+    lines = data["lines"] if isinstance(data["lines"], list) else [data["lines"]]
+    return b"\n".join(json.dumps(line).encode() for line in (data["said"], data["ending"], *lines))
 
 
 def changed(change: Callable[[dict[str, Any]], Any]) -> bytes:
@@ -96,28 +100,42 @@ def changed(change: Callable[[dict[str, Any]], Any]) -> bytes:
     return packed(data)
 
 
+def events_of(data: bytes, unit: WorkUnit) -> list[Event]:
+    """The events in an answer."""
+    found = UnitAnswer.of(data, unit).found
+    assert found is not None
+    return found.events
+
+
 def test_what_a_worker_saw_arrives() -> None:
-    answer, lines = UnitAnswer.of(packed(good()), unit())
-    found = answer.result(unit().task, lines)
+    answer = UnitAnswer.of(packed(good()), unit()).found
+    assert answer is not None
+    found = answer.result
     assert [to_data(end) for end in found.ends] == [to_data(END)]
     assert found.end == SessionEnd(0, (TEST,))
 
 
 _WRONG: dict[str, bytes] = {
     "no JSON": b"{",
-    "no UTF-8": b'{"log": "\xff"}',
+    "no UTF-8": b'{"ticket": "\xff"}',
     "another form of Unicode": json.dumps({"ticket": "ticket"}).encode("utf-16"),
     "no object": b"[]",
-    "deep": b'{"lines":' + b"[" * 100_000 + b"]" * 100_000 + b"}",
-    "a number of 5,000 digits": b'{"exit_code":' + b"9" * 5000 + b"}",
+    "a line alone": packed(good()).partition(b"\n")[0],
+    "a huge line": b'{"ticket": "' + b"x" * (1 << 21) + b'"}',
+    "deep": b'{"ticket":' + b"[" * 100_000 + b"]" * 100_000 + b"}",
+    "a deep event": packed(good()) + b"\n" + b"[" * 100_000 + b"]" * 100_000,
+    "a number of 5,000 digits": b'{"ticket":' + b"9" * 5000 + b"}",
+    "an event with a number of 5,000 digits": packed(good()) + b'\n{"type":' + b"9" * 5000 + b"}",
     "a number that is no fraction": changed(
         lambda a: a["lines"][END_LINE]["trace"].append([0, [10**400], None, None])
     ),
     "an answer to something else": packed(good("another")),
-    "an unknown field": changed(lambda a: a.update(verdict="killed")),
-    "a time that is none": changed(lambda a: a.update(wall=float("nan"))),
+    "an unknown field of the message": changed(lambda a: a["said"].update(verdict="killed")),
+    "a fault that is no text": changed(lambda a: a["said"].update(fault=7)),
+    "an unknown field": changed(lambda a: a["ending"].update(verdict="killed")),
+    "a time that is none": changed(lambda a: a["ending"].update(wall=float("nan"))),
     "a time before its beginning": changed(lambda a: a["lines"][END_LINE].update(wall=-1.0)),
-    "true for a number": changed(lambda a: a.update(exit_code=True)),
+    "true for a number": changed(lambda a: a["ending"].update(exit_code=True)),
     "a huge count": changed(lambda a: a["lines"][END_LINE].update(hits=2**70)),
     "a text for a list": changed(lambda a: a.update(lines="abc")),
     "a line of no kind": changed(lambda a: a["lines"].append({"type": "Verdict"})),
@@ -147,30 +165,29 @@ def test_what_is_no_answer_to_a_unit_is_told(data: bytes) -> None:
 
 def test_an_answer_of_absurd_size_is_not_read() -> None:
     with pytest.raises(Misfit, match=f"more than {MOST_BYTES}"):
-        UnitAnswer.of(b" " * (MOST_BYTES + 1), unit())
+        UnitAnswer.of(packed(good()) + b" " * MOST_BYTES, unit())
 
 
 def test_a_fork_parent_tells_of_its_own_mutants_only() -> None:
     data = good()
     data["lines"].append(event_to_data(ForkTestEnd(mutant(1).id, replace(END, trace=()))))
-    _, lines = UnitAnswer.of(packed(data), fork_parent())
-    assert sum(isinstance(line, ForkTestEnd) for line in lines) == 1
+    assert sum(isinstance(line, ForkTestEnd) for line in events_of(packed(data), fork_parent())) == 1
     data["lines"].append(event_to_data(ForkTestEnd(mutant(2).id, replace(END, trace=()))))
-    with pytest.raises(Misfit, match="is no mutant of this unit"):
+    with pytest.raises(Misfit, match="is no mutant of this task"):
         UnitAnswer.of(packed(data), fork_parent())
 
 
 def test_the_unmutated_program_has_the_tests_of_its_unit_and_a_mutant_may_make_others() -> None:
     data = changed(lambda a: a["lines"][END_LINE].update(test="tests/test_other.py::test"))
-    with pytest.raises(Misfit, match="is no test of this unit"):
+    with pytest.raises(Misfit, match="is no test of this task"):
         UnitAnswer.of(data, fork_parent())
-    _, lines = UnitAnswer.of(data, unit())
-    assert any(isinstance(line, TestEnd) and line.test == "tests/test_other.py::test" for line in lines)
+    ends = [line for line in events_of(data, unit()) if isinstance(line, TestEnd)]
+    assert [line.test for line in ends] == ["tests/test_other.py::test"]
 
 
 def test_texts_can_be_stored() -> None:
     data = changed(lambda a: a["lines"][END_LINE].update(message="half \ud83d a sign", exception="\x00"))
-    (found,) = (line for line in UnitAnswer.of(data, unit())[1] if isinstance(line, TestEnd))
+    (found,) = (line for line in events_of(data, unit()) if isinstance(line, TestEnd))
     assert found.message == "half \\ud83d a sign"
 
 
@@ -178,9 +195,9 @@ def test_a_worker_does_not_send_what_would_not_be_taken(tmp_path: Path) -> None:
     """What its process reports is the mutant's doing, not the worker's: it is not left out for it."""
     session = WorkerSession(tmp_path, GROUND)
     data = session._fitting(changed(lambda a: a["lines"][END_LINE].update(hits="many")), unit())
-    answer, _ = UnitAnswer.of(data, unit())
+    answer = UnitAnswer.of(data, unit())
     assert answer.lost is not None
-    assert "lines[4] (TestEnd): TypeError: a whole number was expected, not str" in answer.lost
+    assert "events[4] (TestEnd): TypeError: a whole number was expected, not str" in answer.lost
 
 
 def odd_bytes(random: random.Random) -> bytes:
@@ -237,20 +254,15 @@ class FakeLink:
 class FakeCluster:
     """A cluster that is only asked."""
 
-    done, home = 0, None
+    done, ground = 0, GROUND
 
     def __init__(self, odd: dict[int, bytes]) -> None:
         self.told: list[str] = []
         self.link = FakeLink(odd)
         self.roster = Roster(self.link, {}, self.tell, Bundle("digest", "", b"", 0, ()))  # type: ignore[arg-type]
-        self.home = self
 
     def tell(self, text: str) -> None:
         self.told.append(text)
-
-    def events(self, tasks: Any) -> Iterator[Any]:
-        assert not list(tasks), "nothing is left for this machine"
-        yield from ()
 
     def look_after(self) -> None:
         pass
@@ -261,8 +273,8 @@ def test_a_thousand_odd_answers_cost_no_other_outcome(seed: int) -> None:
     chance = random.Random(seed)
     odd = {2 * number: odd_bytes(chance) for number in range(1, 501)}
     there = FakeCluster(odd)
-    dispatch = Dispatch(there, GROUND, iter([task(number) for number in range(1, 1001)]))  # type: ignore[arg-type]
-    results = {event.task.key: event for event in dispatch.events() if isinstance(event, Result)}
+    dispatch = Dispatch(there, iter([task(number) for number in range(1, 1001)]))  # type: ignore[arg-type]
+    results = {one.result.task.key: one.result for one in dispatch.answers() if isinstance(one, Answer)}
     assert set(results) == set(range(1, 1001))
     for number, found in results.items():
         if number not in odd:

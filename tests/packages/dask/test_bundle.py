@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import os
-import subprocess
 import sys
 import tarfile
 from pathlib import Path
@@ -14,7 +13,8 @@ import pytest
 from mutabot_dask.bundle import Bundle
 from mutabot_dask.environment import apply, decided, differences, module_folders
 from mutabot_dask.far import Store
-from mutabot_dask.shipping import Shipment
+
+from .clusters import shipment_of
 
 
 def project(folder: Path) -> Path:
@@ -22,6 +22,7 @@ def project(folder: Path) -> Path:
         "src/mission.py": "x = 1\n",
         "tests/test_mission.py": "",
         "data/table.csv": "1,2\n",
+        "mutabot.toml": 'program = ["src/mission.py"]\nfamilies = ["conventional"]\n',
         ".mutabot/journal.sqlite": "",
         "__pycache__/mission.pyc": "",
     }.items():
@@ -35,7 +36,7 @@ def project(folder: Path) -> Path:
 
 
 def packed(folder: Path) -> Bundle:
-    return Bundle.make(Shipment.of(folder))
+    return Bundle.make(shipment_of(folder))
 
 
 def names(bundle: Bundle) -> set[str]:
@@ -46,7 +47,7 @@ def names(bundle: Bundle) -> set[str]:
 def test_it_holds_what_outcomes_depend_on(tmp_path: Path) -> None:
     bundle = packed(project(tmp_path / "cell"))
     assert bundle.inner == "cell"
-    expected = {"src/mission.py", "tests/test_mission.py", "data/table.csv", "out", "run.sh"}
+    expected = {"mutabot.toml", "src/mission.py", "tests/test_mission.py", "data/table.csv", "out", "run.sh"}
     assert names(bundle) == {f"cell/{name}" for name in expected}
 
 
@@ -68,43 +69,38 @@ def test_what_tells_pytest_how_to_run_comes_along_from_above(tmp_path: Path) -> 
     assert not any("secret" in name for name in names(bundle))
 
 
-def test_a_machine_unpacks_it_once_and_keeps_it_while_it_is_used(tmp_path: Path) -> None:
+def test_a_worker_unpacks_it_when_the_last_part_has_come(tmp_path: Path) -> None:
     bundle = packed(project(tmp_path / "cell"))
-    one, two = Store(tmp_path / "store"), Store(tmp_path / "store")
-    assert not one.has(bundle.digest)
+    store = Store(tmp_path)
+    assert not store.has(bundle.digest)
     half = len(bundle.data) // 2
-    one.take(bundle.digest, 1, 2, bundle.data[half:])
-    assert not one.has(bundle.digest)
-    one.take(bundle.digest, 0, 2, bundle.data[:half])
-    assert two.has(bundle.digest)
-    place = two.place(bundle.digest)
-    assert os.access(place / "cell" / "run.sh", os.X_OK)
-    two.take(bundle.digest, 0, 1, bundle.data)  # a second one is as good
-    one.leave(bundle.digest)
-    assert place.is_dir()
-    two.leave(bundle.digest)
-    assert list((tmp_path / "store").iterdir()) == []
+    store.take(bundle.digest, 1, 2, bundle.data[half:])
+    assert not store.has(bundle.digest)
+    store.take(bundle.digest, 0, 2, bundle.data[:half])
+    assert store.has(bundle.digest)
+    assert os.access(store.place(bundle.digest) / "cell" / "run.sh", os.X_OK)
+    store.take(bundle.digest, 0, 1, bundle.data)  # a second one is as good
+    assert store.has(bundle.digest)
 
 
-def test_what_a_killed_worker_used_is_removed_by_the_next(tmp_path: Path) -> None:
+def test_a_worker_keeps_the_project_of_one_campaign_and_none_after_it(tmp_path: Path) -> None:
     bundle = packed(project(tmp_path / "cell"))
-    store = tmp_path / "store"
-    code = (
-        "import sys\n"
-        "from pathlib import Path\n"
-        "from mutabot_dask.far import Store\n"
-        "store = Store(Path(sys.argv[1]))\n"
-        "store.hold(sys.argv[2])\n"
-        "store.take(sys.argv[2], 0, 1, Path(sys.argv[3]).read_bytes())\n"
-        "import os\n"
-        "os._exit(9)\n"
-    )
-    (tmp_path / "data").write_bytes(bundle.data)
-    words = [str(store), bundle.digest, str(tmp_path / "data")]
-    subprocess.run([sys.executable, "-c", code, *words], check=False)
-    assert (store / bundle.digest).is_dir()
-    Store(store).hold("another")
-    assert not (store / bundle.digest).exists()
+    store = Store(tmp_path / "worker")
+    (tmp_path / "worker").mkdir()
+    store.take(bundle.digest, 0, 1, bundle.data)
+    assert not store.has("another")
+    assert list((tmp_path / "worker").iterdir()) == []
+    store.take(bundle.digest, 0, 1, bundle.data)
+    store.clear()
+    assert list((tmp_path / "worker").iterdir()) == []
+
+
+def test_of_a_bundle_that_cannot_be_unpacked_nothing_is_left(tmp_path: Path) -> None:
+    store = Store(tmp_path)
+    with pytest.raises(tarfile.ReadError):
+        store.take("digest", 0, 1, b"no archive")
+    assert not store.has("digest")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_the_controller_decides_how_texts_are_hashed(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -112,7 +108,7 @@ def test_the_controller_decides_how_texts_are_hashed(monkeypatch: pytest.MonkeyP
     monkeypatch.delenv("PYTEST_ADDOPTS", raising=False)
     monkeypatch.setenv("OMP_NUM_THREADS", "2")
     found = decided()
-    assert found["PYTHONHASHSEED"] == "0"
+    assert found["PYTHONHASHSEED"] is None  # mutabot sets one where there is none
     assert found["OMP_NUM_THREADS"] == "2"
     assert found["PYTEST_ADDOPTS"] is None
     assert "PYTHONPATH" not in found
@@ -121,7 +117,7 @@ def test_the_controller_decides_how_texts_are_hashed(monkeypatch: pytest.MonkeyP
     monkeypatch.delenv("MUTABOT_WORKERS_PYTHONPATH")
     for _ in range(2):
         apply(found, ["/a", "/b"])
-    assert os.environ["PYTHONHASHSEED"] == "0"
+    assert "PYTHONHASHSEED" not in os.environ
     assert "PYTEST_ADDOPTS" not in os.environ
     assert os.environ["PYTHONPATH"] == "/a:/b:theirs"
 

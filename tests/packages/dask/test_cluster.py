@@ -13,10 +13,10 @@ import pytest
 
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
-from mutabot.errors import ClusterError
+from mutabot.errors import UsageError
 from mutabot.execution.workers import Workers
 from mutabot.model import Verdict
-from mutabot_dask import cluster as of_cluster
+from mutabot_dask import connection
 from mutabot_dask.link import Link
 from mutabot_dask.settings import ClusterSettings
 from tests.campaign.project import Quiet, outcomes, request_for
@@ -214,7 +214,7 @@ def test_a_worker_that_runs_with_something_else_is_refused(
         run(Arm())
     """)  # fmt: skip
     request = request_for(project, engine="replay", only=("reverse",))
-    with pytest.raises(ClusterError, match=r"it runs with something else: numpy is \S+ there, 0\.0\.1 here"):
+    with pytest.raises(UsageError, match=r"it runs with something else: numpy is \S+ there, 0\.0\.1 here"):
         run_campaign(on_cluster(request, there), Quiet())
 
 
@@ -237,7 +237,7 @@ def test_a_scheduler_that_is_killed_is_started_again(
 def test_a_scheduler_that_stays_away_leaves_the_rest_to_this_machine(
     in_peace: Ends, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(of_cluster, "_RETURN", 1.0)
+    monkeypatch.setattr(connection, "_RETURN", 1.0)
     request = slow(tmp_path / "project")
     before = set(_below(os.getpid()))
     with cluster(tmp_path / "dask", 1) as there, pytest.MonkeyPatch.context() as patch:

@@ -8,13 +8,14 @@ from typing import Any
 
 import pytest
 
+from mutabot.execution.answer import Answer
 from mutabot.execution.task import Result
 from mutabot_dask import dispatch as dispatching
 from mutabot_dask.dispatch import Dispatch
 from mutabot_dask.link import News
 from mutabot_dask.unit import Introduction, WorkUnit
 
-from .test_answers import GROUND, FakeCluster, FakeLink, good, packed, task
+from .test_answers import FakeCluster, FakeLink, good, packed, task
 
 pytestmark = pytest.mark.needs("dask")
 #: whether a unit fails at a worker, by the number of its mutant
@@ -48,8 +49,12 @@ def ran(names: tuple[str, ...], fails: Fails, units: int = 14) -> tuple[FakeClus
     there = FakeCluster({})
     link = Link(names, fails)
     there.link = there.roster.link = link  # type: ignore[assignment]
-    dispatch = Dispatch(there, GROUND, iter([task(number) for number in range(1, units + 1)]))  # type: ignore[arg-type]
-    return there, link, {one.task.key: one for one in dispatch.events() if isinstance(one, Result)}
+    dispatch = Dispatch(there, iter([task(number) for number in range(1, units + 1)]))  # type: ignore[arg-type]
+    return (
+        there,
+        link,
+        {one.result.task.key: one.result for one in dispatch.answers() if isinstance(one, Answer)},
+    )
 
 
 @pytest.mark.parametrize("bad", [("bad",), ("bad", "worse"), ("bad", "worse", "worst")])

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from mutabot.cli.app import main
-from mutabot.errors import ClusterError
+from mutabot.errors import UsageError
 from mutabot.model import Verdict
 from mutabot_dask import far, guard
 from mutabot_dask.link import Link, News, shown
@@ -56,7 +56,7 @@ def test_nothing_that_a_worker_sends_is_unpickled(attack: str, link: Link, tmp_p
 
 def test_dask_in_which_nothing_can_be_closed_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delattr("distributed.client.clean_exception")
-    with pytest.raises(ClusterError, match=r"no distributed\.client\.clean_exception"):
+    with pytest.raises(UsageError, match=r"no distributed\.client\.clean_exception"):
         guard.install()
 
 

@@ -16,14 +16,14 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.errors import ClusterError
-from mutabot_dask import cluster as of_cluster
+from mutabot.errors import UsageError
+from mutabot_dask import connection
 from mutabot_dask.local import Certificates
 from mutabot_dask.settings import ClusterSettings
 from tests.campaign.project import Quiet, request_for
 
 from . import intruder
-from .clusters import cluster, on_cluster, processes, write
+from .clusters import cluster, processes, write
 
 NOBODY = 65534
 _LISTENS = "0A"
@@ -157,7 +157,7 @@ def test_no_command_line_and_no_environment_tells_the_key(opened: Opened) -> Non
 
 def test_without_cryptography_the_extra_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "cryptography", None)
-    with pytest.raises(ClusterError, match=r"pip install 'path/to/mutabot\[cluster\]'"):
+    with pytest.raises(UsageError, match=r"pip install 'path/to/mutabot\[cluster\]'"):
         Certificates.make(tmp_path / "certificates")
 
 
@@ -168,13 +168,8 @@ def test_nothing_is_left_of_a_cluster_that_cannot_be_made(
     monkeypatch.setitem(sys.modules, "cryptography", None)
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     project = write(tmp_path / "project")
-    with pytest.raises(ClusterError):
-        of_cluster.Cluster(
-            on_cluster(request_for(project), "local:1"),
-            ClusterSettings("local:1"),
-            None,
-            print,  # type: ignore[arg-type]
-        )
+    with pytest.raises(UsageError):
+        connection.ClusterConnection(request_for(project), ClusterSettings("local:1"), print)
     assert not list(tmp_path.glob("mutabot-cluster-*"))
 
 
@@ -202,9 +197,8 @@ class Nobody:
 def test_a_link_that_others_can_read_is_told_once(
     address: str, warnings: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(of_cluster, "Link", Nobody)
+    monkeypatch.setattr(connection, "Link", Nobody)
     told = Quiet()
-    request = on_cluster(request_for(write(tmp_path)), address)
-    found = of_cluster.Cluster(request, ClusterSettings(address), None, told.note)  # type: ignore[arg-type]
+    found = connection.ClusterConnection(request_for(write(tmp_path)), ClusterSettings(address), told.note)
     assert found.reconnect()
     assert sum("is not encrypted" in line for line in told.lines) == warnings

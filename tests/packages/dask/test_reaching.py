@@ -12,17 +12,17 @@ import pytest
 from distributed import Security
 
 from mutabot.cli.request import request_of
-from mutabot.errors import ClusterError, ConfigurationError, UsageError
+from mutabot.errors import ConfigurationError, UsageError
 from mutabot.execution.versions import versions
 from mutabot_dask import link
 from mutabot_dask.bundle import Bundle
+from mutabot_dask.choice import ClusterChoice
 from mutabot_dask.local import LocalCluster, address_in
 from mutabot_dask.roster import Roster
 from mutabot_dask.settings import ClusterSettings
-from mutabot_dask.shipping import Shipment
 from tests.campaign.project import CONFIGURATION
 
-from .clusters import cluster, processes, strange_worker, until, write, write_slow
+from .clusters import cluster, processes, shipment_of, strange_worker, until, write, write_slow
 
 
 @pytest.mark.parametrize(
@@ -60,10 +60,13 @@ def test_certificates_may_stand_in_the_configuration(tmp_path: Path) -> None:
     for name in ("ca.pem", "key.pem", "mine.pem"):
         (project / name).touch()
     mine = str(project / "mine.pem")
-    settings = ["cluster.cert=mine.pem", "cluster.key=mine.pem"]
-    request = request_of(project, executor=("cluster", "tls://host:1"), settings=settings)
-    assert request.executor == ClusterSettings("tls://host:1", str(project / "ca.pem"), mine, mine)
-    assert request_of(project, executor=("cluster", "local:2")).executor == ClusterSettings("local:2")
+    given = ["cluster.cert=mine.pem", "cluster.key=mine.pem"]
+    request = request_of(project, executor=("cluster", "tls://host:1"), settings=given)
+    settings = ClusterSettings("tls://host:1", str(project / "ca.pem"), mine, mine)
+    assert request.executor == ClusterChoice(settings)
+    assert request_of(project, executor=("cluster", "local:2")).executor == ClusterChoice(
+        ClusterSettings("local:2")
+    )
     write(tmp_path, configuration=CONFIGURATION + '    cluster = { cq = "ca.pem" }\n')
     with pytest.raises(ConfigurationError, match=r"cluster.*'cq'; did you mean 'ca'"):
         request_of(project)
@@ -78,7 +81,7 @@ def test_certificates_without_encryption_are_refused(tmp_path: Path) -> None:
 def test_nobody_at_an_address(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(link, "PATIENCE", 0.5)
     with pytest.raises(
-        ClusterError, match=r"no scheduler answers at tcp://127\.0\.0\.1:9: .*is the port right"
+        UsageError, match=r"no scheduler answers at tcp://127\.0\.0\.1:9: .*is the port right"
     ):
         link.Link(ClusterSettings("tcp://127.0.0.1:9"), "tcp://127.0.0.1:9")
 
@@ -105,7 +108,7 @@ def test_a_worker_that_cannot_take_part_is_told_and_lives_on(
             there = link.Link(settings, settings.address)
             roster = Roster(there, versions(), lambda text: None)
             if has_bundle:
-                roster.bundle = Bundle.make(Shipment.of(write(tmp_path / "project")))
+                roster.bundle = Bundle.make(shipment_of(write(tmp_path / "project")))
             assert until(lambda: roster.update() is not None and there.workers)
             assert until(lambda: _has_refused(roster))
             (why,) = roster.refusals.values()
@@ -126,7 +129,7 @@ def _has_refused(roster: Roster) -> bool:
 
 def test_a_file_that_is_no_scheduler_file(tmp_path: Path) -> None:
     (tmp_path / "s.json").write_text("{}")
-    with pytest.raises(ClusterError, match=r"is no scheduler file: `dask scheduler --scheduler-file"):
+    with pytest.raises(UsageError, match=r"is no scheduler file: `dask scheduler --scheduler-file"):
         address_in(tmp_path / "s.json")
 
 
@@ -153,7 +156,7 @@ def test_certificates_that_do_not_fit_are_told(tmp_path: Path, monkeypatch: pyte
         address = address_in(tmp_path / "s.json")
         assert address.startswith("tls://")
         link.Link(ClusterSettings(address, ca=ca, cert=cert, key=key), address).close()
-        with pytest.raises(ClusterError, match="Do the certificate files belong to it"):
+        with pytest.raises(UsageError, match="Do the certificate files belong to it"):
             link.Link(ClusterSettings(address, *others), address)
     finally:
         process.kill()
@@ -215,5 +218,5 @@ def test_workers_on_this_machine_end_with_whoever_started_them(tmp_path: Path) -
 
 def test_a_scheduler_that_cannot_start_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("DASK_DISTRIBUTED__SCHEDULER__PRELOAD", '["no.such.module"]')
-    with pytest.raises(ClusterError, match="a scheduler could not be started on this machine"):
+    with pytest.raises(UsageError, match="a scheduler could not be started on this machine"):
         LocalCluster(1, tmp_path).start()

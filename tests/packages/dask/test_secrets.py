@@ -111,7 +111,7 @@ def test_a_file_that_tests_need_and_workers_lack_is_named(address: str, tmp_path
     assert lines.index(lacking[0]) < next(
         at for at, line in enumerate(lines) if line.startswith("workers are sent ")
     )
-    assert any("is not used: " in line and "(not sent: limits.yaml; " in line for line in lines), lines
+    assert any("is not used: " in line and "limits.yaml" in line for line in lines), lines
 
     with (project / "mutabot.toml").open("a") as file:
         file.write('\n[cluster]\nfiles = ["*.yaml"]\n')

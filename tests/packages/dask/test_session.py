@@ -16,6 +16,6 @@ def test_what_is_wrong_with_a_workers_folder_names_it_as_it_is_there(tmp_path: P
     session = WorkerSession(tmp_path / "gone", ground)
     job = Job(ground.root, ("mission.py",), (), Vocabulary(()), seed=1, round=0)
     unit = WorkUnit(ground, Task(None, job), "ticket")
-    answer, _ = UnitAnswer.of(session.answer(unit, lambda: None), unit)
+    answer = UnitAnswer.of(session.answer(unit, lambda: None), unit)
     assert answer.is_unfit
     assert answer.fault == f"cannot write to {tmp_path}/gone/.mutabot: No such file or directory"

@@ -10,12 +10,13 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.config.configuration import load_configuration
-from mutabot.errors import ClusterError, ConfigurationError
-from mutabot_dask.bundle import Bundle, explained, warnings
+from mutabot.errors import ConfigurationError, UsageError
+from mutabot_dask.bundle import Bundle, warnings
 from mutabot_dask.environment import decided
 from mutabot_dask.shipping import Shipment, may_be_secret
 from tests.campaign.project import write_project
+
+from .clusters import shipment_of
 
 #: stands in each file that nobody may see
 SECRET = b"hunter2-do-not-ship"
@@ -57,9 +58,9 @@ def members(bundle: Bundle) -> dict[str, tuple[tarfile.TarInfo, bytes]]:
         return {one.name: (one, file.read() if file is not None else b"") for one, file in files}
 
 
-def sent(folder: Path, **given: tuple[str, ...]) -> dict[str, tuple[tarfile.TarInfo, bytes]]:
+def sent(folder: Path) -> dict[str, tuple[tarfile.TarInfo, bytes]]:
     """What is sent of a project, by name in it; fails if a secret is."""
-    bundle = Bundle.make(Shipment.of(folder.resolve(), **given))
+    bundle = Bundle.make(shipment_of(folder))
     found = members(bundle)
     assert not [name for name, (_, content) in found.items() if SECRET in content]
     assert SECRET not in bundle.data
@@ -69,7 +70,7 @@ def sent(folder: Path, **given: tuple[str, ...]) -> dict[str, tuple[tarfile.TarI
 def configured(folder: Path, files: str) -> Shipment:
     text = (folder / "mutabot.toml").read_text() + f"\n[cluster]\nfiles = {files}\n"
     (folder / "mutabot.toml").write_text(text)
-    return Shipment.of_configuration(load_configuration(folder))
+    return shipment_of(folder)
 
 
 def test_what_git_tracks_is_sent_and_nothing_else(tmp_path: Path) -> None:
@@ -154,7 +155,7 @@ def test_a_link_is_never_followed_out_of_the_project(tmp_path: Path) -> None:
     (project / "real" / "key").unlink()
     (project / "real").rmdir()
     (project / "real").symlink_to("../home/folder")  # git tracks real/key, which is now a file elsewhere
-    shipment = Shipment.of(project)
+    shipment = shipment_of(project)
     bundle = Bundle.make(shipment)
     found = sent(project)
     links = {name: info.linkname for name, (info, _) in found.items() if info.issym()}
@@ -182,7 +183,7 @@ def test_a_link_is_never_followed_out_of_the_project(tmp_path: Path) -> None:
 def test_a_file_that_becomes_a_link_while_it_is_packed_is_not_followed(tmp_path: Path) -> None:
     put(tmp_path, "home/key", content=SECRET)
     project = committed(tmp_path / "cell")
-    shipment = Shipment.of(project)
+    shipment = shipment_of(project)
     (project / "mission.py").unlink()
     (project / "mission.py").symlink_to("../home/key")
     (project / "data" / "table.json").unlink()
@@ -197,7 +198,7 @@ def test_a_file_that_becomes_a_link_while_it_is_packed_is_not_followed(tmp_path:
 
 def test_a_pipe_in_the_place_of_a_file_is_not_waited_for(tmp_path: Path) -> None:
     project = committed(tmp_path / "cell")
-    shipment = Shipment.of(project)
+    shipment = shipment_of(project)
     (project / "robot.py").unlink()
     os.mkfifo(project / "robot.py")
     assert Bundle.make(shipment).outside == ("robot.py",)
@@ -233,7 +234,7 @@ def test_names_of_any_bytes_and_submodules_are_sent(tmp_path: Path) -> None:
     found = sent(project)
     assert {odd, "sub/inner.py"} <= found.keys()
     place = tmp_path / "there"
-    with tarfile.open(fileobj=io.BytesIO(Bundle.make(Shipment.of(project)).data)) as tar:
+    with tarfile.open(fileobj=io.BytesIO(Bundle.make(shipment_of(project)).data)) as tar:
         tar.extractall(place, filter="data")
     assert (place / "cell" / odd).is_file()
 
@@ -241,7 +242,7 @@ def test_names_of_any_bytes_and_submodules_are_sent(tmp_path: Path) -> None:
 def test_without_a_repository_program_text_and_the_files_of_robots_are_sent(tmp_path: Path) -> None:
     project = write_project(tmp_path / "cell", "x = 1\n", "", more={"arm.urdf": "", "tests/task.feature": ""})
     put(project, *set(PRIVATE) - {"tests/local_settings.py"}, "config.yaml", "settings.json", content=SECRET)
-    shipment = Shipment.of_configuration(load_configuration(project))
+    shipment = shipment_of(project)
     assert not shipment.is_tracked
     names = {path.relative_to(project).as_posix() for path in shipment.files}
     assert names == {
@@ -257,10 +258,8 @@ def test_without_a_repository_program_text_and_the_files_of_robots_are_sent(tmp_
 def test_a_repository_that_git_refuses_is_not_guessed_at(tmp_path: Path) -> None:
     project = write_project(tmp_path / "cell", "x = 1\n", "")
     put(project, ".git/config")
-    with pytest.raises(
-        ClusterError, match="the files that git tracks, and these cannot be listed: git says: "
-    ):
-        Shipment.of(project)
+    with pytest.raises(UsageError, match="the files that git tracks cannot be listed: git says: "):
+        shipment_of(project)
 
 
 def test_variables_of_a_hook_do_not_name_another_repository(
@@ -304,12 +303,3 @@ def test_variables_are_sent_by_their_whole_names(monkeypatch: pytest.MonkeyPatch
     found = {name for name, value in decided().items() if value is not None}
     assert not found & secret
     assert found >= {"LANG", "LC_ALL", "TZ", "PYTHONWARNINGS", "PYTEST_ADDOPTS", "OMP_NUM_THREADS"}
-
-
-def test_what_a_worker_lacks_is_found_in_what_it_says(tmp_path: Path) -> None:
-    project = committed(tmp_path / "cell")
-    put(project, "helpers/grip.py")
-    shipment = Shipment.of(project)
-    for why in ("No module named 'helpers.grip'", "[Errno 2] No such file or directory: '/x/notes.txt'"):
-        assert "git add" in explained(shipment, why)
-    assert explained(shipment, "AssertionError: footnotes.txt") == "AssertionError: footnotes.txt"

@@ -19,8 +19,8 @@ from pathlib import Path, PurePosixPath
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
+from mutabot.campaign.project_files import UNREAD, is_folder_of_project, is_name_of_project
 from mutabot.config.suppressions import FILE as ACCEPTED_FILE
-from mutabot.journal.files import REPORT_MARK
 
 if TYPE_CHECKING:
     from mutabot.campaign.request import Request
@@ -90,9 +90,6 @@ def _is_report(path: Path) -> bool:
         return False
 
 
-#: folders without anything that a test imports or reads; hidden ones are left out as well
-_FOLDERS = {"__pycache__", "node_modules", "site-packages"}
-_SUFFIXES = (".pyc", ".pyo", ".swp", "~", ".egg-info", ".dist-info")
 #: files for people and for other tools
 _FOR_PEOPLE = re.compile(
     r"(README|CHANGELOG|CHANGES|CONTRIBUTING|LICEN[SC]E|AUTHORS)(\.(md|rst|txt|adoc))?", re.IGNORECASE
@@ -100,8 +97,6 @@ _FOR_PEOPLE = re.compile(
 
 
 _FOR_TOOLS = {ACCEPTED_FILE, ".gitignore", ".gitattributes", ".editorconfig", ".coverage", ".DS_Store"}
-#: files that make a folder a virtual environment, or a report of mutabot
-_MARKS = ("pyvenv.cfg", REPORT_MARK)
 _HASH = "#"
 
 
@@ -163,15 +158,15 @@ class Snapshot:
 def counts_by_name(name: str) -> bool:
     """Whether a file of this name, relative to the root, could matter."""
     *folders, last = PurePosixPath(name).parts
-    is_inside = all(_is_name_of_project(folder) for folder in folders)
-    return is_inside and not (last.endswith(_SUFFIXES) or last in _FOR_TOOLS or _FOR_PEOPLE.fullmatch(last))
+    is_inside = all(is_name_of_project(folder) for folder in folders)
+    return is_inside and not (last.endswith(UNREAD) or last in _FOR_TOOLS or _FOR_PEOPLE.fullmatch(last))
 
 
 def _walk(root: Path) -> Iterator[tuple[str, Path, tuple[int, ...]]]:
     """Yield the regular files that could matter, with the metadata that shows a change."""
     for folder, folders, names in os.walk(root):
         here = Path(folder)
-        folders[:] = sorted(name for name in folders if _is_folder_of_project(here / name))
+        folders[:] = sorted(name for name in folders if is_folder_of_project(here / name))
         for name in sorted(names):
             if not counts_by_name(name):
                 continue
@@ -183,14 +178,6 @@ def _walk(root: Path) -> Iterator[tuple[str, Path, tuple[int, ...]]]:
             if stat.S_ISREG(status.st_mode):
                 times = (status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns)
                 yield path.relative_to(root).as_posix(), path, times
-
-
-def _is_folder_of_project(folder: Path) -> bool:
-    return _is_name_of_project(folder.name) and not any((folder / mark).exists() for mark in _MARKS)
-
-
-def _is_name_of_project(name: str) -> bool:
-    return not (name.startswith(".") or name in _FOLDERS or name.endswith(_SUFFIXES))
 
 
 def digest_of(text: bytes) -> str:
