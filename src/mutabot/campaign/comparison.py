@@ -584,7 +584,7 @@ def _returned_difference(original: Observation, mutant: Observation, probes: Seq
     for was, is_now in pairs:
         # most are the same, and their texts are compared in a tenth of the time
         if repr(was) != repr(is_now) and not _is_same(was, is_now, tolerance):
-            return _returned_text(was, is_now)
+            return _returned_text(was, is_now, tolerance)
     if before is None or after is None or len(before) == len(after):
         return None
     if len(after) > len(before):
@@ -606,7 +606,7 @@ def _is_same(before: Any, after: Any, tolerance: float) -> bool:
     return type(before) is type(after) and bool(before == after)
 
 
-def _returned_text(before: Any, after: Any) -> str:
+def _returned_text(before: Any, after: Any, tolerance: float) -> str:
     (name, was), (other, is_now) = before, after
     if name != other:
         return f"{other} returned to the test instead of {name}"
@@ -616,7 +616,23 @@ def _returned_text(before: Any, after: Any) -> str:
         return f"{name} returned {value_text(is_now[0])} instead of raising {was['raised']}"
     if any(isinstance(value, Mapping) and "digest" in value for value in (*was, *is_now)):
         return f"{name} returned something else"
-    return f"{name} returned {_change(was[0], is_now[0])}"
+    path, first, other = _first_part(was[0], is_now[0], tolerance)
+    return f"{name} returned {f'{path} ' if path else ''}{_change(first, other)}"
+
+
+def _first_part(before: Any, after: Any, tolerance: float) -> tuple[str, Any, Any]:
+    """The first part in which two values of one shape differ: its path, and what it is in each."""
+    if isinstance(before, Mapping) and isinstance(after, Mapping) and before.keys() == after.keys():
+        pairs = [(f"[{key!r}]", before[key], after[key]) for key in before]
+    elif isinstance(before, list | tuple) and isinstance(after, list | tuple) and len(before) == len(after):
+        pairs = [(f"[{index}]", *pair) for index, pair in enumerate(zip(before, after, strict=True))]
+    else:
+        return "", before, after
+    for step, one, two in pairs:
+        if not _is_same(one, two, tolerance):
+            path, first, other = _first_part(one, two, tolerance)
+            return f"{step}{path}", first, other
+    return "", before, after
 
 
 def _event_text(name: str, value: Any) -> str:

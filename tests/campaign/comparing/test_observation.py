@@ -108,3 +108,20 @@ def test_values_that_differ_late_are_printed_with_as_many_digits_as_it_takes() -
     before, after = ([1.0, 2.00001], [1.0, 2.00002])
     (call,) = compare(seen(TraceCall("a", {"x": before})), seen(TraceCall("a", {"x": after}))).divergence
     assert call == "call 1, a: wrote {x: (1, 2.00002)} instead of {x: (1, 2.00001)}"
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "line"),
+    [
+        ([[0, 1.0], [0, 0.5]], [[0, 1.0], [0, -0.5]], "go returned [1][1] -0.5 instead of 0.5 (off by 1)"),
+        ({"x": 1, "y": [2]}, {"x": 1, "y": [3]}, "go returned ['y'][0] 3 instead of 2 (off by 1)"),
+        (0.5, -0.5, "go returned -0.5 instead of 0.5 (off by 1)"),
+        ([1, 2], [1], "go returned (1) instead of (1, 2)"),
+        ([[1, 2], [3]], [[1, 2], [3, 4]], "go returned [1] (3, 4) instead of (3)"),
+    ],
+)
+def test_of_what_was_returned_the_first_part_that_differs_is_told(
+    before: object, after: object, line: str
+) -> None:
+    one, other = (Observation((), {}, returned=[("go", (value,))]) for value in (before, after))
+    assert compare(one, other).divergence == (line,)

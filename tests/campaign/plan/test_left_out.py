@@ -83,7 +83,7 @@ def test_a_quantity_that_names_an_object_is_told_with_its_place_and_what_to_do(t
     report = check(request_for(project(tmp_path, DRIVE), engine="fork", rounds=1), Quiet())
     (note,) = (line for line in report.lines if line.startswith("note "))
     assert "arguments.speed: speed is of mission:Speed, which is no plain data" in note
-    assert "describe the part of it that is a number" in note
+    assert "describe the part of it that is a number, such as speed.magnitude" in note
     reason = "the call passes no plain value here"
     assert report.data["left_out_because"] == {reason: 1}
     assert f"left out  1: {reason}" in report.lines
@@ -106,3 +106,12 @@ def test_a_moment_or_demand_that_nobody_heeds_is_told(tmp_path: Path) -> None:
     notes = [line for line in check(asked, Quiet()).lines if line.startswith("note ")]
     assert any("when: mutants of conventional act wherever they are reached" in line for line in notes), notes
     assert any("demand: no mutant of offset is what it speaks of" in line for line in notes), notes
+
+
+def test_an_object_with_coordinates_is_told_with_one_of_them(tmp_path: Path) -> None:
+    folder = project(tmp_path, DRIVE)
+    mission = (folder / "mission.py").read_text().replace("class Speed:", "class Speed:\n    y = 0.0")
+    (folder / "mission.py").write_text(mission)
+    report = check(request_for(folder, engine="fork", rounds=1), Quiet())
+    (note,) = (line for line in report.lines if line.startswith("note "))
+    assert "a number, such as speed.y" in note

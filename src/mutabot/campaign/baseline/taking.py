@@ -129,16 +129,29 @@ class _Suite:
         for result in self.executor.events(tasks):
             if not isinstance(result, Result):
                 if isinstance(result[1], Remark):
-                    self.remarks.append(result[1])
-                    self.progress.note(str(result[1]))
+                    self._note(result[1])
                 continue
             round, repetition = result.task.key
             self.results[round, repetition] = result
+            if any("::" in one for one in self.request.arguments):
+                self._note_unread(result)
             _refuse(result, self.request.arguments)
             counts = Counter(end.outcome for end in result.ends)
             counted = ", ".join(f"{count} {outcome}" for outcome, count in counts.items())
             which = f"round {round + 1}, run {repetition + 1}"
             self.progress.advance(f"baseline, {which}: {counted or 'nothing ran'}")
+
+    def _note(self, remark: Remark) -> None:
+        self.remarks.append(remark)
+        self.progress.note(str(remark))
+
+    def _note_unread(self, result: Result) -> None:
+        """Of single tests: what no result had in them is no mistake, others may well read it."""
+        unread = [one for one in result.problems if one.key.startswith("result.")]
+        result.problems = [one for one in result.problems if one not in unread]
+        for one in unread:
+            why = "no result had it: only single tests are run, and others may read it"
+            self._note(Remark(one.source, one.key, why))
 
     def task(self, round: int, repetition: int, **details: Any) -> Task:
         """A run of the original in a round. With forks, imports and collection are done once for all runs."""

@@ -549,7 +549,8 @@ def _strange(quantity: Quantity, found: Any) -> StrangeValueError:
     """Say what to describe instead of an object that is no plain data."""
     path, kind = str(quantity.path), class_name(type(found))
     what = f"{path or 'the result'} is of {kind}, which is no plain data, so its value is left as it is"
-    return StrangeValueError(f"{what}; describe the part of it that is a number, such as {path}.magnitude")
+    part = next((name for name in ("x", "y", "z") if hasattr(type(found), name)), "magnitude")
+    return StrangeValueError(f"{what}; describe the part of it that is a number, such as {path}.{part}")
 
 
 def is_mock(value: Any, kind: str = "NonCallableMock") -> bool:
