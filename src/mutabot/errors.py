@@ -42,8 +42,8 @@ class ExitCode(IntEnum):
     FINE = 0, "fine"
     SCORE_TOO_LOW = (
         1,
-        "a score is under `--min-score` (or `min_score` in the configuration), in percent, or a site "
-        "tolerates more than a `demand` allows",
+        "a score is under `--min-score` (or `min_score` in the configuration), in percent, a site tolerates "
+        "more than a `demand` allows, or there is something that `--fail-on` names",
     )
     USAGE = 2, "the command line or a file is wrong"
     NOTHING_KNOWN = 3, "the tests fail on the original, there are no mutants, or none of them was valid"

@@ -79,7 +79,7 @@ def test_help_works_in_any_folder_and_names_every_command(
 @pytest.mark.needs("init", "suggest", "live", "motion")
 def test_help_lists_commands_in_the_order_in_which_they_are_used(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--help"]) == 0
-    listed = capsys.readouterr().out.partition("Commands:\n")[2].splitlines()
+    listed = capsys.readouterr().out.partition("Commands:\n")[2].partition("\n\n")[0].splitlines()
     assert [line.split()[0] for line in listed] == [
         "init", "check", "list", "operators", "run", "merge", "replay", "suggest", "results", "show",
         "accept", "thresholds", "report", "live", "motion",
@@ -287,10 +287,10 @@ def test_an_option_that_there_is_not_is_no_part_of_a_request(project: Path) -> N
 
 
 @pytest.mark.needs("dask")
-def test_run_has_eighteen_options() -> None:
+def test_run_has_twenty_options() -> None:
     group: Any = typer.main.get_command(app)
     context = group.context_class(group, info_name="mutabot")
-    assert len(group.resolve_command(context, ["run"])[1].params) == 18
+    assert len(group.resolve_command(context, ["run"])[1].params) == 20
 
 
 def test_a_project_elsewhere_can_be_named(
@@ -299,6 +299,37 @@ def test_a_project_elsewhere_can_be_named(
     monkeypatch.chdir(tmp_path_factory.mktemp("elsewhere"))
     assert main(["-C", str(fake.project), "run"]) == 0
     assert main(["-C", str(fake.project), "results"]) == 0
+
+
+def test_lines_of_mutants_go_alone_to_standard_output(
+    fake: Campaign, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["run", "--format", "lines"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split("\t")[1] for line in lines] == ["1", "2", "3", "4", "5", "complete"]
+
+
+def test_survivors_end_a_run_with_1_if_that_is_asked_for(
+    fake: Campaign, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["run", "--format", "jsonl", "--fail-on", "survivors"]) == 1
+    assert "2 survivors (--fail-on survivors): 2, 4" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--format", "xml"], "known: jsonl, lines"),
+        (["--format", "lines", "--json"], "only one of them"),
+        (["--fail-on", "surv"], "none of survivors, untested"),
+    ],
+)
+def test_a_wrong_format_or_limit_is_told_before_anything_is_run(
+    fake: Campaign, capsys: pytest.CaptureFixture[str], arguments: list[str], words: str
+) -> None:
+    assert main(["run", *arguments]) == 2
+    assert words in capsys.readouterr().err
+    assert fake.request is None
 
 
 def test_json_goes_alone_to_standard_output(fake: Campaign, capsys: pytest.CaptureFixture[str]) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -126,3 +127,33 @@ def test_a_mutant_is_found_by_number_and_id_or_the_nearest_is_named(tmp_path: Pa
     assert found.mutant(SKIP.id[:-1]).mutant == SKIP  # a part of it will do
     with pytest.raises(SelectionError, match="did you mean"):
         found.mutant(SKIP.id.replace("skip", "skipp"))
+
+
+def test_fail_on_names_survivors_that_are_not_accepted(tmp_path: Path) -> None:
+    outcomes = (
+        Outcome(REVERSE.id, 0, Verdict.SURVIVED), Outcome(SKIP.id, 0, Verdict.SURVIVED),
+    )  # fmt: skip
+    accepted = {"mutants": {SKIP.id: {"why": "x", "source": "a.toml:1"}}}
+    found = judged(tmp_path, outcomes, accepted=accepted)
+    assert decide(found).exit_code == 0
+    decision = decide(found, fail_on=["survivors"])
+    assert decision.exit_code == 1
+    assert decision.lines == ("1 survivor (--fail-on survivors): 1",)
+
+
+def test_fail_on_untested_names_code_and_mutants_that_no_test_reaches(tmp_path: Path) -> None:
+    outcomes = (
+        Outcome(REVERSE.id, 0, Verdict.KILLED), Outcome(SKIP.id, 0, Verdict.NOT_COVERED),
+    )  # fmt: skip
+    found = judged(tmp_path, outcomes, untested={"files": 2, "unreached_files": ["b.py"]})
+    assert decide(found, fail_on=["survivors"]).exit_code == 0
+    assert decide(found, fail_on=["untested"]).lines == (
+        "1 of 2 files is reached by no test (--fail-on untested)",
+        "1 mutant that no test reaches (--fail-on untested): 2",
+    )
+
+
+def judged(folder: Path, outcomes: tuple[Outcome, ...], **changes: Any) -> Results:
+    mutants = tuple(one for one in MUTANTS if one.id in {end.mutant for end in outcomes})
+    path = write_journal(folder / "j.sqlite", outcomes=outcomes, mutants=mutants, rounds=1, **changes)
+    return Results.read(path)

@@ -13,6 +13,7 @@ from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.baseline.unfit import note_fit, refuse_unfit, refuse_unhooked
 from mutabot.campaign.baseline.wrappers import shared_sites
 from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.duration import Duration, duration_of
 from mutabot.campaign.engines.engine import try_controls
 from mutabot.campaign.faults.demanded import split_ladders
 from mutabot.campaign.faults.providers import prepare
@@ -182,10 +183,10 @@ def _why_no_mutants(request: Request, plan: Plan, baseline: Baseline) -> str:
     return "\n".join([*lines, *([f"… and {more} more"] if more > 0 else [])])
 
 
-def plan_only(request: Request, progress: Progress) -> tuple[list[Mutant], list[LeftOut], Untested]:
+def plan_only(request: Request, progress: Progress) -> tuple[list[Mutant], list[LeftOut], Untested, Duration]:
     """Take the baseline and plan, without running a mutant.
 
-    Returns the mutants, what is left out, and what no test reaches.
+    Returns the mutants, what is left out, what no test reaches, and how long a run will take.
     """
     path = request.journal_path
     with locked_executor(request, progress) as opened, ExitStack() as stack:
@@ -194,7 +195,8 @@ def plan_only(request: Request, progress: Progress) -> tuple[list[Mutant], list[
         _leave(original, path)
     plan = selected(campaign, whole_plan(campaign)[0])
     part = part_of(plan, request.shard, campaign.baseline)
-    return part.mutants, part.left_out, campaign.baseline.untested
+    duration = duration_of(campaign, part.mutants)
+    return part.mutants, part.left_out, campaign.baseline.untested, duration
 
 
 def check(request: Request, progress: Progress) -> CheckReport:
@@ -247,6 +249,7 @@ def _report(
     flaky, nondeterministic = baseline.unstable, sorted(baseline.nondeterministic)
     clock = request.vocabulary.clock
     never_ticks = clock is not None and all(end.simulated is None for end in baseline.ends.values())
+    duration = duration_of(campaign, mutants)
     passing = f"{len(tests)} {'passes' if len(tests) == 1 else 'pass'}"
     rounds = f"{request.rounds} round{'s' if request.rounds != 1 else ''}"
     lines = [
@@ -254,6 +257,7 @@ def _report(
         f"sites     {len({place.site for place in baseline.hits})} reached",
         f"controls  {controls} passed",
         f"mutants   {len(mutants)}{selected}",
+        f"time      {duration.text}; less where results are reused",
         *(f"left out  {len(those)}: {heading}" for heading, those in reasons.items()),
         *(f"flaky     {test} in round {round + 1}: {why}" for (round, test), why in flaky.items()),
         *(
@@ -273,6 +277,8 @@ def _report(
         "sites": [place.key for place in baseline.hits],
         "mutants": len(mutants),
         "planned": len(plan.mutants),
+        "runs": duration.runs,
+        "seconds": duration.seconds,
         "left_out": left_out,
         "left_out_because": {heading: len(those) for heading, those in reasons.items()},
         "controls": controls,

@@ -73,6 +73,30 @@ _GONE = {
     ),
     "compare": "`make comparison` in a clone of mutabot compares families of mutants",
 }
+#: what is enough to operate mutabot without any other page; ``\b`` keeps the lines as they are
+_MANUAL = """\b
+A project has [tool.mutabot] in pyproject.toml, or mutabot.toml, and a
+vocabulary of its robot API. `mutabot init` drafts both. Then:
+  mutabot check             are the tests usable, how long will a run take
+  mutabot run               run all mutants; Ctrl-C, and `run` goes on
+  mutabot run --only WHICH  16-20, mission.py:22, reverse, "tests/*.py"
+  mutabot results           all mutants again; survivors are what to work on
+  mutabot show 5            what survivor 5 did, and what let it through
+  mutabot suggest --only 5  a check that kills it, as a diff
+  mutabot accept 5 --why …  it may survive: into mutabot-accepted.toml
+\b
+For scripts and agents; results go to stdout, progress to stderr:
+  mutabot run --format lines   SURVIVED, KILLED, REFUSED … and, after tabs,
+                               number, place, operator, fault, reason
+  mutabot run --format jsonl   the same as JSON Lines, as mutants are judged
+  mutabot run --fail-on survivors --fail-on untested   exit 1 if there are any
+  mutabot show 5 --json        source, fault, story, checks, suggestion
+\b
+Exit codes: 0 fine; 1 a limit is missed (--min-score, --fail-on); 2 command
+line or file is wrong; 3 the tests fail on the original, or no mutant counts;
+4 results are unreliable; 5 too many time-outs. Your program and tests are
+never changed; what mutabot keeps is in .mutabot, not to be committed.
+"""
 #: settings of every command, mutabot's own and those of packages
 SETTINGS: dict[str, Any] = {
     "context_settings": {"help_option_names": ["-h", "--help"]},
@@ -152,6 +176,7 @@ def terminated_like_ctrl_c() -> Iterator[list[int]]:
 app = typer.Typer(
     name="mutabot",
     help="Mutation testing for robot programs: would your tests notice?",
+    epilog=_MANUAL,
     no_args_is_help=True,
     cls=Commands,
     **SETTINGS,

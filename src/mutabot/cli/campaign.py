@@ -17,7 +17,7 @@ from mutabot.cli import options
 from mutabot.cli.context import CommandContext, decided
 from mutabot.cli.request import families_of
 from mutabot.config.configuration import load_configuration
-from mutabot.errors import ExitCode
+from mutabot.errors import ExitCode, UsageError
 from mutabot.journal.files import HOME, JOURNAL
 from mutabot.journal.reader import JournalReader
 from mutabot.report.document import replayed as replayed_data
@@ -49,18 +49,30 @@ def list_(
 ) -> None:
     """List the mutants that would run."""
     with context.progress() as progress:
-        planned = beginning.plan_only(request, progress)
+        mutants, left_out, reach, duration = beginning.plan_only(request, progress)
     if json:
-        context.print_json(plan_data(*planned))
+        data = plan_data(mutants, left_out, reach)
+        context.print_json({**data, "runs": duration.runs, "seconds": duration.seconds})
     else:
-        print_plan(make_console(), *planned, everything=all)
+        print_plan(make_console(), mutants, left_out, reach, everything=all)
+        context.print(f"\nA run takes {duration.text}; less where results are reused.")
 
 
 def run(
-    context: CommandContext, request: Request, min_score: float | None = None, json: bool = False
+    context: CommandContext,
+    request: Request,
+    min_score: float | None = None,
+    fail_on: list[str] | None = None,
+    stream: str = "",
+    json: bool = False,
 ) -> None:
     """Run the campaign, or continue it."""
-    context.run_to_end(request, partial(running.run_campaign, request), min_score, json=json)
+    run = partial(running.run_campaign, request)
+    if stream and json:
+        raise UsageError(f"--format {stream} and --json: only one of them can be printed")
+    if stream:
+        context.stream_to_end(request, run, min_score, format=stream, fail_on=fail_on or ())
+    context.run_to_end(request, run, min_score, json=json, fail_on=fail_on or ())
 
 
 _Journals = Annotated[
@@ -77,6 +89,7 @@ def merge(
     journals: _Journals,
     output: _Output = None,
     min_score: float | None = None,
+    fail_on: list[str] | None = None,
     json: bool = False,
 ) -> None:
     """Merge the journals of shards.
@@ -88,7 +101,7 @@ def merge(
     missing = shards.merge(journals, target, root=configuration.root, room=configuration.evidence)
     results = context.show_results(target, json=json, summary=True)
     lacking = Decision(ExitCode.UNRELIABLE, tuple(missing)) if missing else None
-    context.exit_as(lacking or decided(configuration, results, min_score))
+    context.exit_as(lacking or decided(configuration, results, min_score, fail_on or ()))
 
 
 def replay(

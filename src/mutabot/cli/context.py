@@ -6,17 +6,19 @@ import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn, Self
 
 import typer
 
 from mutabot.cli.streams import output_failed
+from mutabot.errors import UsageError, unknown_name_text
 from mutabot.journal.files import find_journal
 from mutabot.report.document import data_of, document, dumps
 from mutabot.report.sections import Section
 from mutabot.report.terminal.campaign import print_results, print_summary
 from mutabot.report.terminal.console import leave_pipe, make_console, print_section
 from mutabot.report.terminal.progress import Bar, Lines, make_progress
+from mutabot.report.texts import portable
 from mutabot.results.gate import Decision, decide
 from mutabot.results.results import Results
 from mutabot.results.stored import StoredEvidence
@@ -25,6 +27,7 @@ from mutabot.results.suggested import Suggestion, keep_suggestions
 if TYPE_CHECKING:
     from mutabot.campaign.request import Progress, Request
     from mutabot.config.configuration import Configuration
+    from mutabot.report.stream import MutantStream
 
 
 class CommandContext:
@@ -119,20 +122,55 @@ class CommandContext:
         return found
 
     def run_to_end(
-        self, request: Request, run: Callable[[Progress], Path], min_score: float | None, *, json: bool
+        self,
+        request: Request,
+        run: Callable[[Progress], Path],
+        min_score: float | None,
+        *,
+        json: bool,
+        fail_on: Sequence[str] = (),
     ) -> NoReturn:
         """Run a campaign, print its summary, and exit as the limits decide.
 
         Args:
             run: runs the campaign, and returns the path of its journal.
             min_score: in percent; None for the configured one.
+            fail_on: what there must be none of, by names of ``results.gate.FAIL_ON``.
 
         Raises typer.Exit, and what the campaign raises.
         """
         with self.progress() as progress:
             path = run(progress)
         results = self.show_results(path, json=json, summary=True)
-        self.exit_as(decided(request.configuration, results, min_score))
+        self.exit_as(decided(request.configuration, results, min_score, fail_on))
+
+    def stream_to_end(
+        self,
+        request: Request,
+        run: Callable[[Progress], Path],
+        min_score: float | None,
+        *,
+        format: str,
+        fail_on: Sequence[str] = (),
+    ) -> NoReturn:
+        """Run a campaign, print a line per mutant as soon as it is settled, and exit as the limits decide.
+
+        Args:
+            run, min_score, fail_on: as in ``run_to_end``.
+            format: name of a format of lines.
+
+        Raises UsageError for another name, typer.Exit, and what the campaign raises.
+        """
+        from mutabot.report.stream import STREAMED, MutantStream  # noqa: PLC0415  # few commands need it
+
+        if format not in STREAMED:
+            raise UsageError(unknown_name_text("format of lines", format, STREAMED))
+        stream = MutantStream(format, request.rounds, request.vocabulary, str(request.root), self.print)
+        with _Streaming(Lines(make_console(stderr=True)), stream) as progress:
+            path = run(progress)
+        results = Results.read(path)
+        stream.finish(portable(results))
+        self.exit_as(decided(request.configuration, results, min_score, fail_on))
 
     def exit_as(self, decision: Decision) -> NoReturn:
         """Print why, and exit so. Raises typer.Exit."""
@@ -140,7 +178,25 @@ class CommandContext:
         raise typer.Exit(decision.exit_code)
 
 
-def decided(configuration: Configuration, results: Results, min_score: float | None) -> Decision:
+class _Streaming:
+    """A progress that hands mutants to a stream, and all else to plain lines."""
+
+    def __init__(self, lines: Lines, stream: MutantStream) -> None:
+        self._lines = lines
+        self.stage, self.advance, self.note = lines.stage, lines.advance, lines.note
+        self.mutant_ended = stream.add
+
+    def __enter__(self) -> Self:
+        self._lines.__enter__()
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self._lines.__exit__(*error)
+
+
+def decided(
+    configuration: Configuration, results: Results, min_score: float | None, fail_on: Sequence[str] = ()
+) -> Decision:
     """Compare results with the limits; ``min_score``, in percent, replaces the configured one."""
     limit = min_score if min_score is not None else configuration.min_score
     return decide(
@@ -150,4 +206,5 @@ def decided(configuration: Configuration, results: Results, min_score: float | N
         max_unstable=configuration.unstable_limit,
         max_errors=configuration.error_limit,
         demands=configuration.demands,
+        fail_on=fail_on,
     )

@@ -14,6 +14,8 @@ from mutabot.config.options import JOBS, ROUNDS, SEED, VERIFIED
 
 #: the names of ``campaign.request``, which is not loaded for this, so that `--help` is fast
 ENGINES = ("auto", "fork", "replay")
+#: those of ``results.gate``, likewise
+WANTED_NONE = ("survivors", "untested")
 
 
 def _print_version(wanted: bool) -> None:
@@ -75,6 +77,21 @@ MinScore = Annotated[
     float | None,
     Option("--min-score", metavar="PERCENT", min=0, max=100, callback=_number, help=_MIN_SCORE),
 ]
+_FAIL_ON = f"Exit with 1 if there is any: {', '.join(WANTED_NONE)}. Repeatable."
+
+
+def _known_names(values: list[str] | None) -> list[str] | None:
+    for value in values or ():
+        if value not in WANTED_NONE:
+            raise typer.BadParameter(f"{value!r} is none of {', '.join(WANTED_NONE)}")
+    return values
+
+
+FailOn = Annotated[
+    list[str] | None, Option("--fail-on", metavar="WHAT", callback=_known_names, help=_FAIL_ON)
+]
+_STREAM = "Print a line per mutant as soon as it is judged, and no summary: lines or jsonl."
+Stream = Annotated[str, Option("--format", metavar="FORMAT", help=_STREAM)]
 
 
 class Setting(TypedDict, total=False):
@@ -117,3 +134,5 @@ class Shared(TypedDict, total=False):
     round: Round
     mutant: OneMutant
     min_score: MinScore
+    fail_on: FailOn
+    stream: Stream

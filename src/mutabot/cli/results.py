@@ -13,6 +13,7 @@ from typer import Option
 from mutabot.cli import options
 from mutabot.cli.context import CommandContext
 from mutabot.errors import JournalError, UsageError
+from mutabot.report.document import shown_data
 from mutabot.report.format import Format, Material, format_of, names
 from mutabot.report.html.folder import Contents, check_folder, write_folder
 from mutabot.report.terminal.campaign import print_thresholds
@@ -55,10 +56,10 @@ def show(
     result = found.mutant(mutant)
     is_there = not result.outdated or result.mutant.family in found.meta.get("families", ())
     source = found.source(result.mutant.site.span.file) if is_there else None
+    suggestion = kept_suggestions(context.journal, found.meta).get(result.mutant.id)
     if json:
-        context.print_json(result)
+        context.print_json(shown_data(result, source, suggestion))
     else:
-        suggestion = kept_suggestions(context.journal, found.meta).get(result.mutant.id)
         print_mutant(make_console(), result, source, suggestion, everything=all)
 
 

@@ -8,19 +8,22 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Iterable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mutabot.errors import ExtensionError
 from mutabot.extensions import ExtensionPart, brought
 from mutabot.journal import records
 from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity, Span
 from mutabot.model.outcome import Apart, Measurement
-from mutabot.report.texts import state_of
+from mutabot.report.texts import effect_text, excerpt, state_of, telling
 from mutabot.results import ladders, thresholds
 from mutabot.results.results import Encoder, MutantResult, Results
 from mutabot.results.score import Group, RoundScores, Score
 from mutabot.results.statistics import Confirmed, Estimate, false_kills, false_survivors
 from mutabot.results.thresholds import line_of
+
+if TYPE_CHECKING:
+    from mutabot.results.suggested import Suggestion
 
 #: raised when a key changes its meaning or goes away; new keys do not raise it
 FORMAT = 1
@@ -74,6 +77,25 @@ def accepting_data(results: Results) -> dict[str, Any]:
             data_of.facts(one, "number=mutant.number id=mutant.id *acceptance") for one in results.accepted
         ],
         "without_effect": [*results.needlessly_accepted, *results.accepting.unmatched],
+    }
+
+
+def shown_data(result: MutantResult, source: str | None, suggestion: Suggestion | None) -> dict[str, Any]:
+    """Return one mutant with its source, its story, the checks that ran, and what was suggested.
+
+    Args:
+        source: the text of its file, or None if it is not known.
+        suggestion: what was suggested for it; None if nothing was looked for.
+    """
+    round, diverged = telling(result) or (None, None)
+    outcome = result.rounds[round] if round is not None else None
+    return {
+        **data_of(result),
+        "source": excerpt(source, result.mutant.site.span) if source is not None else [],
+        "effect": effect_text(result),
+        "story": {"round": round + 1, **data_of(diverged)} if round is not None and diverged else None,
+        "checks": data_of(outcome.looked) if outcome is not None else [],
+        "suggestion": data_of(suggestion),
     }
 
 

@@ -18,6 +18,7 @@ from mutabot.model.outcome import first_line
 from mutabot.results.divergence import numbers_text, weight_of
 
 if TYPE_CHECKING:
+    from mutabot.model import Span
     from mutabot.results.results import MutantResult, Results
 
 #: XML and strict JSON cannot hold these: controls, halves of surrogate pairs, and what is no character at all
@@ -223,3 +224,20 @@ def _end(outcome: Outcome | None) -> str:
     if outcome is None:
         return "not run"
     return f"{outcome.verdict} by {outcome.by}" if outcome.by is not None else outcome.verdict.value
+
+
+#: columns of a tab in an excerpt
+_TAB = 4
+
+
+def excerpt(source: str, span: Span, *, around: int = 2) -> list[str]:
+    """Return the lines of a span, marked with ``>``, and ``around`` lines before and after it."""
+    lines = source.removesuffix("\n").split("\n")  # nothing else ends a line of a program
+    if not 1 <= span.line <= len(lines):
+        return []
+    first, last = max(1, span.line - around), min(len(lines), span.end_line + around)
+    return [
+        f"{'>' if span.line <= number <= span.end_line else ' '} {number:>{len(str(last))}} │ "
+        f"{lines[number - 1].expandtabs(_TAB)}".rstrip()
+        for number in range(first, last + 1)
+    ]

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from mutabot.errors import ExitCode, in_short
+from mutabot.errors import ExitCode, in_short, plural
 from mutabot.families import GRADED
 from mutabot.frozen import frozen
 from mutabot.journal.records import INCOMPLETE, ShardOf
@@ -17,6 +17,9 @@ from mutabot.results.thresholds import unmet
 if TYPE_CHECKING:
     from mutabot.model.graded import Demand
     from mutabot.results.results import Results
+
+#: what a campaign can be asked to have none of, and numbers of mutants that a line gives
+FAIL_ON, _SHOWN = ("survivors", "untested"), 20
 
 
 @frozen
@@ -40,6 +43,7 @@ def decide(
     max_unstable: float | None = None,
     max_errors: float | None = None,
     demands: Sequence[Demand] = (),
+    fail_on: Collection[str] = (),
 ) -> Decision:
     """Hold the results against the limits.
 
@@ -48,9 +52,9 @@ def decide(
     greatest share of time-outs among the valid outcomes. ``max_unstable`` is the greatest share of flaky
     tests among the tests, and of unstable outcomes among all; ``max_errors`` the greatest share of errors
     among all outcomes: mutants of which nothing is known. Graded mutants have no score, but their errors and
-    unstable outcomes count; ``demands`` say which of them must be noticed. A disagreement that ``--verify``
-    found always fails, and so does a journal that lacks what was found, or that something else has
-    written to. Of a shard nothing else is judged.
+    unstable outcomes count; ``demands`` say which of them must be noticed. ``fail_on`` has names of
+    ``FAIL_ON``. A disagreement that ``--verify`` found always fails, and so does a journal that lacks what
+    was found, or that something else has written to. Of a shard nothing else is judged.
     """
     doubtful = tuple(_doubtful(results))
     if doubtful:
@@ -75,7 +79,7 @@ def decide(
         text = f"{total.timeouts} of {total.valid} valid outcomes are time-outs ({share:.0%})"
         return Decision(ExitCode.TOO_MANY_TIMEOUTS, (f"{text}; the limit is {max_timeouts:.0%}",))
     low = tuple(_too_low(results, min_score)) if min_score is not None else ()
-    low += tuple(_too_loose(results, demands))
+    low += (*_too_loose(results, demands), *_found(results, fail_on))
     return Decision(ExitCode.SCORE_TOO_LOW, low) if low else Decision(ExitCode.FINE)
 
 
@@ -167,6 +171,23 @@ def _too_loose(results: Results, demands: Sequence[Demand]) -> Iterator[str]:
     """Each site that tolerates more than is demanded, with direction and rounds."""
     families = [*(results.meta.get("families") or ()), *([GRADED] if results.graded else [])]
     return unmet(demands, ladders_of(results) if demands else (), families)
+
+
+def _found(results: Results, fail_on: Collection[str]) -> Iterator[str]:
+    """What there must be none of: survivors that are not accepted, and what no test reaches."""
+    idle = [one.mutant.number for one in results.survivors if one.status is Verdict.NOT_COVERED]
+    survivors = sorted({one.mutant.number for one in results.survivors} - {*idle})
+    if "survivors" in fail_on and survivors:
+        yield f"{plural(len(survivors), 'survivor')} (--fail-on survivors): {_numbers(survivors)}"
+    if "untested" in fail_on and results.untested.text:
+        yield f"{results.untested.text} (--fail-on untested)"
+    if "untested" in fail_on and idle:
+        what = f"{plural(len(idle), 'mutant')} that no test reaches"
+        yield f"{what} (--fail-on untested): {_numbers(sorted(idle))}"
+
+
+def _numbers(numbers: Sequence[int]) -> str:
+    return in_short([str(number) for number in numbers], _SHOWN)
 
 
 def _too_low(results: Results, min_score: float) -> list[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from mutabot.model import Span
-from mutabot.report.terminal.mutant import excerpt
+from mutabot.report.texts import excerpt
 
 
 def span(line: int, end_line: int) -> Span:

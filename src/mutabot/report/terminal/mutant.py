@@ -12,20 +12,19 @@ from rich.text import Text
 from mutabot.errors import plural
 from mutabot.model.outcome import end_in_words
 from mutabot.report.sections import Section, between
-from mutabot.report.texts import acceptance_text, effect_text, telling
+from mutabot.report.texts import acceptance_text, effect_text, excerpt, telling
 from mutabot.results.divergence import numbers_text
 
 from .console import Breakable, below, heading, letters, make_table, mark_of, plain, print_section
 
 if TYPE_CHECKING:
     from mutabot.journal.records import Replayed
-    from mutabot.model import Diverged, Mutant, Outcome, Quantity, Span
+    from mutabot.model import Diverged, Mutant, Outcome, Quantity
     from mutabot.results.results import MutantResult
     from mutabot.results.suggested import Suggestion
 
 #: lines of a message on the one screen; the journal and JSON have more
 _LINES = 8
-_TAB = 4
 
 
 def print_mutant(
@@ -162,19 +161,6 @@ def _sentences(diverged: Diverged) -> Iterator[str]:
         at = f" at {diverged.at:.1f} s{clock}" if diverged.at is not None else ""
         fault = f" The fault acts at {diverged.fault:.1f} s." if diverged.fault is not None else ""
         yield f"First difference{at}: {diverged.what}.{fault}"
-
-
-def excerpt(source: str, span: Span, *, around: int = 2) -> list[str]:
-    """Return the lines of a span, marked with ``>``, and ``around`` lines before and after it."""
-    lines = source.removesuffix("\n").split("\n")  # nothing else ends a line of a program
-    if not 1 <= span.line <= len(lines):
-        return []
-    first, last = max(1, span.line - around), min(len(lines), span.end_line + around)
-    return [
-        f"{'>' if span.line <= number <= span.end_line else ' '} {number:>{len(str(last))}} │ "
-        f"{lines[number - 1].expandtabs(_TAB)}".rstrip()
-        for number in range(first, last + 1)
-    ]
 
 
 def suggested_sections(result: MutantResult, found: Suggestion | None) -> Iterator[Section]:

@@ -1,0 +1,43 @@
+"""A line per mutant for ``grep``: keyword, number, place, operator, what it does, and why; tabs between.
+
+The keyword is the state in capital letters (``SURVIVED``, ``KILLED``, ``NOT-COVERED`` …). The last line
+begins with ``END``. ``mutabot run`` streams them.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from mutabot.report.formats.jsonl import end_data, mutant_data
+from mutabot.report.texts import one_line
+
+if TYPE_CHECKING:
+    from mutabot.report.format import Material
+    from mutabot.results.results import MutantResult, Results
+
+
+def make(material: Material) -> str:
+    """Return the report."""
+    campaign = material.campaign
+    found = (mutant_line(one) for one in campaign.mutants)
+    return "".join(f"{line}\n" for line in (*found, end_line(campaign)))
+
+
+def mutant_line(result: MutantResult) -> str:
+    """Return the line of a mutant."""
+    data = mutant_data(result)
+    place = result.mutant.site.span.place
+    what = one_line(result.mutant.description)
+    cells = (_keyword(data["status"]), str(data["number"]), place, data["operator"], what, data["why"])
+    return "\t".join(cells)
+
+
+def end_line(results: Results) -> str:
+    """Return the last line: how the campaign ended, and counts of mutants."""
+    data = end_data(results)
+    counts = ", ".join(f"{count} {state}" for state, count in data["mutants"].items())
+    return "\t".join(["END", data["state"], counts])
+
+
+def _keyword(state: str) -> str:
+    return state.upper().replace(" ", "-")

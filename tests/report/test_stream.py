@@ -1,0 +1,91 @@
+"""A line per mutant while a campaign runs, and the same lines of a campaign that has ended."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from mutabot.model import Outcome, Verdict
+from mutabot.model.mutant_end import MutantEnd
+from mutabot.model.suppression import Acceptance
+from mutabot.report.stream import MutantStream
+from report.material import made, stored
+from results import samples
+
+
+def ends(*outcomes: Outcome, **changes: Any) -> list[MutantEnd]:
+    mutants = {one.id: one for one in samples.MUTANTS}
+    return [MutantEnd(mutants[one.mutant], one, **changes) for one in outcomes]
+
+
+def streamed(name: str, *found: MutantEnd, rounds: int = 2) -> list[str]:
+    lines: list[str] = []
+    stream = MutantStream(name, rounds, samples.VOCABULARY, "/nowhere", lines.append)
+    for one in found:
+        stream.add(one)
+    return lines
+
+
+def test_each_line_begins_with_the_state_and_has_tabs_between_its_cells(tmp_path: Path) -> None:
+    *lines, end = made("lines", stored(tmp_path)).splitlines()
+    assert [line.split("\t")[:4] for line in lines] == [
+        ["KILLED", "1", "mission.py:3", "reverse"],
+        ["SURVIVED", "2", "mission.py:2", "skip"],
+        ["TIMEOUT", "3", "mission.py:4", "by-to"],
+        ["SURVIVED", "4", "tests/sensors.py:2", "negate"],
+        ["NOT-COVERED", "5", "tests/sensors.py:2", "noise"],
+    ]
+    assert {line.count("\t") for line in lines} == {5}
+    assert end == "END\tcomplete\t1 killed, 2 survived, 1 timeout, 1 not covered"
+
+
+def test_json_lines_say_the_same(tmp_path: Path) -> None:
+    *mutants, end = map(json.loads, made("jsonl", stored(tmp_path)).splitlines())
+    assert [(one["event"], one["status"], one["number"]) for one in mutants] == [
+        ("mutant", "killed", 1), ("mutant", "survived", 2), ("mutant", "timeout", 3),
+        ("mutant", "survived", 4), ("mutant", "not covered", 5),
+    ]  # fmt: skip
+    assert end["event"] == "end"
+    assert end["mutants"] == {"killed": 1, "survived": 2, "timeout": 1, "not covered": 1}
+
+
+def test_a_survivor_is_told_with_its_first_round_and_a_kill_with_the_last() -> None:
+    survived, killed = samples.OUTCOMES[2], samples.OUTCOMES[0]
+    assert [line.split("\t")[0] for line in streamed("lines", *ends(survived, killed))] == ["SURVIVED"]
+    found = streamed("lines", *ends(*samples.OUTCOMES[:2]))
+    assert [line.split("\t")[:2] for line in found] == [["KILLED", "1"]]
+
+
+def test_an_accepted_survivor_is_told_as_such() -> None:
+    found = ends(samples.OUTCOMES[2], acceptance=Acceptance("why", "a.toml:1"))
+    (line,) = map(json.loads, streamed("jsonl", *found))
+    assert (line["status"], line["accepted"]) == ("accepted", "why")
+
+
+def test_the_end_tells_of_mutants_that_changed_and_of_those_that_were_not_run(tmp_path: Path) -> None:
+    lines: list[str] = []
+    stream = MutantStream("lines", 2, samples.VOCABULARY, "/nowhere", lines.append)
+    for one in ends(Outcome(samples.REVERSE.id, 0, Verdict.SURVIVED), *samples.OUTCOMES[2:8]):
+        stream.add(one)
+    lines.clear()
+    stream.finish(stored(tmp_path))
+    assert [line.split("\t")[:2] for line in lines[:-1]] == [["KILLED", "1"], ["NOT-COVERED", "5"]]
+    assert lines[-1].startswith("END\tcomplete\t")
+
+
+@pytest.mark.parametrize("name", ["lines", "jsonl"])
+def test_texts_of_programs_make_no_other_line(name: str, tmp_path: Path) -> None:
+    hostile = Outcome(
+        samples.BY_TO.id,
+        0,
+        Verdict.REFUSED,
+        message="one\ntwo\tthree\r\x1b[31m",
+        test="tests/test_a.py::test",
+    )
+    (line,) = streamed(name, *ends(hostile), rounds=1)
+    assert "\n" not in line
+    assert "\r" not in line
+    assert name == "jsonl" or line.count("\t") == 5
