@@ -20,7 +20,7 @@ ALLOWED = {
     "errors": {"limits"},
     "extensions": {"errors"},
     "families": set(),
-    "faults": {"errors", "extensions", "families", "model", "operators", "original"},
+    "faults": {"errors", "extensions", "families", "languages", "model", "operators", "original"},
     "repository": set(),
     "shared_memory": set(),
     "model": {"errors", "extensions", "families", "limits"},

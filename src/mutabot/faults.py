@@ -23,7 +23,9 @@ from mutabot.errors import UsageError, unknown_name_text
 from mutabot.extensions import brought, not_installed
 from mutabot.families import OF_CALLS
 from mutabot.frozen import frozen
-from mutabot.model import LeftOut, Moment, Mutant, ProgramText, Vocabulary
+from mutabot.languages.python import FRONT_END as PYTHON
+from mutabot.languages.registry import front_end_of, program_files
+from mutabot.model import LeftOut, Moment, Mutant, ProgramText, Site, TextPlace, Vocabulary
 from mutabot.model.activation import Activation
 from mutabot.model.graded import Demand
 from mutabot.model.mutant import Place
@@ -55,6 +57,14 @@ class Project:
     moments: tuple[Moment | None, ...] = (None,)
     demands: tuple[Demand, ...] = ()
     tables: Mapping[str, Any] = field(default_factory=dict)
+
+    def program_files(self) -> list[str]:
+        """The files of the program, in all its languages, relative to ``root``, each once."""
+        return program_files(self.root, self.program)
+
+    def is_python(self, file: str) -> bool:
+        """Whether a file of the program is Python: it does not end as one of another language does."""
+        return front_end_of(file) is PYTHON
 
 
 @dataclass(slots=True)
@@ -103,7 +113,8 @@ class Planned:
     Attributes:
         mutants: those it plants, and those it leaves out with the reason.
         texts: the program text with the alternatives that can run.
-        reached: (round, place) to the tests that reach it; not for calls, which the core observes itself.
+        reached: (round, place) to the tests that reach it, see ``reach``. Calls and places of the program
+            text are observed.
         below: (round, place, test) to the origins of the processes below the tests in which that is.
         early: places that are reached before any test, or while a module is imported: what stands there holds
             for a whole process, and all tests judge it.
@@ -114,6 +125,42 @@ class Planned:
     reached: dict[tuple[int, Place], list[str]] = field(default_factory=dict)
     below: dict[tuple[int, Place, str], set[str]] = field(default_factory=dict)
     early: set[Place] = field(default_factory=set)
+
+    def reach(self, round: int, site: Site, tests: Iterable[str]) -> None:
+        """Note which tests reach a site in a round: only these judge the mutants there.
+
+        Args:
+            round: from 0.
+            site: one of ``mutants``.
+            tests: node ids, of ``Original.tests``.
+        """
+        self._reach(round, Place(site, ""), tests)
+
+    def reach_text(self, original: Original) -> None:
+        """Note which tests reach the places in ``texts``."""
+        places = {place.number: place for text in self.texts for place in text.places}
+        for round, seen in sorted(original.text.items()) if places else ():
+            for origin, found in (("", seen.reached), *seen.below.items()):
+                reaching: dict[int, list[str]] = {}  # the tests by place: a suite may have ten thousand
+                for test, number in ((test, one) for test, numbers in found.items() for one in numbers):
+                    reaching.setdefault(number, []).append(test)
+                for number, tests in reaching.items():
+                    if number in places:
+                        self._reach_place(round, places[number], origin, tests)
+
+    def _reach(self, round: int, place: Place, tests: Iterable[str]) -> None:
+        known = self.reached.setdefault((round, place), [])
+        there = set(known)
+        known += [test for test in tests if test not in there]
+
+    def _reach_place(self, round: int, found: TextPlace, origin: str, tests: list[str]) -> None:
+        place = Place(found.site, "")
+        self._reach(round, place, tests)
+        for test in tests if origin else ():
+            self.below.setdefault((round, place, test), set()).add(origin)
+        # what a process below the tests evaluates holds for that process alone
+        if (found.at_import and not origin) or "" in tests:
+            self.early.add(place)
 
 
 class FaultProvider(ABC):
@@ -140,6 +187,31 @@ class FaultProvider(ABC):
     def rules(self) -> Sequence[Rule]:
         """Its operators, as lists, documentation and reports show them."""
         return ()
+
+    def mutant(
+        self,
+        rule: Rule,
+        site: Site,
+        description: str,
+        *,
+        variant: str = "",
+        magnitude: float | None = None,
+        unit: str | None = None,
+    ) -> Mutant:
+        """A mutant of this provider, whose site is no call of an operation.
+
+        Args:
+            rule: the operator that makes it.
+            site: where it acts.
+            description: one line that an engineer recognises.
+            variant: which of several mutants of the operator here; empty if there is only one.
+            magnitude: how big its fault is, in ``unit``; None for a fault without a size.
+            unit: of the magnitude; None where it has none.
+        """
+        return Mutant(
+            0, rule.family, rule.name, site, "", None, None, variant, description,
+            magnitude=magnitude, unit=unit, has_sizes=rule.has_sizes, provider=self.name,
+        )  # fmt: skip
 
     def prepare(self, project: Project, first: int) -> Preparation:
         """Look at the project before the baseline. ``first``: the number of the first place in its texts."""

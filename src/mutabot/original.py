@@ -145,6 +145,26 @@ class Original:
     written_through: set[Place] = field(default_factory=set)
     unreached: tuple[Place, ...] = ()
 
+    def sightings(self) -> dict[int, Sighting]:
+        """What was seen at places of the program text in all rounds, by the numbers of the places.
+
+        All kinds of values, and the variables that each round saw.
+        """
+        merged: dict[int, Sighting] = {}
+        for seen in (one for _, text in sorted(self.text.items()) for one in text.sightings):
+            before = merged.get(seen.place)
+            merged[seen.place] = seen if before is None else before.with_others(seen)
+        return merged
+
+    def reached_places(self) -> set[int]:
+        """The numbers of the places of the program text that tests, or processes below them, reach."""
+        found = (tests for one in self.text.values() for tests in (one.reached, *one.below.values()))
+        return {number for tests in found for numbers in tests.values() for number in numbers}
+
+    def refused_files(self) -> dict[str, str]:
+        """The files of the program whose text could not be looked at, with the reason."""
+        return {file: why for _, one in sorted(self.text.items()) for file, why in one.refused.items()}
+
     def simulated(self, round: int, test: str) -> float:
         """Simulated seconds that a test took; 0 without a clock, or if the test let none pass."""
         return self.ends[round, test].simulated or 0.0

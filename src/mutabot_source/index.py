@@ -10,9 +10,8 @@ import ast
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from mutabot.languages.python import extent_of
-from mutabot.model.mutant import Extent
-
+#: first line (1-based), first column, last line, last column (0-based, in UTF-8 bytes)
+Extent = tuple[int, int, int, int]
 _Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
 Start = tuple[int, int]
 
@@ -108,6 +107,11 @@ class Index:
         elif isinstance(node, ast.expr):
             extent = extent_of(node)
             self.expressions[extent] = None if extent in self.expressions else ScopedNode(node, scope)
+
+
+def extent_of(node: ast.expr | ast.stmt) -> Extent:
+    """Where a node stands."""
+    return (node.lineno, node.col_offset, node.end_lineno or node.lineno, node.end_col_offset or 0)
 
 
 def is_docstring(node: ast.AST) -> bool:

@@ -8,9 +8,9 @@ from __future__ import annotations
 import ast
 from collections.abc import Callable
 
-from mutabot.languages.python import extent_of
-from mutabot.model.mutant import Extent, kept_name
+from mutabot.api.faults import Alternative
 
+from .index import Extent, extent_of
 from .operator import Node, Parts, Surroundings
 
 _Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
@@ -114,7 +114,7 @@ _ATOMS = ast.Name | ast.Attribute | ast.Subscript | ast.Call | ast.Constant
 
 def template(parts: Parts, number_of: Callable[[ast.expr], int]) -> str:
     """The parts with a name for each node that is kept."""
-    return "".join(part if isinstance(part, str) else kept_name(number_of(part)) for part in parts)
+    return _joined(parts, lambda node: Alternative.kept_name(number_of(node)))
 
 
 def shown(parts: Parts, text_of: Callable[[ast.expr], str]) -> str:

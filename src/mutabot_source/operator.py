@@ -2,8 +2,8 @@
 
 An operator looks at one node of the syntax tree and says what could stand there instead. What it
 keeps of the original it hands on as nodes, so that these keep their place, their line and their meaning.
-What it shares with operators on calls, and where its file belongs, stands in
-``mutabot/operators/operator.py``.
+A file in ``operators/`` with a subclass of ``ConventionalOperator`` is all that a new one takes; what several
+share has a name that begins with ``_``.
 """
 
 from __future__ import annotations
@@ -15,8 +15,7 @@ from dataclasses import dataclass, field
 from types import EllipsisType
 from typing import ClassVar, TypeGuard
 
-from mutabot.model.mutant import Alternative
-from mutabot.operators.operator import Rule
+from mutabot.api.faults import Alternative, Rule
 
 from .extension import CONVENTIONAL
 

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Mapping
-from dataclasses import replace
+from collections.abc import Iterable
+from dataclasses import asdict, replace
 
-from mutabot.faults import PlannedMutant
-from mutabot.model import Mutant
-from mutabot.model.activation import Activation
-from mutabot.model.codec import to_data
-from mutabot.model.mutant import FITTING, Alternative, ProgramText, Sighting, TextPlace
+from mutabot.api.faults import (
+    Activation,
+    Alternative,
+    Mutant,
+    Original,
+    PlannedMutant,
+    ProgramText,
+    TextPlace,
+)
 
 from . import registry
 from .extension import PROVIDER
@@ -33,7 +37,7 @@ def planted_of(place: TextPlace, index: int, reason: str | None = None) -> Plann
     return PlannedMutant(
         _mutant_of(place, alternative),
         reason,
-        does=to_data(alternative),
+        does=asdict(alternative),
         active=Activation.of_text(place.number, index),
     )
 
@@ -53,34 +57,20 @@ def _mutant_of(place: TextPlace, alternative: Alternative) -> Mutant:
     )
 
 
-def merge(sightings: Iterable[Sighting]) -> dict[int, Sighting]:
-    """What several sessions saw, by place: all kinds, and the variables that each of them saw."""
-    merged: dict[int, Sighting] = {}
-    for seen in sightings:
-        before = merged.get(seen.place)
-        if before is not None:
-            kinds = tuple(sorted({*before.kinds, *seen.kinds}))
-            variables = tuple(name for name in before.variables if name in seen.variables)
-            seen = Sighting(seen.place, before.hits + seen.hits, kinds, variables)  # noqa: PLW2901
-        merged[seen.place] = seen
-    return merged
-
-
 def refine(
     texts: Iterable[ProgramText],
-    seen: Mapping[int, Sighting],
+    original: Original,
     operators: Iterable[str] | None = None,
-    reached: Container[int] | None = None,
 ) -> tuple[tuple[ProgramText, ...], list[PlannedMutant]]:
     """The texts with alternatives for variables added, and what does not fit the types left out.
 
-    ``operators``: names of those whose alternatives these are; all if left out. ``reached``: numbers of the
-    places that tests reach, all if left out; of others nothing is known of their types, so nothing is left
-    out that could fit: what stands there is not covered.
+    ``operators``: names of those whose alternatives these are; all if left out. Of places that no test
+    reaches the types are not known, so nothing is left out that could fit: what stands there is not covered.
 
     Numbers of places stay; places that have no alternative any more are gone.
     """
     asking = [rule for rule in registry.chosen(operators) if rule.asks_variables]
+    sightings, reached = original.sightings(), original.reached_places()
     refined: list[ProgramText] = []
     left_out: list[PlannedMutant] = []
     for text in texts:
@@ -88,15 +78,15 @@ def refine(
         names = _read_in_functions(text)
         for place in text.places:
             alternatives: list[Alternative] = []
-            is_reached = reached is None or place.number in reached
+            is_reached = place.number in reached
+            seen = sightings.get(place.number)
+            kinds, around = (seen.kinds, seen.variables) if seen is not None else ((), ())
             for index, alternative in enumerate(place.alternatives):
-                reason = _reason(alternative, seen.get(place.number)) if is_reached else None
+                reason = _reason(alternative, kinds) if is_reached else None
                 if reason is None:
                     alternatives.append(alternative)
                 else:
                     left_out.append(planted_of(place, index, reason))
-            known = seen.get(place.number)
-            around = known.variables if known is not None else ()
             if not is_reached:  # any of its function's may have the same type
                 around = tuple(name for name in names[place.span.function] if name != place.text)
             declared = text.declared.get(place.span.function, ())
@@ -124,12 +114,9 @@ def _read_in_functions(text: ProgramText) -> dict[str, list[str]]:
     return {function: sorted(names) for function, names in found.items()}
 
 
-def _reason(alternative: Alternative, seen: Sighting | None) -> str | None:
-    """Why an alternative does not fit; None if it does."""
-    if not alternative.needs:
+def _reason(alternative: Alternative, kinds: Iterable[str]) -> str | None:
+    """Why an alternative does not fit a place with values of these kinds; None if it does."""
+    if alternative.fits(kinds):
         return None
-    if seen is None or not seen.kinds:
-        return "the type of its value was not seen"
-    if FITTING[alternative.needs].isdisjoint(seen.kinds):
-        return f"its value is {' or '.join(seen.kinds)}, never {alternative.needs}"
-    return None
+    text = " or ".join(kinds)
+    return f"its value is {text}, never {alternative.needs}" if text else "the type of its value was not seen"

@@ -10,15 +10,11 @@ from importlib.util import decode_source
 from itertools import chain
 from pathlib import Path
 
-from mutabot.languages.python import FRONT_END as PYTHON
-from mutabot.languages.python import extent_of
-from mutabot.languages.registry import front_end_of
-from mutabot.model.mutant import Alternative, Extent, ProgramText, Span, TextPlace
-from mutabot.model.source_units import digest
+from mutabot.api.faults import Alternative, ProgramText, Site, TextPlace
 
 from . import registry
 from .extension import CONVENTIONAL
-from .index import Index, ScopedNode
+from .index import Extent, Index, ScopedNode, extent_of
 from .nodes import ModuleTree, is_variable, shortened, shown, template
 from .operator import ConventionalOperator, Draft
 
@@ -33,18 +29,16 @@ def find_texts(
 
     ``operators``: names; all of family ``conventional`` if left out.
 
-    Raises SyntaxError for a file that is no Python, OperatorError for an unknown operator.
+    Raises SyntaxError for a file that is no Python, LookupError for an unknown operator.
     """
     rules = registry.chosen(registry.names(CONVENTIONAL) if operators is None else operators)
     texts: list[ProgramText] = []
     number = first - 1
     for file in files:
-        if front_end_of(file) is not PYTHON:
-            raise SyntaxError("it is no Python, the only language that has operators on its text")
         source = (root / file).read_bytes()
         places, index = find_places(source, file, rules, first=number + 1)
         number += len(places)
-        texts.append(ProgramText(file, digest(source), tuple(places), index.declared))
+        texts.append(ProgramText.of(file, source, places, index.declared))
     return tuple(texts)
 
 
@@ -79,11 +73,13 @@ class _Seed:
         text = tree.segment(self.extent)
         statement = isinstance(self.found.node, ast.stmt)
         scope = self.found.scope
+        shown_text = shortened(text.splitlines()[0] if statement else text)
+        site = Site.in_program(file, self.extent, scope.name, shown_text)
         return TextPlace(
             number=number,
-            span=Span(file, *self.extent, scope.name),
-            text=shortened(text.splitlines()[0] if statement else text),
-            occurrence=1,
+            span=site.span,
+            text=site.text,
+            occurrence=site.occurrence,
             node=type(self.found.node).__name__,
             statement=statement,
             kept=tuple(self.kept),

@@ -30,7 +30,7 @@ from mutabot.runtime.interception.trace import Locator
 FAULT = """
     import json
     from lab_helper import parsed
-    from mutabot.runtime.active_fault import ActiveFault
+    from mutabot.api.faults import ActiveFault
 
     class Slow(ActiveFault):
         def start_test(self, test, random):

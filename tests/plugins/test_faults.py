@@ -47,14 +47,10 @@ ENDS = {
 }
 PACKAGE = {
     "toy_world.py": """
-        from mutabot.model.activation import Activation
-        from mutabot.extensions import INTERFACE, Extension
-        from mutabot.faults import FaultProvider, Planned, PlannedMutant
-        from mutabot.model import Mutant, Site
-        from mutabot.model.mutant import Place
-        from mutabot.operators.operator import Rule
+        from mutabot.api.faults import Activation, Extension, FaultProvider, Planned, PlannedMutant
+        from mutabot.api.faults import Rule, Site
 
-        EXTENSION = Extension(interface=INTERFACE, faults={"toy": "toy_world:Parameters"})
+        EXTENSION = Extension(interface=2, faults={"toy": "toy_world:Parameters"})
         VALUES = %r
 
         class Parameter(Rule):
@@ -74,21 +70,19 @@ PACKAGE = {
                 planned = Planned()
                 for name, value in VALUES.items():
                     site = Site.of_parameter("world", name)
-                    mutant = Mutant(
-                        0, "world", "parameter", site, "", None, None, f"{value:g}",
-                        f"world.{name} is {value:g}", provider="toy",
-                    )
+                    told = f"world.{name} is {value:g}"
+                    mutant = self.mutant(Parameter(), site, told, variant=f"{value:g}")
                     how = Activation("toy_world_inside:Parameter", {"name": name, "value": value})
                     planned.mutants.append(PlannedMutant(mutant, does=how.data, active=how))
                     for round, tests in enumerate(original.tests):
-                        planned.reached[round, Place.of(mutant)] = tests
+                        planned.reach(round, site, tests)
                 return planned
         """
     % {name: value for name, (value, _) in ENDS.items()},
     "toy_world_inside.py": """
         from importlib import import_module
 
-        from mutabot.runtime.active_fault import ActiveFault
+        from mutabot.api.faults import ActiveFault
 
         class Parameter(ActiveFault):
             def start_test(self, test, random):

@@ -60,15 +60,11 @@ PROJECT = {
 }
 PACKAGE = {
     "slippery.py": """
-        from mutabot.extensions import INTERFACE, Extension
-        from mutabot.faults import FaultProvider, Planned, PlannedMutant
-        from mutabot.model import Mutant, Site
-        from mutabot.model.activation import Activation, at_time
-        from mutabot.model.mutant import Place
-        from mutabot.operators.operator import Rule
+        from mutabot.api.faults import Activation, Extension, FaultProvider, Planned, PlannedMutant
+        from mutabot.api.faults import Rule, Site
 
         EXTENSION = Extension(
-            interface=INTERFACE,
+            interface=2,
             faults={"slippery": "slippery:Slippery"},
             tables={"slippery": "slippery_table:Slip"},
         )
@@ -77,6 +73,7 @@ PACKAGE = {
             name = "slip"
             family = "world"
             summary = "From a simulated time on, things slip."
+            has_sizes = True
 
         class Slippery(FaultProvider):
             name = "slippery"
@@ -88,31 +85,29 @@ PACKAGE = {
 
             def plan(self, project, prepared, original):
                 planned, at = Planned(), project.tables["slippery"].at
-                active = Activation("slippery_inside:Slip", {"at": at}, (at_time(at),), %(awaits)s)
+                keys = (Activation.at_time(at),)
+                active = Activation("slippery_inside:Slip", {"at": at}, keys, %(awaits)s)
                 site = Site.of_parameter("belt", "friction")
                 for size in (0.05, 0.5):
-                    mutant = Mutant(
-                        0, "world", "slip", site, "", None, None, f"{size:g}",
-                        f"friction is {size:g} less from {at:g} s on", magnitude=size, has_sizes=True,
-                        provider="slippery",
-                    )
+                    told = f"friction is {size:g} less from {at:g} s on"
+                    mutant = self.mutant(Slip(), site, told, variant=f"{size:g}", magnitude=size)
                     planned.mutants.append(PlannedMutant(mutant, does=size, active=active))
                 for round, tests in enumerate(original.tests):
                     reached = [test for test in tests if original.simulated(round, test) >= at]
-                    planned.reached[round, Place.of(mutant)] = reached
+                    planned.reach(round, site, reached)
                 return planned
         """,
     "slippery_table.py": """
         from pydantic import Field
 
-        from mutabot.config.table import Table
+        from mutabot.api.processes import Table
 
         class Slip(Table):
             at: float = Field(1.0, description="Simulated seconds.", examples=["1.0"])
         """,
     "slippery_inside.py": """
         %(head)s
-        from mutabot.runtime.active_fault import ActiveFault
+        from mutabot.api.faults import ActiveFault
 
         class Slip(ActiveFault):
             def start_test(self, test, random):

@@ -13,16 +13,11 @@ from tests.plugins.test_plugins import mutabot
 
 PACKAGE = {
     "steps.py": """
-        from mutabot.extensions import INTERFACE, Extension
-        from mutabot.faults import FaultProvider, Planned, PlannedMutant
-        from mutabot.languages.front_end import SiteName, SourcePosition
-        from mutabot.model import Mutant, Role, Site, Span
-        from mutabot.model.activation import Activation
-        from mutabot.model.mutant import Place
-        from mutabot.operators.operator import Rule
+        from mutabot.api.faults import Activation, Extension, FaultProvider, Planned, PlannedMutant
+        from mutabot.api.faults import Rule, Site, SiteName, SourcePosition
 
         EXTENSION = Extension(
-            interface=INTERFACE, languages={"steps": "steps:LANGUAGE"}, faults={"steps": "steps:StepFaults"}
+            interface=2, languages={"steps": "steps:LANGUAGE"}, faults={"steps": "steps:StepFaults"}
         )
 
         class Steps:
@@ -67,18 +62,17 @@ PACKAGE = {
                     text = LANGUAGE.text_of((project.root / name).read_bytes())
                     lines = text.splitlines(keepends=True)
                     for (number, *extent), site_name in LANGUAGE.names(text).items():
-                        site = Site(Span(name, number, *extent, "steps"), *site_name, Role.PROGRAM)
-                        told = f"without {lines[number - 1].strip()}"
-                        mutant = Mutant(0, "steps", "drop", site, "", None, None, "", told, provider="steps")
+                        site = Site.in_program(name, (number, *extent), "steps", *site_name)
+                        mutant = self.mutant(Drop(), site, f"without {lines[number - 1].strip()}")
                         without = "".join(lines[: number - 1] + lines[number:])
                         active = Activation("steps_inside:Changed", [name, without])
                         planned.mutants.append(PlannedMutant(mutant, does=without, active=active))
                         for round, tests in enumerate(original.tests):
-                            planned.reached[round, Place.of(mutant)] = tests
+                            planned.reach(round, site, tests)
                 return planned
         """,
     "steps_inside.py": """
-        from mutabot.runtime.active_fault import ActiveFault
+        from mutabot.api.faults import ActiveFault
 
         class Changed(ActiveFault):
             def prepare_process(self):
@@ -172,4 +166,4 @@ def test_its_text_has_mutants_of_the_package(engine: str, project: Path, tmp_pat
 def test_that_python_has_no_mutants_of_its_text_is_told(project: Path, tmp_path: Path) -> None:
     site = write(tmp_path / "site", PACKAGE)
     done = mutabot(site, project, "list", "-o", "families=['conventional']")
-    assert "no mutants of the text of mission.STEPS: it cannot be read: it is no Python" in done.stderr
+    assert "no mutants of the text of mission.STEPS: it is no Python" in done.stderr

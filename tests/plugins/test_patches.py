@@ -65,14 +65,10 @@ PACKAGE = {
     "patches_of_bugs.py": """
         import json
 
-        from mutabot.extensions import INTERFACE, Extension
-        from mutabot.faults import FaultProvider, Planned, PlannedMutant
-        from mutabot.model import Mutant, Site
-        from mutabot.model.activation import AT_ONCE, Activation
-        from mutabot.model.mutant import Place
-        from mutabot.operators.operator import Rule
+        from mutabot.api.faults import Activation, Extension, FaultProvider, Planned, PlannedMutant
+        from mutabot.api.faults import Rule, Site
 
-        EXTENSION = Extension(interface=INTERFACE, faults={"patches": "patches_of_bugs:Patches"})
+        EXTENSION = Extension(interface=2, faults={"patches": "patches_of_bugs:Patches"})
 
         class Patch(Rule):
             name = "patch"
@@ -92,17 +88,15 @@ PACKAGE = {
                 for file in sorted((project.root / "patches").glob("*.json")):
                     texts = json.loads(file.read_text())
                     site = Site.of_parameter("patches", file.stem)
-                    mutant = Mutant(
-                        0, "patch", "patch", site, "", None, None, "", file.stem, provider="patches"
-                    )
-                    active = Activation("patches_inside:Patched", texts, (), AT_ONCE)
+                    mutant = self.mutant(Patch(), site, file.stem)
+                    active = Activation("patches_inside:Patched", texts, (), Activation.AT_ONCE)
                     planned.mutants.append(PlannedMutant(mutant, does=texts, active=active))
                     for round, tests in enumerate(original.tests):
-                        planned.reached[round, Place.of(mutant)] = tests
+                        planned.reach(round, site, tests)
                 return planned
         """,
     "patches_inside.py": """
-        from mutabot.runtime.active_fault import ActiveFault
+        from mutabot.api.faults import ActiveFault
 
         class Patched(ActiveFault):
             def prepare_process(self):

@@ -9,9 +9,10 @@ from mutabot.lazy import lazily
 if TYPE_CHECKING:
     from mutabot.extensions import Described, Extension
     from mutabot.faults import FaultProvider, Planned, PlannedMutant, Preparation, Project
+    from mutabot.languages.front_end import FrontEnd, SiteName, SourcePosition
     from mutabot.model.activation import Activation
     from mutabot.model.call import Unchanged
-    from mutabot.model.mutant import Mutant, Site
+    from mutabot.model.mutant import Alternative, Mutant, ProgramText, Site, TextPlace
     from mutabot.operators.command import CommandOperator
     from mutabot.operators.magnitudes import Magnitudes
     from mutabot.operators.operator import Context, Example, Need, Rule, Subject
@@ -22,12 +23,14 @@ if TYPE_CHECKING:
 __all__ = [
     "Activation",
     "ActiveFault",
+    "Alternative",
     "CommandOperator",
     "Context",
     "Described",
     "Example",
     "Extension",
     "FaultProvider",
+    "FrontEnd",
     "Magnitudes",
     "Mutant",
     "Need",
@@ -35,10 +38,14 @@ __all__ = [
     "Planned",
     "PlannedMutant",
     "Preparation",
+    "ProgramText",
     "Project",
     "Rule",
     "Site",
+    "SiteName",
+    "SourcePosition",
     "Subject",
+    "TextPlace",
     "Unchanged",
     "ValueOperator",
     "ValuesOperator",
@@ -55,11 +62,19 @@ _HOMES = {
         "Preparation",
         "Project",
     ),
+    "mutabot.languages.front_end": (
+        "FrontEnd",
+        "SiteName",
+        "SourcePosition",
+    ),
     "mutabot.model.activation": ("Activation",),
     "mutabot.model.call": ("Unchanged",),
     "mutabot.model.mutant": (
+        "Alternative",
         "Mutant",
+        "ProgramText",
         "Site",
+        "TextPlace",
     ),
     "mutabot.operators.command": ("CommandOperator",),
     "mutabot.operators.magnitudes": ("Magnitudes",),

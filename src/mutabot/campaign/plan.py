@@ -69,6 +69,8 @@ def make_plan(baseline: Baseline, project: Project) -> Plan:
         provider: provider.plan(project, baseline.prepared.get(provider.name, Preparation()), baseline)
         for provider in asked_for(project)
     }
+    for made in planned.values():
+        made.reach_text(baseline)
     baseline.add_planned({provider.name: found for provider, found in planned.items()})
     for _, together in groupby(planned, key=lambda one: one.numbered_with or one.name):
         found = sorted(
@@ -76,8 +78,8 @@ def make_plan(baseline: Baseline, project: Project) -> Plan:
         )
         plan.left_out.extend(one.as_left_out for one in found if one.reason is not None)
         first = len(plan.mutants) + 1
-        made = [one.mutant for one in found if one.reason is None]
-        plan.mutants.extend(replace(one, number=number) for number, one in enumerate(made, start=first))
+        kept = [one.mutant for one in found if one.reason is None]
+        plan.mutants.extend(replace(one, number=number) for number, one in enumerate(kept, start=first))
     return plan
 
 

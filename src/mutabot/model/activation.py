@@ -19,12 +19,6 @@ from mutabot.model.mutant import FATAL, IDENTITY, Place, Span
 Key = tuple[Any, ...]
 
 CALL, TEXT, TIME, TEST, NTH = "call", "text", "time", "test", "nth"
-#: the start of each test that reaches the mutant
-EACH_TEST: Key = (TEST,)
-
-#: what a fault awaits in a process before it is made there: nothing, so that it is made before any module of
-#: the program is imported; the first test; the clock's first tick. Any other text is the name of a module
-AT_ONCE, FIRST_TEST, FIRST_TICK = "", "<test>", "<tick>"
 
 #: the faults of the core, and what stands for the controls of all others
 CALL_FAULT = "mutabot.runtime.interception.call_mutant:CallMutant"
@@ -33,30 +27,14 @@ IDENTITY_CONTROL = "mutabot.runtime.active_fault:IdentityControl"
 FATAL_CONTROL = "mutabot.runtime.active_fault:FatalControl"
 
 
-def at_call(span: Span, operation: str, pattern: str | None) -> Key:
-    """Return the key of a call of an operation, or of one of its text commands, at a site."""
-    place = span.line, span.column, span.end_line, span.end_column
-    return (CALL, span.file, *place, operation, pattern)
-
-
 def at_text(place: int, index: int) -> Key:
     """A place of the program text, where this alternative is about to differ from the original, or may."""
     return (TEXT, place, index)
 
 
-def at_time(seconds: float) -> Key:
-    """The first tick of the vocabulary's clock in a test by which so many simulated seconds have passed."""
-    return (TIME, seconds)
-
-
 def at_test(test: str) -> Key:
     """The start of a test, before its fixtures."""
     return (TEST, test)
-
-
-def nth(number: int, key: Key) -> Key:
-    """The time of this number, from 1, at which a key is reached in a test."""
-    return (NTH, number, *key)
 
 
 def of_kind(keys: Iterable[Key], kind: str) -> list[Key]:
@@ -68,15 +46,25 @@ def of_kind(keys: Iterable[Key], kind: str) -> list[Key]:
 class Activation:
     """How a mutant becomes active in a process of the tests.
 
+    Class attributes:
+        EACH_TEST: the key of the start of each test that reaches the mutant; ``at_time``, ``at_call`` and
+            ``nth`` make others.
+        AT_ONCE: awaits nothing: the fault is made before any module of the program is imported.
+        FIRST_TEST: awaits the first test of the process.
+        FIRST_TICK: awaits the clock's first tick.
+
     Attributes:
         reference: ``module:attribute`` of a ``mutabot.runtime.active_fault.ActiveFault``.
-        data: what it is told, as plain data.
+        data: what it gets as ``ActiveFault.data``; plain data, as JSON has it.
         keys: where a process with this mutant first differs from the original: a fork parent forks at the
-            first of them that is reached. None: it cannot be forked, and runs in processes of its own.
+            first of them that is reached. Empty: it cannot be forked, and runs in processes of its own.
         awaits: what must be there before the fault is made: ``AT_ONCE``, ``FIRST_TEST``, ``FIRST_TICK`` or
-            the name of a module, which is then imported. Processes below the tests await it likewise.
+            the name of a module, which has then been imported. Processes below the tests await it likewise.
         identity, fatal: the controls at the place of the mutant; None for those that any fault has.
     """
+
+    EACH_TEST = (TEST,)
+    AT_ONCE, FIRST_TEST, FIRST_TICK = "", "<test>", "<tick>"
 
     reference: str
     data: Any = None
@@ -85,18 +73,38 @@ class Activation:
     identity: Activation | None = None
     fatal: Activation | None = None
 
+    @staticmethod
+    def at_time(seconds: float) -> Key:
+        """Return the key of the first tick in a test by which so many simulated seconds have passed.
+
+        The tick is one of the vocabulary's clock; a test's time begins with its first one.
+        """
+        return (TIME, seconds)
+
+    @staticmethod
+    def at_call(span: Span, operation: str, pattern: str | None = None) -> Key:
+        """Return the key of a call of an operation, or of one of its text commands, at the span of a site."""
+        place = span.line, span.column, span.end_line, span.end_column
+        return (CALL, span.file, *place, operation, pattern)
+
+    @staticmethod
+    def nth(number: int, key: Key) -> Key:
+        """Return the key of the time of this number, from 1, at which another key is reached in a test."""
+        return (NTH, number, *key)
+
     @classmethod
     def of_call(cls, place: Place) -> Activation:
         """Of a mutant of the calls at a place."""
-        key = at_call(place.site.span, place.operation, place.pattern)
-        own = cls(CALL_FAULT, keys=(key,), awaits=AT_ONCE)
-        return cls(CALL_FAULT, keys=(key,), awaits=AT_ONCE, identity=own, fatal=own)
+        key = cls.at_call(place.site.span, place.operation, place.pattern)
+        own = cls(CALL_FAULT, keys=(key,), awaits=cls.AT_ONCE)
+        return cls(CALL_FAULT, keys=(key,), awaits=cls.AT_ONCE, identity=own, fatal=own)
 
     @classmethod
     def of_text(cls, place: int, index: int) -> Activation:
         """Of an alternative in the program text, by the number of its place and its index there."""
         own, identity, fatal = (
-            cls(TEXT_FAULT, (place, one), (at_text(place, one),), AT_ONCE) for one in (index, IDENTITY, FATAL)
+            cls(TEXT_FAULT, (place, one), (at_text(place, one),), cls.AT_ONCE)
+            for one in (index, IDENTITY, FATAL)
         )
         return replace(own, identity=identity, fatal=fatal)
 

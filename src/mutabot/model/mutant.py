@@ -8,7 +8,7 @@ examined, and put in place where the program runs; they cross the process border
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import field, replace
 from enum import StrEnum
 from functools import lru_cache
@@ -178,6 +178,19 @@ class Site:
     def of_parameter(cls, owner: str, name: str) -> Site:
         """A parameter, which stands nowhere in the program text: ``of_parameter("world", "gravity")``."""
         return cls(Span(owner, 0, 0, 0, 0, ""), name, 1, Role.PROGRAM)
+
+    @classmethod
+    def in_program(cls, file: str, extent: Extent, function: str, text: str, occurrence: int = 1) -> Site:
+        """An expression, a statement or a line of the program.
+
+        Args:
+            file: path relative to the project's root, with forward slashes.
+            extent: first line (1-based), first column, last line, last column (0-based, in UTF-8 bytes).
+            function: qualified name of the function it stands in; ``<module>`` at the top level.
+            text: how it reads, shortened.
+            occurrence: 1-based number among those with this text in this function.
+        """
+        return cls(Span(file, *extent, function), text, occurrence, Role.PROGRAM)
 
     @property
     def is_in_file(self) -> bool:
@@ -379,18 +392,18 @@ RUNTIME = "__mutabot__"
 IDENTITY, FATAL = -1, -2
 
 
-def kept_name(index: int) -> str:
-    """The name that stands in a template for a kept part of the original."""
-    return f"__kept_{index}__"
-
-
 #: kinds of values that fit what an alternative needs
-FITTING: Mapping[str, frozenset[str]] = {
+_FITTING: Mapping[str, frozenset[str]] = {
     "number": frozenset({"number", "integer"}),
     "integer": frozenset({"integer"}),
     "truth": frozenset({"truth"}),
     "bits": frozenset({"integer", "truth", "set", "flag"}),
 }
+
+
+def fits_kinds(need: str, kinds: Iterable[str]) -> bool:
+    """Whether a value of one of these kinds fits what an alternative needs."""
+    return not _FITTING.get(need, frozenset()).isdisjoint(kinds)
 
 
 @frozen
@@ -416,6 +429,15 @@ class Alternative:
     needs: str = ""
     family: str = ""
     raises: bool = False
+
+    @staticmethod
+    def kept_name(index: int) -> str:
+        """The name that stands in a template for a part of the original that is kept: ``TextPlace.kept``."""
+        return f"__kept_{index}__"
+
+    def fits(self, kinds: Iterable[str]) -> bool:
+        """Whether it takes a value of one of these kinds, as ``Original.kinds_at`` tells them."""
+        return fits_kinds(self.needs, kinds) if self.needs else True
 
 
 @frozen
@@ -464,7 +486,7 @@ class ProgramText:
 
     Attributes:
         file: path relative to the project's root, with forward slashes.
-        digest: SHA-256 of the file's bytes, in hexadecimal digits: other text has other places.
+        digest: of the file's bytes: other text has other places.
         places: the places, in the order of the text.
         declared: names that a function declares ``global`` or ``nonlocal``, by function: they must not be
             mentioned there before, so they cannot stand for another variable.
@@ -474,6 +496,15 @@ class ProgramText:
     digest: str
     places: tuple[TextPlace, ...] = ()
     declared: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    @classmethod
+    def of(
+        cls, file: str, content: bytes, places: Iterable[TextPlace], declared: Mapping[str, tuple[str, ...]]
+    ) -> ProgramText:
+        """The text of a file with this content."""
+        from mutabot.model.source_units import digest  # noqa: PLC0415  # slow, and only planning needs it
+
+        return cls(file, digest(content), tuple(places), declared)
 
 
 @frozen
@@ -513,3 +544,9 @@ class Sighting:
     hits: int
     kinds: tuple[str, ...] = ()
     variables: tuple[str, ...] = ()
+
+    def with_others(self, other: Sighting) -> Sighting:
+        """What two sessions saw: all kinds, and the variables that both saw."""
+        kinds = tuple(sorted({*self.kinds, *other.kinds}))
+        variables = tuple(name for name in self.variables if name in other.variables)
+        return Sighting(self.place, self.hits + other.hits, kinds, variables)

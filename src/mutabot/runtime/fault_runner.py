@@ -17,7 +17,7 @@ import wrapt
 
 from mutabot.errors import in_words
 from mutabot.model import Mutant
-from mutabot.model.activation import AT_ONCE, FIRST_TEST, FIRST_TICK, Activation, Key
+from mutabot.model.activation import Activation, Key
 from mutabot.operators.command import FatalFault
 from mutabot.runtime.active_fault import ActiveFault, FatalControl, FaultContext
 from mutabot.runtime.evidence import Evidence, everything
@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 #: modules that stand in for the robot in tests
 _MOCKS = "unittest.mock"
+#: what a fault awaits that only a test brings
+_OF_TEST = (Activation.FIRST_TEST, Activation.FIRST_TICK)
 
 
 @dataclass(slots=True)
@@ -55,10 +57,10 @@ class FaultRunner:
         """Be this mutant from here on, also within a test that has begun."""
         self._mutant, self.activation = mutant, activation
         self._is_in_test = bool(self.context.test)
-        awaited = activation.awaits
-        if awaited == AT_ONCE or (awaited in (FIRST_TEST, FIRST_TICK) and self._is_in_test):
+        awaited, is_of_test = activation.awaits, activation.awaits in _OF_TEST
+        if awaited == Activation.AT_ONCE or (is_of_test and self._is_in_test):
             self._make()
-        elif awaited not in (FIRST_TEST, FIRST_TICK):
+        elif not is_of_test:
             wrapt.register_post_import_hook(lambda module: self._make(), awaited)
 
     @property
@@ -73,15 +75,18 @@ class FaultRunner:
     def start_test(self) -> None:
         """A test begins."""
         self.fatal, self._is_in_test = None, True
-        if self._fault is None and self.activation is not None and self.activation.awaits == FIRST_TEST:
+        if self._fault is None and self._awaits(Activation.FIRST_TEST):
             self._make()
         elif self._fault is not None:
             self._start(self._fault)
 
     def tick(self) -> None:
         """The program's clock has begun."""
-        if self._fault is None and self.activation is not None and self.activation.awaits == FIRST_TICK:
+        if self._fault is None and self._awaits(Activation.FIRST_TICK):
             self._make()
+
+    def _awaits(self, awaited: str) -> bool:
+        return self.activation is not None and self.activation.awaits == awaited
 
     def reach(self, key: Key) -> None:
         """The running test has reached a key. Raises FatalFault for the fatal control."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable
 
-from mutabot.model.activation import CALL, NTH, TIME, Key, at_time, nth, of_kind
+from mutabot.model.activation import CALL, NTH, TIME, Activation, Key, of_kind
 
 
 class ReachedKeys:
@@ -57,7 +57,7 @@ class ReachedKeys:
             self._on_first_tick()
         while self._due and self._due[0] <= seconds:
             self._passed = self._due.pop(0)
-            self._reach(at_time(self._passed))
+            self._reach(Activation.at_time(self._passed))
 
     def call(self, key: Key, number: int) -> None:
         """The program is about to make this call, by its number among those of its site in the test."""
@@ -67,5 +67,5 @@ class ReachedKeys:
         keys = [key]
         if self._counted and key in self._counted:
             self._counts[key] += 1
-            keys.append(nth(self._counts[key], key))
+            keys.append(Activation.nth(self._counts[key], key))
         self._told(keys, number)

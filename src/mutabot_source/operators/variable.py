@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import ClassVar
 
-from mutabot.model.mutant import Alternative
+from mutabot.api.faults import Alternative
 from mutabot_source.operator import ConventionalOperator, Draft, Node, Surroundings, TextExample
 
 

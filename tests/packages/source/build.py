@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from hashlib import sha256
 from importlib.machinery import SourceFileLoader
@@ -13,6 +13,7 @@ from types import ModuleType
 from typing import Any
 
 from mutabot.model import Alternative, Instrumentation, ProgramText, Sighting, TextPlace
+from mutabot.original import Original, TextSeen
 from mutabot.runtime.program_text import compiling
 from mutabot.runtime.program_text.instrument import SessionText
 from mutabot.runtime.program_text.switches import hand_through
@@ -33,12 +34,20 @@ def text_of(folder: Path, source: str, *operators: str) -> ProgramText:
 
 def refined(text: ProgramText, example: TextExample) -> ProgramText:
     """The text after a baseline that saw what the example says."""
-    seen = {}
+    seen = []
     for place in text.places:
         kinds = (example.kinds.get(place.text, "number"),)
-        seen[place.number] = Sighting(place.number, 1, kinds, example.variables.get(place.text, ()))
-    (text,), _ = refine([text], seen)
+        seen.append(Sighting(place.number, 1, kinds, example.variables.get(place.text, ())))
+    (text,), _ = refine([text], seen_in(seen))
     return text
+
+
+def seen_in(*rounds: Sequence[Sighting]) -> Original:
+    """An original whose only test reached these places, and saw this there in each round."""
+    texts = (
+        TextSeen(sightings=(*one,), reached={"test": tuple(seen.place for seen in one)}) for one in rounds
+    )
+    return Original(text=dict(enumerate(texts)))
 
 
 def spliced(source: str, place: TextPlace, alternative: Alternative) -> str:

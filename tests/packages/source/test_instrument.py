@@ -25,9 +25,9 @@ from mutabot.runtime.program_text import instrument
 from mutabot.runtime.program_text.compiling import compile_tree
 from mutabot.runtime.program_text.instrument import SessionText, instrumented
 from mutabot.runtime.program_text.switches import Alternatives, error_of
-from mutabot_source.refine import merge, refine
+from mutabot_source.refine import refine
 from mutabot_source.texts import find_texts
-from tests.packages.source.build import choices, imported, load, spliced, switch_off, text_of
+from tests.packages.source.build import choices, imported, load, seen_in, spliced, switch_off, text_of
 
 #: what the operators that raise call it
 BOMB, ZERO_VALUE = error_of("Bomb"), error_of("ZeroValue")
@@ -431,7 +431,7 @@ def test_variables_that_would_change_what_a_name_means_do_not_stand_in(tmp_path:
     with imported(tmp_path, text, record=True) as (module, hook):
         assert module.f() == ((1, 5), 1)
         assert hook.sightings is not None
-        seen = merge(hook.sightings.seen())
+        seen = seen_in(hook.sightings.seen())
     (text,), _ = refine([text], seen)
     found = {(place.span.function, place.text, one.text) for _, place, one in choices(text)}
     assert ("f", "a", "c") in found

@@ -6,13 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.errors import OperatorError
 from mutabot.model import Sighting
 from mutabot.model.activation import Activation
-from mutabot_source.refine import merge, plant, refine
-from mutabot_source.registry import names
+from mutabot.original import Original
+from mutabot_source.extension import OF_TEXT
+from mutabot_source.refine import plant, refine
+from mutabot_source.registry import load_all, names
 from mutabot_source.texts import find_texts
-from tests.packages.source.build import choices, text_of
+from tests.packages.source.build import choices, seen_in, text_of
 
 SOURCE = """
 HOME = (0.5, -0.2)
@@ -95,15 +96,13 @@ def test_equal_expressions_in_one_old_f_string_are_left_alone(tmp_path: Path) ->
 def test_after_the_baseline_only_fitting_types_are_left(tmp_path: Path) -> None:
     text = text_of(tmp_path, "y = a + b\nz = c\n", "AOR", "ABS", "SVR")
     by_text = {place.text: place.number for place in text.places}
-    seen = merge(
-        [
-            Sighting(by_text["a + b"], 1, ("text",)),
-            Sighting(by_text["a"], 1, ("text",), ("b", "n")),
-            Sighting(by_text["a"], 2, ("text",), ("b",)),
-            Sighting(by_text["b"], 1, ("integer",)),
-        ]
-    )
-    (refined,), left_out = refine([text], seen)
+    first = [
+        Sighting(by_text["a + b"], 1, ("text",)),
+        Sighting(by_text["a"], 1, ("text",), ("b", "n")),
+        Sighting(by_text["c"], 1),
+    ]
+    second = [Sighting(by_text["a"], 2, ("text",), ("b",)), Sighting(by_text["b"], 1, ("integer",))]
+    (refined,), left_out = refine([text], seen_in(first, second))
     assert [(one.operator, one.text) for _, _, one in choices(refined)] == [
         ("SVR", "b"),
         ("ABS", "abs(b)"),
@@ -118,12 +117,17 @@ def test_after_the_baseline_only_fitting_types_are_left(tmp_path: Path) -> None:
 
 def test_where_no_test_comes_all_is_planted_that_may_fit(tmp_path: Path) -> None:
     text = text_of(tmp_path, "def f(a, b):\n    return a + b\n", "AOR", "SVR")
-    (refined,), left_out = refine([text], {}, reached=())
+    (refined,), left_out = refine([text], Original())
     assert {one.text for _, _, one in choices(refined) if one.operator == "SVR"} == {"a", "b"}
     assert "a - b" in {one.text for _, _, one in choices(refined)}
     assert left_out == []
 
 
-def test_an_unknown_operator_is_refused_with_the_nearest(tmp_path: Path) -> None:
-    with pytest.raises(OperatorError, match="did you mean 'AOR'"):
+def test_an_unknown_operator_is_refused_with_those_that_there_are(tmp_path: Path) -> None:
+    with pytest.raises(LookupError, match="no operator 'AORR' on program text; there are ABS, AOR"):
         text_of(tmp_path, "x = 1", "AORR")
+
+
+def test_each_operator_has_a_name_of_its_own_and_a_family_of_the_provider() -> None:
+    assert len(set(names())) == len(names())
+    assert {rule.family for rule in load_all()} == set(OF_TEXT)

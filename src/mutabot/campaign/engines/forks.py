@@ -25,7 +25,7 @@ from mutabot.execution.interruption import Interruption
 from mutabot.execution.task import Result, Task, how_ended
 from mutabot.families import CONTROL
 from mutabot.model import Instrumentation, Mutant, Outcome, events
-from mutabot.model.activation import EACH_TEST, Key, at_test
+from mutabot.model.activation import Activation, Key, at_test
 from mutabot.model.deadline import Limit
 from mutabot.model.job import Forking
 
@@ -268,9 +268,9 @@ class _ForkRound:
         tests = [
             at_test(test)
             for test in self._baseline.tests_reaching(self._round, mutant)
-            if EACH_TEST in keys or self._baseline.ends[self._round, test].processes
+            if Activation.EACH_TEST in keys or self._baseline.ends[self._round, test].processes
         ]
-        return (*(key for key in keys if key != EACH_TEST), *tests)
+        return (*(key for key in keys if key != Activation.EACH_TEST), *tests)
 
     def take(self, event: events.Event) -> Iterator[Outcome]:
         """Sort in an event. Yields the outcomes that it settles.

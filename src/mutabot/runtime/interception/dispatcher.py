@@ -22,7 +22,7 @@ import wrapt
 
 from mutabot.extensions import packages
 from mutabot.model import Call, Reply, Role, Span
-from mutabot.model.activation import Key, at_call
+from mutabot.model.activation import Activation, Key
 from mutabot.model.operation import Form
 from mutabot.model.quantity import Value
 from mutabot.operators.passage import Carried, run
@@ -220,7 +220,7 @@ class Dispatcher:
                 # 2. A fork parent forks for each mutant that differs from here on, and goes on as the
                 #    original; a fork comes back from here as its mutant.
                 if self.on_reach is not None:
-                    self.on_reach(at_call(*key), made.number)
+                    self.on_reach(Activation.at_call(*key), made.number)
                 # 3. The robot does what the program says, or what a mutant at this site makes of it.
                 mutant = self.mutant
                 hits = mutant.evidence.hits if mutant is not None else 0

@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from mutabot.languages.python import extent_of, head_size, placed
 from mutabot.model.events import NotInstrumented, PlacesReached, TextsSeen
-from mutabot.model.mutant import RUNTIME, Extent, kept_name
+from mutabot.model.mutant import RUNTIME, Alternative, Extent
 from mutabot.model.source_units import digest
 from mutabot.runtime import real_path
 from mutabot.runtime.event_file import EventWriter, Held
@@ -35,7 +35,7 @@ from mutabot.runtime.program_text.foresee import ForeseenForm, Forms
 from mutabot.runtime.program_text.switches import Alternatives, Sightings
 
 if TYPE_CHECKING:
-    from mutabot.model import Alternative, Call, Instrumentation, ProgramText, TextPlace
+    from mutabot.model import Call, Instrumentation, ProgramText, TextPlace
     from mutabot.model.job import Job
 
 
@@ -45,7 +45,7 @@ _Nodes = dict[int, ast.expr]
 _Node = TypeVar("_Node", bound=ast.AST)
 #: expressions without effects; attributes and items may be readings of a robot
 _PURE = (ast.Name, ast.Constant, ast.BinOp, ast.UnaryOp, ast.BoolOp, ast.Compare, ast.IfExp, ast.Tuple)
-_KEPT = kept_name(0).partition("0")[0]
+_KEPT = Alternative.kept_name(0).partition("0")[0]
 #: up to so many places in a file, it is worth while to look where they are before anything is changed
 _FEW = 20
 
@@ -233,10 +233,10 @@ def _filled(made: _Node, place: TextPlace, node: ast.AST, *, observed: bool = Tr
     missing = wanted - parts.keys()
     if missing:
         raise MismatchError(f"{place.span.file}: no expression at {min(missing)}")
-    filler = _Filler({kept_name(index): parts[extent] for index, extent in enumerate(place.kept)})
+    filler = _Filler({Alternative.kept_name(index): parts[extent] for index, extent in enumerate(place.kept)})
     if observed and isinstance(node, ast.expr) and place.extent in parts:
         whole = placed(_asked(place.number, "was", parts[place.extent]), node)
-        filler.parts[kept_name(place.kept.index(place.extent))] = whole
+        filler.parts[Alternative.kept_name(place.kept.index(place.extent))] = whole
     result: _Node = filler.visit(_moved(made, node))
     return result
 

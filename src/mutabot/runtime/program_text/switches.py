@@ -22,7 +22,7 @@ from functools import cache
 from typing import Any, NoReturn
 
 from mutabot.model.data import is_of_numpy
-from mutabot.model.mutant import FATAL, FITTING, IDENTITY, Sighting, TextPlace
+from mutabot.model.mutant import FATAL, IDENTITY, Sighting, TextPlace, fits_kinds
 from mutabot.model.path import class_name
 from mutabot.runtime.program_text.foresee import Forms, locals_of
 
@@ -420,7 +420,7 @@ class _Witness:
     def _note_kind(self, kind: type, value: Any) -> None:
         self._types.add(kind)
         self._kinds.add(kind_of(value))
-        self._lacking -= {one for one in self._lacking if not self._kinds.isdisjoint(FITTING.get(one, ()))}
+        self._lacking -= {one for one in self._lacking if fits_kinds(one, self._kinds)}
         self.looks_around = 0
 
     def _look_around(self, value: Any, frame: types.FrameType) -> None:
