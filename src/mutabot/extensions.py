@@ -75,8 +75,8 @@ class Extension:
 
     Attributes:
         interface: the version of this interface that the package was written for.
-        operators: subclasses of ``ValueOperator``, ``ValuesOperator`` or ``CommandOperator`` of
-            ``mutabot.api.faults``, by the operators' names.
+        operators: subclasses of ``ValueOperator`` or ``CommandOperator`` of ``mutabot.api.faults``, by the
+            operators' names.
         middlewares: modules that keep ``runtime.targets.target.MiddlewareModule``, by the name of the client
             library's module whose import puts their hooks in place.
         environments: modules that keep ``runtime.targets.target.Environment``, by any name.

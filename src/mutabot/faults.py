@@ -13,7 +13,7 @@ campaign without its mutants has no use for is to be imported with it.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -65,20 +65,6 @@ class Project:
     def is_python(self, file: str) -> bool:
         """Whether a file of the program is Python: it does not end as one of another language does."""
         return front_end_of(file) is PYTHON
-
-
-@dataclass(slots=True)
-class Preparation:
-    """What a provider has found out before the baseline, and needs of it.
-
-    Attributes:
-        texts: places of the program text, to be instrumented and observed in the baseline's first run of each
-            round. Places have numbers from the one on that ``prepare`` is told.
-        notes: what the user should know.
-    """
-
-    texts: tuple[ProgramText, ...] = ()
-    notes: tuple[str, ...] = ()
 
 
 @frozen
@@ -213,13 +199,24 @@ class FaultProvider(ABC):
             magnitude=magnitude, unit=unit, has_sizes=rule.has_sizes, provider=self.name,
         )  # fmt: skip
 
-    def prepare(self, project: Project, first: int) -> Preparation:
-        """Look at the project before the baseline. ``first``: the number of the first place in its texts."""
-        return Preparation()
+    def texts(self, project: Project, first: int, tell: Callable[[str], None]) -> Sequence[ProgramText]:
+        """The program text that the baseline's first run of each round is to look at; most need none.
+
+        Args:
+            project: the project.
+            first: the number of the first place in the texts; each has the next one.
+            tell: tells the user something.
+        """
+        return ()
 
     @abstractmethod
-    def plan(self, project: Project, prepared: Preparation, original: Original) -> Planned:
-        """All its mutants of the families that are asked for."""
+    def plan(self, project: Project, original: Original) -> Planned:
+        """All its mutants of the families that are asked for.
+
+        Args:
+            project: the project.
+            original: what the baseline has seen; its ``texts`` has those of this provider, by its name.
+        """
 
     def draws(self, operator: str) -> bool:
         """Whether an operator of its own draws numbers anew for each round."""

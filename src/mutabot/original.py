@@ -9,7 +9,7 @@ from typing import Any
 
 from mutabot.errors import MutabotError
 from mutabot.frozen import frozen
-from mutabot.model import Operation, Pattern, Sighting
+from mutabot.model import Operation, Pattern, ProgramText, Sighting
 from mutabot.model.codec import is_plain
 from mutabot.model.events import TestEnd
 from mutabot.model.job import Idle
@@ -124,7 +124,8 @@ class Original:
             A test that was skipped or failed as expected belongs to them: a mutant can make it fail.
         ends: the report of each (round, test), from the first repetition.
         executed: what was executed in this, by round.
-        text: what was seen of instrumented program text, by round.
+        texts: the program text that was looked at, by the names of the providers that asked for it.
+        text: what was seen of this, by round.
         hits: recorded calls by place, in the order in which places were first reached.
         answers: what these calls returned.
         unread: whether nobody uses what the calls of a place return.
@@ -137,6 +138,7 @@ class Original:
     tests: list[list[str]] = field(default_factory=list)
     ends: dict[tuple[int, str], TestEnd] = field(default_factory=dict)
     executed: dict[int, ExecutedByTests] = field(default_factory=dict)
+    texts: dict[str, tuple[ProgramText, ...]] = field(default_factory=dict)
     text: dict[int, TextSeen] = field(default_factory=dict)
     hits: dict[Place, list[Hit]] = field(default_factory=dict)
     answers: dict[Place, RecordedAnswers] = field(default_factory=dict)

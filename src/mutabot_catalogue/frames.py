@@ -9,7 +9,7 @@ from dataclasses import replace
 from itertools import combinations
 from typing import ClassVar
 
-from mutabot.api.faults import Context, Example, Need, Subject, Unchanged, ValueOperator, ValuesOperator
+from mutabot.api.faults import Context, Example, Need, Subject, Unchanged, ValueOperator
 from mutabot.api.values import Kind, Mode, Operation, Path, Quantity, Value
 
 from ._examples import MOVE_TO
@@ -95,7 +95,7 @@ class JointOrder(Exchange):
                 )
 
 
-class LeftHanded(ValuesOperator):
+class LeftHanded(ValueOperator):
     """A pose is taken as left-handed: y and the turns about x and z are negated.
 
     Where: written and read poses with y and an orientation beside it; for y alone it is a wrong sign.
@@ -151,7 +151,7 @@ def _mirrored(quantity: Quantity, value: Value) -> Value | None:
     return quantity.rotated(value, lambda one: one._replace(x=-one.x, z=-one.z))
 
 
-class BaseForTool(ValuesOperator):
+class BaseForTool(ValueOperator):
     """A relative move in the base's frame goes along the tool's axes, and the other way round.
 
     Where: relative translations along x, y and z in a frame named base or tool, with a current that reads the

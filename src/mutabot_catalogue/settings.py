@@ -17,7 +17,7 @@ _SEND_ANY = Operation.under_name(Form.PUBLISH, "/arm/target", (calls.OPEN_FRAME,
 _HEAR = Operation.under_name(Form.RECEIVE, "/scan", result=(calls.HEARD_FRAME,))
 
 
-class FreeValueOperator(ValueOperator):
+class _FreeValueOperator(ValueOperator):
     """Changes a value that a middleware takes whatever it is."""
 
     family = MIDDLEWARE
@@ -29,7 +29,7 @@ class FreeValueOperator(ValueOperator):
         return f"{quantity.name} {one or '“”'} → {other or '“”'}"
 
 
-class WrongFrame(FreeValueOperator):
+class WrongFrame(_FreeValueOperator):
     """The header names another frame: the next of the vocabulary's values, else an unknown one; or none at
     all.
     """
@@ -56,7 +56,7 @@ class WrongFrame(FreeValueOperator):
         return context.next_value(value)
 
 
-class ShiftStamp(FreeValueOperator):
+class ShiftStamp(_FreeValueOperator):
     """The header's stamp lies 5 s in the past or in the future."""
 
     name = "shift-stamp"
@@ -84,7 +84,7 @@ class ShiftStamp(FreeValueOperator):
         return f"{subject.required_quantity.name} lies 5 s in the {when}"
 
 
-class EmptyStamp(FreeValueOperator):
+class EmptyStamp(_FreeValueOperator):
     """The header's stamp is zero."""
 
     name = "empty-stamp"
@@ -110,7 +110,7 @@ _NO_DEFAULT = "the program gives no default"
 _IS_DEFAULT = "it has its default"
 
 
-class _Setting(FreeValueOperator):
+class _Setting(_FreeValueOperator):
     """Changes one thing that something is set up with.
 
     Class attributes:
@@ -269,7 +269,7 @@ _DEFAULT = Form.PARAMETER.settings[0].name
 _SET, _READ = Subject(calls.SPEED, quantity=calls.SPEED.result[0]), {"value": 0.25}
 
 
-class UseDefault(FreeValueOperator):
+class UseDefault(_FreeValueOperator):
     """A parameter has the program's default instead of what was set."""
 
     name = "use-default"

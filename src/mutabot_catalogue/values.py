@@ -6,14 +6,14 @@ from abc import abstractmethod
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 
-from mutabot.api.faults import Context, Subject, Unchanged, ValuesOperator
+from mutabot.api.faults import Context, Subject, Unchanged, ValueOperator
 from mutabot.api.values import Operation, Quantity, Value
 
 #: the families of this package's operators
 CATALOGUE, MIDDLEWARE = "catalogue", "middleware"
 
 
-class Exchange(ValuesOperator):
+class Exchange(ValueOperator):
     """Exchanges two values of one kind; the variant names the second."""
 
     family = CATALOGUE

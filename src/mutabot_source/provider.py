@@ -8,11 +8,11 @@ these mutants does not wait for it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from mutabot.api.faults import FaultProvider, Original, Planned, Preparation, ProgramText, Project
+from mutabot.api.faults import FaultProvider, Original, Planned, ProgramText, Project
 
 from .extension import OF_TEXT, PROVIDER
 
@@ -37,38 +37,38 @@ class SourceFaults(FaultProvider):
 
         return load_all()
 
-    def prepare(self, project: Project, first: int) -> Preparation:
+    def texts(self, project: Project, first: int, tell: Callable[[str], None]) -> Sequence[ProgramText]:
         """The places of the program that the families asked for have to do with."""
         from .texts import find_texts
 
         wanted = self._operators(project)
         texts: list[ProgramText] = []
-        notes: list[str] = []
         for file in project.program_files():
             if not project.is_python(file):
-                notes.append(f"{_NO_MUTANTS.format(file)}: {_NO_PYTHON}")
+                tell(f"{_NO_MUTANTS.format(file)}: {_NO_PYTHON}")
                 continue
             try:
                 (text,) = find_texts(project.root, [file], wanted, first=first)
             except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
-                notes.append(f"{_NO_MUTANTS.format(file)}: it cannot be read: {str(error).splitlines()[0]}")
+                tell(f"{_NO_MUTANTS.format(file)}: it cannot be read: {str(error).splitlines()[0]}")
                 continue
             first += len(text.places)
             texts.append(text)
-        return Preparation(tuple(texts), tuple(notes))
+        return texts
 
-    def plan(self, project: Project, prepared: Preparation, original: Original) -> Planned:
+    def plan(self, project: Project, original: Original) -> Planned:
         """The alternatives that can run and fit the types that were seen."""
-        if not prepared.texts:
+        looked_at = original.texts.get(self.name, ())
+        if not looked_at:
             return Planned()
         from .refine import plant, planted_of, refine
 
         why = original.refused_files()
-        readable = [text for text in prepared.texts if text.file not in why]
+        readable = [text for text in looked_at if text.file not in why]
         texts, left_out = refine(readable, original, self._operators(project))
         left_out += [
             planted_of(place, index, why[text.file])
-            for text in prepared.texts
+            for text in looked_at
             if text.file in why
             for place in text.places
             for index in range(len(place.alternatives))

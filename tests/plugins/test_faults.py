@@ -66,7 +66,7 @@ PACKAGE = {
             def rules(self):
                 return [Parameter()]
 
-            def plan(self, project, prepared, original):
+            def plan(self, project, original):
                 planned = Planned()
                 for name, value in VALUES.items():
                     site = Site.of_parameter("world", name)

@@ -83,7 +83,7 @@ PACKAGE = {
             def rules(self):
                 return [Slip()]
 
-            def plan(self, project, prepared, original):
+            def plan(self, project, original):
                 planned, at = Planned(), project.tables["slippery"].at
                 keys = (Activation.at_time(at),)
                 active = Activation("slippery_inside:Slip", {"at": at}, keys, %(awaits)s)

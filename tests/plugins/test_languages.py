@@ -14,7 +14,7 @@ from tests.plugins.test_plugins import mutabot
 PACKAGE = {
     "steps.py": """
         from mutabot.api.faults import Activation, Extension, FaultProvider, Planned, PlannedMutant
-        from mutabot.api.faults import Rule, Site, SiteName, SourcePosition
+        from mutabot.api.faults import Rule, Site
 
         EXTENSION = Extension(
             interface=2, languages={"steps": "steps:LANGUAGE"}, faults={"steps": "steps:StepFaults"}
@@ -31,7 +31,7 @@ PACKAGE = {
                 for number, line in enumerate(source.splitlines(), start=1):
                     word = line.split()[0]
                     counts[word] = counts.get(word, 0) + 1
-                    names[number, 0, number, len(line.encode())] = SiteName(word, counts[word])
+                    names[number, 0, number, len(line.encode())] = (word, counts[word])
                 return names
 
             def file_of(self, frame):
@@ -39,7 +39,7 @@ PACKAGE = {
 
             def position_of(self, frame):
                 number, line = frame.f_locals["number"], frame.f_locals["line"]
-                return SourcePosition((number, 0, number, len(line.encode())), "steps")
+                return (number, 0, number, len(line.encode())), "steps"
 
         LANGUAGE = Steps()
 
@@ -56,7 +56,7 @@ PACKAGE = {
             def rules(self):
                 return [Drop()]
 
-            def plan(self, project, prepared, original):
+            def plan(self, project, original):
                 planned = Planned()
                 for name in project.program:
                     text = LANGUAGE.text_of((project.root / name).read_bytes())

@@ -83,7 +83,7 @@ PACKAGE = {
             def rules(self):
                 return [Patch()]
 
-            def plan(self, project, prepared, original):
+            def plan(self, project, original):
                 planned = Planned()
                 for file in sorted((project.root / "patches").glob("*.json")):
                     texts = json.loads(file.read_text())

@@ -8,15 +8,14 @@ from mutabot.lazy import lazily
 
 if TYPE_CHECKING:
     from mutabot.extensions import Described, Extension
-    from mutabot.faults import FaultProvider, Planned, PlannedMutant, Preparation, Project
-    from mutabot.languages.front_end import FrontEnd, SiteName, SourcePosition
+    from mutabot.faults import FaultProvider, Planned, PlannedMutant, Project
     from mutabot.model.activation import Activation
     from mutabot.model.call import Unchanged
     from mutabot.model.mutant import Alternative, Mutant, ProgramText, Site, TextPlace
     from mutabot.operators.command import CommandOperator
     from mutabot.operators.magnitudes import Magnitudes
     from mutabot.operators.operator import Context, Example, Need, Rule, Subject
-    from mutabot.operators.value import ValueOperator, ValuesOperator
+    from mutabot.operators.value import ValueOperator
     from mutabot.original import Original
     from mutabot.runtime.active_fault import ActiveFault
 
@@ -30,25 +29,20 @@ __all__ = [
     "Example",
     "Extension",
     "FaultProvider",
-    "FrontEnd",
     "Magnitudes",
     "Mutant",
     "Need",
     "Original",
     "Planned",
     "PlannedMutant",
-    "Preparation",
     "ProgramText",
     "Project",
     "Rule",
     "Site",
-    "SiteName",
-    "SourcePosition",
     "Subject",
     "TextPlace",
     "Unchanged",
     "ValueOperator",
-    "ValuesOperator",
 ]
 _HOMES = {
     "mutabot.extensions": (
@@ -59,13 +53,7 @@ _HOMES = {
         "FaultProvider",
         "Planned",
         "PlannedMutant",
-        "Preparation",
         "Project",
-    ),
-    "mutabot.languages.front_end": (
-        "FrontEnd",
-        "SiteName",
-        "SourcePosition",
     ),
     "mutabot.model.activation": ("Activation",),
     "mutabot.model.call": ("Unchanged",),
@@ -85,10 +73,7 @@ _HOMES = {
         "Rule",
         "Subject",
     ),
-    "mutabot.operators.value": (
-        "ValueOperator",
-        "ValuesOperator",
-    ),
+    "mutabot.operators.value": ("ValueOperator",),
     "mutabot.original": ("Original",),
     "mutabot.runtime.active_fault": ("ActiveFault",),
 }

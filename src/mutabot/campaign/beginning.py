@@ -16,7 +16,7 @@ from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.duration import Duration, duration_of
 from mutabot.campaign.engines.engine import try_controls
 from mutabot.campaign.faults.demanded import split_ladders
-from mutabot.campaign.faults.providers import prepare
+from mutabot.campaign.faults.providers import texts_of
 from mutabot.campaign.plan import Plan, draw, make_plan
 from mutabot.campaign.request import CheckReport, ExecutorChoice, Preview, Progress, Request
 from mutabot.campaign.reuse.original import OriginalRuns
@@ -96,12 +96,12 @@ def begin(
     refuse_typos(request)
     suppressions = suppressions_of(request)
     refuse_unhooked(request.vocabulary)
-    prepared = prepare(request.project)
+    texts = texts_of(request.project, progress.note)
 
     def take(request: Request, executor: Executor, least: int = 0) -> tuple[Campaign, list[Result]]:
         repetitions = max(request.repetitions, least)
         runs = original.runs_by(executor, request) if original is not None else executor
-        baseline, results = take_baseline(request, runs, progress, prepared=prepared, repetitions=repetitions)
+        baseline, results = take_baseline(request, runs, progress, texts=texts, repetitions=repetitions)
         refuse_unfit(baseline, request.vocabulary)
         return Campaign(request, baseline, executor, progress, evidence), results
 

@@ -25,7 +25,7 @@ from mutabot.campaign.engines.controls import run_controls
 from mutabot.campaign.engines.replay import replay
 from mutabot.campaign.engines.rerun import refuse_flaky, rerun
 from mutabot.campaign.evidence import CampaignEvidence, recorded
-from mutabot.campaign.faults.providers import family_of, prepare
+from mutabot.campaign.faults.providers import family_of, texts_of
 from mutabot.campaign.plan import Plan, carry, drawing, make_plan, reaching, summaries
 from mutabot.campaign.reuse.keys import Dependencies, OutcomeWriter
 from mutabot.campaign.reuse.original import OriginalRuns
@@ -323,8 +323,8 @@ def with_fresh_baseline(
     """
     request = replace(request, rounds=last + 1)
     with beginning.open_executor(request, progress) as opened:
-        prepared = prepare(request.project)
-        baseline, _ = take_baseline(request, opened, progress, prepared=prepared, repetitions=1)
+        texts = texts_of(request.project, progress.note)
+        baseline, _ = take_baseline(request, opened, progress, texts=texts, repetitions=1)
         yield Campaign(request, baseline, opened, progress), as_it_is_now(request, baseline, mutant)
 
 

@@ -12,34 +12,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import FrameType
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
     from mutabot.model.mutant import Extent
-
-
-class SourcePosition(NamedTuple):
-    """Where a call stands in its file.
-
-    Attributes:
-        extent: from where to where; lines are 1-based, columns 0-based and in UTF-8 bytes.
-        function: name of the function it stands in; the language says what one is called.
-    """
-
-    extent: Extent
-    function: str
-
-
-class SiteName(NamedTuple):
-    """How a site's id calls it.
-
-    Attributes:
-        text: what is called, as written, on one line and not too long.
-        occurrence: 1-based number among those with this text in this function.
-    """
-
-    text: str
-    occurrence: int
 
 
 class FrontEnd(Protocol):
@@ -55,8 +31,12 @@ class FrontEnd(Protocol):
         Raises SyntaxError or ValueError for a file that it cannot read.
         """
 
-    def names(self, source: str) -> Mapping[Extent, SiteName]:
-        """Names of all that may be a site in a file.
+    def names(self, source: str) -> Mapping[Extent, tuple[str, int]]:
+        """Names of all that may be a site in a file: a text, and an occurrence.
+
+        A site's id has both. The text is what is called, as written, on one line and not too long; the
+        occurrence is the 1-based number among those with this text in this function. Extents are those of
+        ``position_of``.
 
         Raises SyntaxError or ValueError for a file that it cannot read.
         """
@@ -64,8 +44,11 @@ class FrontEnd(Protocol):
     def file_of(self, frame: FrameType) -> str | None:
         """The file of this language that a frame carries out; None if it is no frame of its own."""
 
-    def position_of(self, frame: FrameType) -> SourcePosition:
-        """Where the call stands that such a frame is making.
+    def position_of(self, frame: FrameType) -> tuple[Extent, str]:
+        """Where the call stands that such a frame is making: its extent, and the name of its function.
+
+        An extent is the first line (1-based), first column, last line and last column (0-based, in UTF-8
+        bytes). The language says what a function is called.
 
         Asked at every call of an operation; of Python once for each place.
         """

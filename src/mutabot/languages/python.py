@@ -8,8 +8,6 @@ from importlib.util import decode_source
 from types import CodeType, FrameType
 from typing import TYPE_CHECKING, TypeVar
 
-from .front_end import SiteName, SourcePosition
-
 if TYPE_CHECKING:
     from mutabot.model.mutant import Extent
 
@@ -28,39 +26,39 @@ class Python:
         """The text of a file, by its encoding declaration and with newlines as Python reads them."""
         return decode_source(content)
 
-    def names(self, source: str) -> Mapping[Extent, SiteName]:
+    def names(self, source: str) -> Mapping[Extent, tuple[str, int]]:
         """Names of all expressions: a call by the text of its callee, all others by their own.
 
         What a ``for`` or ``with`` does by itself has the place of the whole statement up to Python 3.12.
         """
-        names: dict[Extent, SiteName] = {}
+        names: dict[Extent, tuple[str, int]] = {}
         tree = ast.parse(source)
         _number(tree, source.encode().splitlines(keepends=True), names)
         for node in ast.walk(tree):
             if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
-                names.setdefault(_definition(node), SiteName(f"def {node.name}", 1))
+                names.setdefault(_definition(node), (f"def {node.name}", 1))
             elif isinstance(node, ast.Lambda):
-                names.setdefault((node.lineno, 0, node.lineno, 0), SiteName("lambda", 1))
+                names.setdefault((node.lineno, 0, node.lineno, 0), ("lambda", 1))
             elif isinstance(node, ast.For | ast.AsyncFor):
-                head = names[extent_of(node.iter)]
-                names.setdefault(extent_of(node), SiteName(f"for {head.text}", head.occurrence))
+                text, occurrence = names[extent_of(node.iter)]
+                names.setdefault(extent_of(node), (f"for {text}", occurrence))
             elif isinstance(node, ast.With | ast.AsyncWith):
-                head = names[extent_of(node.items[0].context_expr)]
-                names.setdefault(extent_of(node), SiteName(f"with {head.text}", head.occurrence))
+                text, occurrence = names[extent_of(node.items[0].context_expr)]
+                names.setdefault(extent_of(node), (f"with {text}", occurrence))
         return names
 
     def file_of(self, frame: FrameType) -> str | None:
         """The file that the frame's code stands in: every frame is one of Python."""
         return frame.f_code.co_filename
 
-    def position_of(self, frame: FrameType) -> SourcePosition:
+    def position_of(self, frame: FrameType) -> tuple[Extent, str]:
         """The place of the instruction that is running."""
         return _position(frame.f_code, frame.f_lasti)
 
-    def definition_of(self, code: CodeType) -> SourcePosition:
+    def definition_of(self, code: CodeType) -> tuple[Extent, str]:
         """The place of a function's definition: its first line, which is that of its first decorator."""
         first = code.co_firstlineno
-        return SourcePosition((first, 0, first, 0), code.co_qualname)
+        return ((first, 0, first, 0), code.co_qualname)
 
 
 FRONT_END = Python()
@@ -99,10 +97,10 @@ def placed(made: _Node, place: ast.AST) -> _Node:
     return made
 
 
-def _position(code: CodeType, instruction: int) -> SourcePosition:
+def _position(code: CodeType, instruction: int) -> tuple[Extent, str]:
     line, end_line, column, end_column = list(code.co_positions())[instruction // 2]
     first = line or code.co_firstlineno
-    return SourcePosition((first, column or 0, end_line or first, end_column or 0), function_of(code))
+    return ((first, column or 0, end_line or first, end_column or 0), function_of(code))
 
 
 def function_of(code: CodeType) -> str:
@@ -119,14 +117,14 @@ def _definition(node: ast.FunctionDef | ast.AsyncFunctionDef) -> Extent:
     return (first, 0, first, 0)
 
 
-def _number(tree: ast.Module, lines: list[bytes], names: dict[Extent, SiteName]) -> None:
+def _number(tree: ast.Module, lines: list[bytes], names: dict[Extent, tuple[str, int]]) -> None:
     for scope in _scopes(tree):
         # a call and its callee look alike but are different things to hit
         counts: dict[tuple[type, str], int] = {}
         for node in sorted(_expressions(scope), key=extent_of):
             text = _text(node, lines)
             count = counts[type(node), text] = counts.get((type(node), text), 0) + 1
-            names[extent_of(node)] = SiteName(text, count)
+            names[extent_of(node)] = (text, count)
 
 
 def _scopes(tree: ast.Module) -> list[ast.AST]:

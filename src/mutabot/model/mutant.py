@@ -436,7 +436,7 @@ class Alternative:
         return f"__kept_{index}__"
 
     def fits(self, kinds: Iterable[str]) -> bool:
-        """Whether it takes a value of one of these kinds, as ``Original.kinds_at`` tells them."""
+        """Whether it takes a value of one of these kinds, as sightings of the original have them."""
         return fits_kinds(self.needs, kinds) if self.needs else True
 
 

@@ -1,8 +1,7 @@
-"""The shapes of operators that change values of one call, written or read."""
+"""The shape of operators that change values of one call, written or read."""
 
 from __future__ import annotations
 
-from abc import abstractmethod
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from random import Random
@@ -21,25 +20,71 @@ CallOrReply = TypeVar("CallOrReply", Call, Reply)
 _SAME = "the value would stay the same"
 
 
-class ValuesOperator(Operator):
-    """Changes values that a call writes, or values that it reads.
+class ValueOperator(Operator):
+    """Changes the value of a quantity that a call writes or reads.
+
+    One that changes several values of a call has ``subjects`` and ``changes`` of its own, and no ``change``.
 
     Class attributes:
+        kinds: the kinds of quantities on which it acts, unless ``fits`` says otherwise.
+        of_written, of_read: on which sides it acts.
         variants: a mutant each, with what they mean (``context.option``).
+        directions: which ways a fault with magnitudes goes: a ladder each.
         takes_any: whether any other value is put in the place of one, also one that the vocabulary does not
             allow.
     """
 
+    kinds: ClassVar[frozenset[Kind]] = frozenset()
+    of_written: ClassVar[bool] = True
+    of_read: ClassVar[bool] = True
     variants: ClassVar[Mapping[str, Any]] = {"": None}
+    directions: ClassVar[tuple[str, ...]] = ("",)
     takes_any: ClassVar[bool] = False
 
-    @abstractmethod
+    def change(self, value: Value, context: Context) -> Value | None:
+        """The new value, or None if not applicable. Raises Unchanged to leave the value alone."""
+        raise NotImplementedError(f"operator {self.name!r} says neither change nor changes")
+
+    def fits(self, quantity: Quantity, whole: Subject) -> bool:
+        """Whether the operator has something to say about this quantity of a call."""
+        return quantity.kind in self.kinds
+
+    def variants_of(self, quantity: Quantity) -> Iterable[str]:
+        """The variants for a quantity."""
+        return self.variants
+
+    def magnitudes(self, quantity: Quantity) -> Magnitudes | None:
+        """How big the fault is to be, a mutant each; None for one without a size, which may have variants."""
+        return None
+
+    def directions_of(self, quantity: Quantity) -> Iterable[str]:
+        """The directions for a quantity."""
+        return self.directions
+
+    def subjects(self, whole: Subject) -> Iterable[Subject]:
+        for is_on, side in ((self.of_written, whole.written), (self.of_read, whole.read)):
+            for quantity in side if is_on else ():
+                if self.fits(quantity, whole):
+                    yield from self._subjects_of(quantity, replace(whole, quantity=quantity))
+
+    def _subjects_of(self, quantity: Quantity, subject: Subject) -> Iterator[Subject]:
+        ladder = self.magnitudes(quantity)
+        if ladder is None:
+            yield from (replace(subject, variant=variant) for variant in self.variants_of(quantity))
+        else:
+            for direction in self.directions_of(quantity):
+                yield from ladder.of(subject, direction)
+
     async def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
         """The values that are others than before, by quantity. Raises Unchanged to leave the call alone.
 
         ``values`` are those of the side on which the subject's quantity stands. What it may await is
         ``context.call.current``.
         """
+        name = context.quantity.name
+        value = context.subject.given(values, name)
+        context.number += 1
+        return {name: self.change(value, context)}
 
     def middleware(self, subject: Subject, random: Random) -> Middleware:
         context = Context(subject, random, self.variants.get(subject.variant))
@@ -89,61 +134,6 @@ class ValuesOperator(Operator):
         if serious or all(reasons):
             return one.as_is((serious or [_SAME])[0])
         return replace(one, values={**one.values, **changed})
-
-
-class ValueOperator(ValuesOperator):
-    """Changes the value of one quantity.
-
-    Class attributes:
-        kinds: the kinds of quantities on which it acts, unless ``fits`` says otherwise.
-        of_written, of_read: on which sides it acts.
-        directions: which ways a fault with magnitudes goes: a ladder each.
-    """
-
-    kinds: ClassVar[frozenset[Kind]] = frozenset()
-    of_written: ClassVar[bool] = True
-    of_read: ClassVar[bool] = True
-    directions: ClassVar[tuple[str, ...]] = ("",)
-
-    @abstractmethod
-    def change(self, value: Value, context: Context) -> Value | None:
-        """The new value, or None if not applicable. Raises Unchanged to leave the value alone."""
-
-    def fits(self, quantity: Quantity, whole: Subject) -> bool:
-        """Whether the operator has something to say about this quantity of a call."""
-        return quantity.kind in self.kinds
-
-    def variants_of(self, quantity: Quantity) -> Iterable[str]:
-        """The variants for a quantity."""
-        return self.variants
-
-    def magnitudes(self, quantity: Quantity) -> Magnitudes | None:
-        """How big the fault is to be, a mutant each; None for one without a size, which may have variants."""
-        return None
-
-    def directions_of(self, quantity: Quantity) -> Iterable[str]:
-        """The directions for a quantity."""
-        return self.directions
-
-    def subjects(self, whole: Subject) -> Iterator[Subject]:
-        for is_on, side in ((self.of_written, whole.written), (self.of_read, whole.read)):
-            for quantity in side if is_on else ():
-                if self.fits(quantity, whole):
-                    yield from self._subjects_of(quantity, replace(whole, quantity=quantity))
-
-    def _subjects_of(self, quantity: Quantity, subject: Subject) -> Iterator[Subject]:
-        ladder = self.magnitudes(quantity)
-        if ladder is None:
-            yield from (replace(subject, variant=variant) for variant in self.variants_of(quantity))
-        else:
-            for direction in self.directions_of(quantity):
-                yield from ladder.of(subject, direction)
-
-    async def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
-        name = context.quantity.name
-        value = context.subject.given(values, name)
-        context.number += 1
-        return {name: self.change(value, context)}
 
 
 def _allowed(quantity: Quantity, value: Value) -> bool:

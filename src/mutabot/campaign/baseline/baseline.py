@@ -14,9 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 from mutabot.campaign.comparison import Observation, ProbeSpread, TraceCall, as_steady
 from mutabot.families import CALLS, CONTROL, MESSAGES
-from mutabot.faults import Planned, PlannedMutant, Preparation
+from mutabot.faults import Planned, PlannedMutant
 from mutabot.journal.records import Untested
-from mutabot.languages.front_end import SiteName
 from mutabot.languages.python import FRONT_END as PYTHON
 from mutabot.languages.registry import front_end_of
 from mutabot.model.activation import Activation
@@ -88,7 +87,7 @@ class Sources:
     """
 
     root: Path
-    _names: dict[str, Mapping[Extent, SiteName]] = field(default_factory=dict)
+    _names: dict[str, Mapping[Extent, tuple[str, int]]] = field(default_factory=dict)
     _read: dict[tuple[str, Callable[[str], Any]], Any] = field(default_factory=dict)
 
     def places(self, sites: Iterable[SiteSeen]) -> dict[int, Place]:
@@ -99,7 +98,7 @@ class Sources:
         span = seen.span
         if span.file not in self._names:
             self._names[span.file] = self.found_in(span.file, front_end_of(span.file).names) or {}
-        text, occurrence = self._names[span.file].get(_extent(span), SiteName(f"line {span.line}", 1))
+        text, occurrence = self._names[span.file].get(_extent(span), (f"line {span.line}", 1))
         site = Site(span, text, occurrence, Role.ORACLE if seen.oracle else Role.PROGRAM)
         return Place(site, seen.operation, seen.pattern)
 
@@ -143,7 +142,6 @@ class Baseline(Original):
         inexact: (round, test) that were not the same to the last bit in all runs of the original.
         skipped: number of tests that skipped themselves.
         startup: seconds from a worker's start to the end, less the tests; the longest.
-        prepared: what the providers have found out before, by their names.
         faults: the mutants of the plan.
         remarks: what is to be known about the vocabulary.
         known: see ``Job.known``.
@@ -169,7 +167,6 @@ class Baseline(Original):
     exits: dict[int, int] = field(default_factory=dict)
     skipped: int = 0
     startup: float = 0.0
-    prepared: Mapping[str, Preparation] = field(default_factory=dict)
     faults: PlantedFaults = field(default_factory=PlantedFaults)
     remarks: tuple[Remark, ...] = ()
     known: tuple[tuple[Span, str], ...] = ()

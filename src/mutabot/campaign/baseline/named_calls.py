@@ -14,7 +14,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 from mutabot.frozen import frozen
 from mutabot.languages.python import FRONT_END, extent_of
-from mutabot.model import Operation, Pattern, Role, Site, Span
+from mutabot.model import Operation, Pattern, Site
 from mutabot.model.notation import Notation
 from mutabot.model.operation import ANY, owner_of
 from mutabot.model.path import Path
@@ -72,9 +72,9 @@ def calls_in(source: str, file: str, known: KnownCalls) -> Iterator[NamedCall]:
         last = origins.last_name(call.func)
         if last not in known.operations:
             continue
-        name = names[extent_of(call)]
-        site = Site(Span(file, *extent_of(call), scope.name), name.text, name.occurrence, Role.PROGRAM)
-        found = _operation(call, last, name.text, scope, origins, known)
+        name, occurrence = names[extent_of(call)]
+        site = Site.in_program(file, extent_of(call), scope.name, name, occurrence)
+        found = _operation(call, last, name, scope, origins, known)
         if found is not None:
             operation, doubt = found
             pattern = _pattern(call, operation)

@@ -33,8 +33,7 @@ from .baseline import Baseline, Sources, observation, refused_of
 from .untested import add_untested
 
 if TYPE_CHECKING:
-    from mutabot.faults import Preparation
-    from mutabot.model.mutant import Place
+    from mutabot.model.mutant import Place, ProgramText
 
 #: how the reason begins why such a test is set aside: its seed makes it fail, not chance
 FAILS = "fails on the unmutated program"
@@ -175,12 +174,12 @@ def take_baseline(
     executor: Runs,
     progress: Progress,
     *,
-    prepared: Mapping[str, Preparation] | None = None,
+    texts: Mapping[str, tuple[ProgramText, ...]] | None = None,
     repetitions: int | None = None,
 ) -> tuple[Baseline, list[Result]]:
     """Run the suite on the original and look at what it does.
 
-    ``prepared`` is what providers of faults want to know, by their names. ``repetitions``: how often each
+    ``texts``: the program text to look at, by the providers that ask for it. ``repetitions``: how often each
     round is run; as often as the request says, if it is not given. With one, the second run is left to the
     fork parents.
 
@@ -189,30 +188,34 @@ def take_baseline(
     Raises ConfigurationError for a vocabulary that does not fit the program, NothingToDoError without
     tests, BaselineError when tests fail.
     """
-    prepared, repetitions = prepared or {}, repetitions or request.repetitions
-    _note_prepared(request, prepared, progress)
+    texts, repetitions = texts or {}, repetitions or request.repetitions
+    _note_operators(request, progress)
     progress.stage("baseline", request.rounds * repetitions)
     suite = _Suite(request, executor, progress, may_share=request.forks)
-    _run(suite, prepared, repetitions)
+    _run(suite, texts, repetitions)
     try:
-        baseline = _read(suite, prepared)
+        baseline = _read(suite, texts)
     except BaselineError:
         # a copy has another process id, parent and session than the process that has imported the tests
         suite = _Suite(request, executor, progress, may_share=False)
-        if not request.forks or not _run(suite, prepared, repetitions, if_all_pass=True):
+        if not request.forks or not _run(suite, texts, repetitions, if_all_pass=True):
             raise
-        baseline = _read(suite, prepared)
+        baseline = _read(suite, texts)
         progress.note(_NOT_IN_COPIES)
     results = suite.results
     return baseline, [results[key] for key in sorted(results, key=lambda key: (key[1], key[0]))]
 
 
 def _run(
-    suite: _Suite, prepared: Mapping[str, Preparation], repetitions: int, *, if_all_pass: bool = False
+    suite: _Suite,
+    of_providers: Mapping[str, tuple[ProgramText, ...]],
+    repetitions: int,
+    *,
+    if_all_pass: bool = False,
 ) -> bool:
     """Run the suite as often as need be; False if it ends with the first runs, since tests fail in them."""
     request = suite.request
-    texts = tuple(text for one in prepared.values() for text in one.texts)
+    texts = tuple(text for one in of_providers.values() for text in one)
     recording = Instrumentation(texts, record=True) if texts else None
     suite.run(_first_runs(suite, recording))
     is_looked_at = recording is None or not _fails_if_looked_at(suite, recording)
@@ -259,21 +262,19 @@ def _fails_if_looked_at(suite: _Suite, recording: Instrumentation) -> bool:
     return is_so
 
 
-def _note_prepared(request: Request, prepared: Mapping[str, Preparation], progress: Progress) -> None:
-    for note in (note for one in prepared.values() for note in one.notes):
-        progress.note(note)
+def _note_operators(request: Request, progress: Progress) -> None:
     for family in dict.fromkeys(rule.family for rule in load_all()):  # a broken plug-in is told now
         if family not in (*request.families, *OF_CALLS):
             progress.note(f"operators of family {family!r} are not asked for: add --family {family}")
 
 
-def _read(suite: _Suite, prepared: Mapping[str, Preparation]) -> Baseline:
+def _read(suite: _Suite, texts: Mapping[str, tuple[ProgramText, ...]]) -> Baseline:
     """Combine the results of all runs into the baseline, with notes for the user."""
     request, progress = suite.request, suite.progress
     remarks = tuple(dict.fromkeys(suite.remarks))
     known = tuple(suite.known.items())
     baseline = Baseline(
-        probe_intervals=suite.probe_intervals, remarks=remarks, prepared=prepared, known=known,
+        probe_intervals=suite.probe_intervals, remarks=remarks, texts=dict(texts), known=known,
         may_share=suite.may_share,
     )  # fmt: skip
     sources = Sources(request.root)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from random import Random
@@ -21,11 +21,21 @@ from mutabot.faults import (
     FaultProvider,
     Planned,
     PlannedMutant,
-    Preparation,
     Project,
     brought_providers,
 )
-from mutabot.model import Call, Kind, Middleware, Moment, Mutant, Operation, Reply, Role, Vocabulary
+from mutabot.model import (
+    Call,
+    Kind,
+    Middleware,
+    Moment,
+    Mutant,
+    Operation,
+    ProgramText,
+    Reply,
+    Role,
+    Vocabulary,
+)
 from mutabot.model.activation import Activation
 from mutabot.model.mutant import Place, When
 from mutabot.model.quantity import holds_number, is_number, is_reading_of
@@ -122,7 +132,7 @@ class CallFaults(FaultProvider):
         """True also for operators of packages, which have families of their own, and for those of demands."""
         return any(_is_asked_for(rule, project) for rule in self.rules())
 
-    def plan(self, project: Project, prepared: Preparation, original: Original) -> Planned:
+    def plan(self, project: Project, original: Original) -> Planned:
         """The mutants of its operators at all places that the tests reach.
 
         Those with sizes come behind all others, whose numbers are the same with and without them.
@@ -455,13 +465,15 @@ def asked_for(project: Project) -> list[FaultProvider]:
     return [provider for provider in known if provider.is_asked_for(project)]
 
 
-def prepare(project: Project) -> dict[str, Preparation]:
-    """What the providers need of the baseline, by their names."""
-    found: dict[str, Preparation] = {}
+def texts_of(project: Project, tell: Callable[[str], None]) -> dict[str, tuple[ProgramText, ...]]:
+    """The program text that the baseline is to look at, by the names of the providers that ask for it."""
+    found: dict[str, tuple[ProgramText, ...]] = {}
     first = 1
     for provider in asked_for(project):
-        found[provider.name] = prepared = provider.prepare(project, first)
-        first += sum(len(text.places) for text in prepared.texts)
+        texts = tuple(provider.texts(project, first, tell))
+        if texts:
+            found[provider.name] = texts
+        first += sum(len(text.places) for text in texts)
     return found
 
 

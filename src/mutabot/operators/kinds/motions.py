@@ -10,7 +10,7 @@ from mutabot.model import Kind, Mode, Operation, Path, Quantity, Unchanged
 from mutabot.model.quantity import READING_OF, Value
 from mutabot.operators.examples import MOVE_BY, MOVE_TO
 from mutabot.operators.operator import Context, Example, Need, Subject
-from mutabot.operators.value import ValueOperator, ValuesOperator
+from mutabot.operators.value import ValueOperator
 
 _PATH = Path.parse("message.pose.x", rooted=True)
 _GOAL = Quantity("pose.x", _PATH, Kind.TRANSLATION, "x", "m", mode=Mode.TO, relative=True)
@@ -107,7 +107,7 @@ class Reverse(ValueOperator):
         return quantity.map_numbers(value, lambda number: _within_turn(quantity, -number))
 
 
-class ByTo(ValuesOperator):
+class ByTo(ValueOperator):
     """A relative amount is taken for an absolute target, and the other way round.
 
     Where: written translations and rotations whose operation has a current that tells them.

@@ -25,7 +25,7 @@ from mutabot.runtime.interception.adapter import SiteCall, call_context
 from mutabot.runtime.interception.frames import borders, is_within_border
 
 if TYPE_CHECKING:
-    from mutabot.languages.front_end import SourcePosition
+    from mutabot.model.mutant import Extent
     from mutabot.runtime.targets.target import CallPlace
 
 #: stands for an answer that cannot be kept and that the program waits for: it never comes
@@ -233,7 +233,7 @@ class Locator:
         role = self.role(code.co_filename)
         if role is None:
             return None
-        return self._span_at(code.co_filename, PYTHON.definition_of(code)), role
+        return self._span_at(code.co_filename, *PYTHON.definition_of(code)), role
 
     def relative(self, filename: str) -> str:
         """The path relative to the root, with forward slashes."""
@@ -258,7 +258,7 @@ class Locator:
             filename = front_end.file_of(frame)
             role = self.role(filename) if filename is not None else None
             if filename is not None and role is not None:
-                return self._span_at(filename, front_end.position_of(frame)), role
+                return self._span_at(filename, *front_end.position_of(frame)), role
         return None
 
     def _span(self, frame: FrameType) -> Span:
@@ -266,9 +266,9 @@ class Locator:
         key = (id(code), frame.f_lasti)
         known = self._spans.get(key)
         if known is None:
-            span = self._span_at(code.co_filename, PYTHON.position_of(frame))
+            span = self._span_at(code.co_filename, *PYTHON.position_of(frame))
             known = self._spans[key] = (span, code)
         return known[0]
 
-    def _span_at(self, filename: str, position: SourcePosition) -> Span:
-        return Span(self.relative(filename), *position.extent, position.function)
+    def _span_at(self, filename: str, extent: Extent, function: str) -> Span:
+        return Span(self.relative(filename), *extent, function)
