@@ -27,6 +27,7 @@ from mutabot.languages.python import FRONT_END as PYTHON
 from mutabot.languages.registry import front_end_of, program_files
 from mutabot.model import LeftOut, Moment, Mutant, ProgramText, Site, TextPlace, Vocabulary
 from mutabot.model.activation import Activation
+from mutabot.model.codec import to_data
 from mutabot.model.graded import Demand
 from mutabot.model.mutant import Place
 
@@ -85,6 +86,26 @@ class PlannedMutant:
     order: tuple[int, ...] = ()
     does: Any = None
     active: Activation | None = None
+
+    @classmethod
+    def of_text(
+        cls, provider: str, place: TextPlace, index: int, description: str, reason: str | None = None
+    ) -> PlannedMutant:
+        """A mutant of the program text: the alternative with this index at a place.
+
+        Args:
+            provider: name of the provider that makes it.
+            place: the place; its number is that of ``Original.texts``.
+            index: of the alternative among those of the place, from 0.
+            description: one line that an engineer recognises.
+            reason: why it is left out; None if it is planted.
+        """
+        one = place.alternatives[index]
+        mutant = Mutant(
+            0, one.family, one.operator, place.site, "", None, None, one.variant, description,
+            provider=provider,
+        )  # fmt: skip
+        return cls(mutant, reason, does=to_data(one), active=Activation.of_text(place.number, index))
 
     @property
     def as_left_out(self) -> LeftOut:

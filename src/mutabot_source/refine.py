@@ -3,17 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import asdict, replace
+from dataclasses import replace
 
-from mutabot.api.faults import (
-    Activation,
-    Alternative,
-    Mutant,
-    Original,
-    PlannedMutant,
-    ProgramText,
-    TextPlace,
-)
+from mutabot.api.faults import Alternative, Original, PlannedMutant, ProgramText, TextPlace
 
 from . import registry
 from .extension import PROVIDER
@@ -33,28 +25,8 @@ def plant(texts: Iterable[ProgramText]) -> list[PlannedMutant]:
 
 def planted_of(place: TextPlace, index: int, reason: str | None = None) -> PlannedMutant:
     """The mutant that an alternative at a place is, or would be were it not left out for a reason."""
-    alternative = place.alternatives[index]
-    return PlannedMutant(
-        _mutant_of(place, alternative),
-        reason,
-        does=asdict(alternative),
-        active=Activation.of_text(place.number, index),
-    )
-
-
-def _mutant_of(place: TextPlace, alternative: Alternative) -> Mutant:
-    return Mutant(
-        number=0,
-        family=alternative.family,
-        operator=alternative.operator,
-        site=place.site,
-        operation="",
-        pattern=None,
-        quantity=None,
-        variant=alternative.variant,
-        description=f"{place.text} → {shortened(alternative.text)}",
-        provider=PROVIDER,
-    )
+    description = f"{place.text} → {shortened(place.alternatives[index].text)}"
+    return PlannedMutant.of_text(PROVIDER, place, index, description, reason)
 
 
 def refine(

@@ -8,14 +8,17 @@ import sys
 from pathlib import Path
 
 import pytest
+from tests.plugins import test_languages
 from tests.plugins.test_faults import write
 from tests.plugins.test_faults_in_time import PROJECT as BELT
-from tests.plugins.test_plugins import mutabot, mutants
+from tests.plugins.test_plugins import mutabot, mutants, python
 from tests.plugins.test_plugins import project as project  # noqa: PLC0414  # a fixture
 
 import pages
 
 PAGE = Path(__file__).parents[2] / "docs" / "packages.md"
+#: a project whose program is in the language of the page
+steps = test_languages.project
 
 
 def files() -> dict[str, str]:
@@ -37,10 +40,12 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return target
 
 
-def test_the_package_has_a_hundred_and_twenty_lines_of_code() -> None:
+def test_the_package_is_short_and_imports_the_interface_alone() -> None:
     lines = [line for name, text in files().items() if name.endswith(".py") for line in text.splitlines()]
-    assert len(files()) == 7
-    assert 60 < sum(bool(line.strip()) for line in lines) <= 120
+    assert len(files()) == 8
+    assert sum(bool(line.strip()) for line in lines) <= 150
+    imports = {line.split()[1] for line in lines if line.startswith("from mutabot")}
+    assert imports == {f"mutabot.api.{name}" for name in ("faults", "processes", "reports", "values")}
 
 
 def test_its_operator_executor_and_format_are_at_work(installed: Path, project: Path) -> None:
@@ -53,6 +58,24 @@ def test_its_operator_executor_and_format_are_at_work(installed: Path, project: 
     told = mutabot(installed, project, "report", "--format", "survivors").stdout
     survivors = {name for name, one in found.items() if one["rounds"][0]["verdict"] == "survived"}
     assert len(told.splitlines()) == len(survivors) > 0
+
+
+def test_the_examples_of_its_operator_do_what_they_say(installed: Path) -> None:
+    code = (
+        "import sys; sys.path.insert(0, sys.argv[1])\n"
+        "from operators.test_examples import operator, test_the_example_does_what_it_says\n"
+        "for index in range(len(operator('creep').examples)):\n"
+        "    test_the_example_does_what_it_says('creep', index)\n"
+        "print(index + 1)"
+    )
+    done = python(installed, "-c", code, str(Path(__file__).parents[1]))
+    assert (done.returncode, done.stdout) == (0, "2\n"), done.stderr
+
+
+def test_the_lines_of_its_language_are_sites(installed: Path, steps: Path) -> None:
+    found = mutants(mutabot(installed, steps, "run", "--json", "-o", "repeats=false", "--only", "*#2*skip"))
+    assert found["skip"]["id"] == "mission.STEPS:steps:move#2:call:skip"
+    assert found["skip"]["rounds"][0]["verdict"] == "killed"
 
 
 def test_its_fault_of_the_world_is_at_work(installed: Path, tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from mutabot.faults import FaultProvider, Planned, PlannedMutant, Project
     from mutabot.model.activation import Activation
     from mutabot.model.call import Unchanged
-    from mutabot.model.mutant import Alternative, Mutant, ProgramText, Site, TextPlace
+    from mutabot.model.mutant import Alternative, ProgramText, Site, TextPlace
     from mutabot.operators.command import CommandOperator
     from mutabot.operators.magnitudes import Magnitudes
     from mutabot.operators.operator import Context, Example, Need, Rule, Subject
@@ -30,7 +30,6 @@ __all__ = [
     "Extension",
     "FaultProvider",
     "Magnitudes",
-    "Mutant",
     "Need",
     "Original",
     "Planned",
@@ -59,7 +58,6 @@ _HOMES = {
     "mutabot.model.call": ("Unchanged",),
     "mutabot.model.mutant": (
         "Alternative",
-        "Mutant",
         "ProgramText",
         "Site",
         "TextPlace",
