@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mutabot.extensions import Described, Extension
+from mutabot.api.faults import Described, Extension
 
 EXTENSION = Extension(
     interface=2,

@@ -16,12 +16,17 @@ from typing import Annotated
 import typer
 
 from mutabot.api.processes import Request
-from mutabot.api.reports import CommandContext, MutantResult, Outcome, Progress, Results, UsageError
-from mutabot.campaign.run import with_fresh_baseline
-from mutabot.model import Mutant
-from mutabot.results.stored import StoredEvidence
+from mutabot.api.reports import (
+    CampaignRun,
+    CommandContext,
+    MutantResult,
+    Progress,
+    RecordedPaths,
+    Results,
+    UsageError,
+)
 
-from .filming import choose_graphics, film
+from .filming import film
 from .shown import Shown
 from .sights import check, module, sights_of
 
@@ -34,15 +39,16 @@ _WHAT_TO_DO = (
 
 
 def choose(
+    context: CommandContext,
     results: Results,
     result: MutantResult,
-    evidence: StoredEvidence,
     round: int | None = None,
     test: str | None = None,
 ) -> Shown:
     """What is to be shown of a mutant, with what is recorded of it.
 
     Args:
+        context: of the command.
         results: all that is known of the campaign.
         result: the mutant.
         round: 0-based; None for the one in which the world was worst.
@@ -51,15 +57,19 @@ def choose(
     Raises UsageError for a test that does not run the mutant, and if none does.
     """
     mutant = result.mutant
-    outcomes = [one for one in result.outcomes if round is None or one.round == round]
-    outcome = max(outcomes, key=_tells, default=None)
-    where = round if round is not None else outcome.round if outcome is not None else 0
-    kept = evidence.tests(mutant.id, where)
-    tests = list(dict.fromkeys([*_telling(outcome), *kept, *_reached_by(results, result)]))
-    if not tests:
-        raise UsageError(f"no test reaches mutant {mutant.number} ({mutant.id}): there is nothing to see")
-    name = tests[0] if test is None else _one_of(tests, test)
-    original, mutated = evidence.pair(mutant.id, where, name)
+    where = round if round is not None else _telling_round(result)
+    outcome = next((one for one in result.outcomes if one.round == where), None)
+    named: list[str] = []
+    if outcome is not None:
+        noticed = *(kill.test for kill in outcome.kills), outcome.test
+        named = [*(one.test for one in outcome.diverged), *(one for one in noticed if one is not None)]
+    with closing(context.recordings()) as recordings:
+        kept = recordings.tests(mutant.id, where)
+        tests = list(dict.fromkeys([*named, *kept, *_reached_by(results, result)]))
+        if not tests:
+            raise UsageError(f"no test reaches mutant {mutant.number} ({mutant.id}): there is nothing to see")
+        name = tests[0] if test is None else _one_of(tests, test)
+        original, mutated = recordings.pair(mutant.id, where, name)
     diverged = next((one for one in outcome.diverged if one.test == name), None) if outcome else None
     return Shown(
         mutant.number,
@@ -68,8 +78,8 @@ def choose(
         mutant.site.span.place,
         name,
         where,
-        original,
-        mutated,
+        RecordedPaths(original) if original is not None else None,
+        RecordedPaths(mutated) if mutated is not None else None,
         diverged.story if diverged is not None else "",
         diverged.at if diverged is not None else None,
     )
@@ -87,29 +97,26 @@ def missing_in(shown: Shown) -> list[str]:
         )
     elif shown.mutant is None:
         found.append(f"nothing that is recorded of {which} differs: only the original is shown")
-    if not shown.original.tracks:
+    if not shown.original.recording.tracks:
         found.append("no simulator tells where things are: only calls are shown, see docs/motion.md")
     return found
 
 
-def _tells(outcome: Outcome) -> tuple[bool, bool, float, int]:
-    """The more, the better to look at; of equal rounds the first."""
-    told = outcome.told
-    deviation = outcome.deviation or 0.0 if told is not None else 0.0
-    return bool(outcome.acted), told is not None and not told.scatters, deviation, -outcome.round
+def _telling_round(result: MutantResult) -> int:
+    """The round that is best to look at, from 0; of equal ones the first."""
+    ranks = []
+    for one in result.outcomes:
+        told = one.told
+        deviation = one.deviation or 0.0 if told is not None else 0.0
+        is_clear = told is not None and not told.scatters
+        ranks.append((bool(one.acted), is_clear, deviation, -one.round))
+    return -max(ranks)[-1] if ranks else 0
 
 
 def _reached_by(results: Results, result: MutantResult) -> tuple[str, ...]:
     if not results.reaching.tests:  # an older journal does not say it
         return tuple(dict.fromkeys(one.test.test for one in results.baseline))
     return results.reached_by(result.mutant)
-
-
-def _telling(outcome: Outcome | None) -> list[str]:
-    if outcome is None:
-        return []
-    named = [*(one.test for one in outcome.diverged), *(kill.test for kill in outcome.kills)]
-    return [*named, outcome.test] if outcome.test is not None else named
 
 
 def _one_of(tests: list[str], wanted: str) -> str:
@@ -168,24 +175,24 @@ def motion(
     results = context.results(earlier=True)
     result = results.mutant(mutant)
     wanted = None if round is None else results.round_index(round)
-    with closing(context.recordings()) as evidence:
-        shown = choose(results, result, evidence, wanted, test)
+    shown = choose(context, results, result, wanted, test)
     if sights:
         lines = chain(missing_in(shown), (sight(shown) for sight in sights))
         context.tell(f"mutabot: {line}" for line in lines)
     if video is not None:
         request = context.request_again(results, jobs)
         with context.progress() as progress:
-            said = list(_film(request, result.mutant, shown, video, progress))
+            said = list(_film(request, result, shown, video, progress))
         context.tell(f"mutabot: {line}" for line in said)
 
 
-def _film(request: Request, mutant: Mutant, shown: Shown, file: Path, progress: Progress) -> Iterator[str]:
+def _film(
+    request: Request, result: MutantResult, shown: Shown, file: Path, progress: Progress
+) -> Iterator[str]:
     """Film the test and the round that are shown. Returns what is to be said about it."""
     with TemporaryDirectory(prefix="mutabot-film-") as folder:
-        with with_fresh_baseline(request, mutant, shown.round, progress) as (campaign, now):
-            choose_graphics()  # for what is filmed alone
-            original, other = film(campaign, now, shown.round, shown.test, Path(folder))
+        with CampaignRun.open(replace(request, rounds=shown.round + 1), progress) as campaign:
+            original, other = film(campaign, result, shown.round, shown.test, Path(folder))
         shown = replace(
             shown,
             # of a process that died, what the campaign has recorded is there still

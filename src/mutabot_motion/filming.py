@@ -11,15 +11,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from mutabot.campaign.campaign import Campaign
-from mutabot.errors import SelectionError
-from mutabot.evidence.recording import Recording, bytes_of, from_bytes
-from mutabot.execution.task import Result, Task
-from mutabot.model import Mutant
-from mutabot.model.events import TestEnd
-from mutabot.model.job import Job, Pictures
-from mutabot_motion.pictures.film import Film
+from mutabot.api.processes import Result, Task
+from mutabot.api.reports import CampaignRun, MutantResult, RecordedPaths, UsageError
 
+from .pictures.film import Film
+
+#: what writes the pictures, in the process of the test
+_WRITER = "mutabot_motion.pictures.film:FilmWriter"
 #: wall-clock seconds that a picture may take, beside those of the test; pictures per simulated second
 _PER_PICTURE, _RATE = 4.0, 25.0
 #: what draws without a screen, the better first, with the library that it needs
@@ -38,7 +36,7 @@ class Take:
     """
 
     film: Film
-    recording: Recording | None
+    recording: RecordedPaths | None
     ended: str
     problems: tuple[str, ...] = ()
 
@@ -56,56 +54,45 @@ def choose_graphics() -> None:
         os.environ.setdefault("PYOPENGL_PLATFORM", found)
 
 
-def film(campaign: Campaign, mutant: Mutant, round: int, test: str, folder: Path) -> tuple[Take, Take]:
+def film(
+    campaign: CampaignRun, result: MutantResult, round: int, test: str, folder: Path
+) -> tuple[Take, Take]:
     """Film a test of the original and of a mutant, into a folder.
 
     Args:
+        result: the mutant.
         round: 0-based.
         test: its node id.
 
-    Raises SelectionError if the test does not judge the mutant, as the program is now.
+    Raises UsageError if the test does not judge the mutant, as the program is now.
     """
-    tests = _leading_to(campaign, mutant, round, test)
-    campaign.progress.stage("film", 2)
-    found = {}
-    for result in campaign.executor.run(_tasks(campaign, mutant, round, tests, folder)):
-        found[result.task.key] = _take(result, test)
-        campaign.progress.advance(f"{result.task.key}: {found[result.task.key].ended}")
-    return found["original"], found["mutant"]
-
-
-def _leading_to(campaign: Campaign, mutant: Mutant, round: int, test: str) -> tuple[str, ...]:
-    """The test, and before it the tests of which it may find something."""
-    baseline = campaign.baseline
+    mutant, baseline = campaign.current(result.mutant), campaign.baseline
     judges = baseline.tests_judging(round, mutant)
     if test not in judges:
         listed = ", ".join(judges[:3]) or "no test does"
-        problem = f"{test} does not judge the mutant in round {round + 1}; these do: {listed}"
-        raise SelectionError(problem)
+        raise UsageError(f"{test} does not judge the mutant in round {round + 1}; these do: {listed}")
     suite = baseline.suite(round)
-    return suite[: suite.index(test) + 1]
+    leading = suite[: suite.index(test) + 1]  # the test may find something of those before it
+    planned = campaign.task(mutant, round, leading, stop=False)
+    more = _PER_PICTURE * _RATE * (baseline.simulated(round, test) + 1.0)
+    choose_graphics()  # for what is filmed alone
+    campaign.progress.stage("film", 2)
+    found = {}
+    for done in campaign.executor.run(_tasks(planned, test, more, folder)):
+        found[done.task.key] = _take(done, test)
+        campaign.progress.advance(f"{done.task.key}: {found[done.task.key].ended}")
+    return found["original"], found["mutant"]
 
 
-def _tasks(
-    campaign: Campaign, mutant: Mutant, round: int, tests: tuple[str, ...], folder: Path
-) -> Iterator[Task]:
-    planned = campaign.task(mutant, round, tests, stop=False)
-    for name, whose in (("original", None), ("mutant", mutant)):
-        job: Job = replace(
-            planned.job,
-            mutant=whose,
-            stop_at_kill=False,
-            instrumentation=planned.job.instrumentation if whose is not None else None,
-            memory=None,  # libraries of graphics reserve far more addresses than they use
-            evidence=True,
-            pictures=Pictures(tests[-1], str(folder / f"{name}.film")),
-        )
-        simulated = campaign.baseline.ends[round, tests[-1]].simulated or 0.0
-        more = _PER_PICTURE * _RATE * (simulated + 1.0)
-        limit = planned.deadlines[tests[-1]].with_more(more, more)
-        yield replace(
-            planned, key=name, job=job, deadlines={**planned.deadlines, tests[-1]: limit}, deadline=limit
-        )
+def _tasks(planned: Task, test: str, more: float, folder: Path) -> Iterator[Task]:
+    """The task of the mutant for both sides, with so many seconds more for the pictures of the test."""
+    limit = planned.deadlines[test].with_more(more, more)
+    deadlines = {**planned.deadlines, test: limit}
+    for name in ("original", "mutant"):
+        job = planned.job.filmed(test, str(folder / f"{name}.film"), _WRITER)
+        if name == "original":
+            job = replace(job, mutant=None, instrumentation=None)
+        yield replace(planned, key=name, job=job, deadlines=deadlines, deadline=limit)
 
 
 def _take(result: Result, test: str) -> Take:
@@ -115,13 +102,8 @@ def _take(result: Result, test: str) -> Take:
     end = next((one for one in result.ends if one.test == test), None)
     if end is None:
         return Take(shot, None, result.death(), (result.death(),))
-    recording = from_bytes(bytes_of(end.recording)) if end.recording is not None else None
-    problems = tuple(recording.problems) if recording is not None else ()
-    return Take(shot, recording, _ended(end), problems)
-
-
-def _ended(end: TestEnd) -> str:
-    if end.timeout is not None:
-        return f"timed out: {end.timeout}"
+    recorded = RecordedPaths.from_text(end.recording) if end.recording is not None else None
+    problems = tuple(recorded.recording.problems) if recorded is not None else ()
+    ended = f"timed out: {end.timeout}" if end.timeout is not None else end.outcome
     lines = (end.message or "").strip().splitlines()
-    return f"{end.outcome}: {lines[0]}" if end.outcome == "failed" and lines else end.outcome
+    return Take(shot, recorded, f"{ended}: {lines[0]}" if ended == "failed" and lines else ended, problems)

@@ -12,10 +12,9 @@ from typing import Any
 import foxglove
 from foxglove import channels, messages
 
-from mutabot.evidence.paths import TrackPath as Way
-from mutabot.evidence.recording import Block
+from mutabot.api.reports import RecordedPaths
 
-from .shown import BLOCK, COLOURS, Shown, Weight, events, things_in, values_in
+from .shown import BLOCK, COLOURS, Block, Shown, Triple, Weight, events, things_in, values_in
 
 READER = "Foxglove"
 _WORLD = "world"
@@ -40,36 +39,36 @@ class _Topics:
 
     def log(self) -> None:
         """In the order of their times, as readers like it best."""
-        found = [line for side, _ in self._shown.sides for line in self._lines(side)]
+        found = [line for side, recorded in self._shown.sides for line in self._lines(side, recorded)]
         for time, channel, message in [*self._scene(), *sorted(found, key=lambda line: line[0])]:
             channel.log(message, log_time=round(time * 1e9))
 
     def _scene(self) -> Iterator[tuple[float, Any, Any]]:
         """What stands around, and the paths: there from the beginning."""
         yield self._shapes("/blocks", [_block(one) for one in self._shown.blocks])
-        for side, recording in self._shown.sides:
-            paths = [_path(name, way, _colour(side)) for name, way in things_in(recording)]
+        for side, recorded in self._shown.sides:
+            paths = [_path(recorded, name, _colour(side)) for name in things_in(recorded)]
             yield self._shapes(f"/{side}/paths", paths)
 
     def _shapes(self, topic: str, entities: list[Any]) -> tuple[float, Any, Any]:
         channel = channels.SceneUpdateChannel(topic, context=self._context)
         return 0.0, channel, messages.SceneUpdate(entities=entities)
 
-    def _lines(self, side: str) -> Iterator[tuple[float, Any, Any]]:
-        recording = dict(self._shown.sides)[side]
-        for name, way in things_in(recording):
-            yield from self._poses(side, name, way)
-        for name, way in values_in(recording):
-            yield from self._values(side, name, way)
-        yield from self._events(side)
+    def _lines(self, side: str, recorded: RecordedPaths) -> Iterator[tuple[float, Any, Any]]:
+        for name in things_in(recorded):
+            yield from self._poses(side, name, recorded)
+        for name in values_in(recorded):
+            yield from self._values(side, name, recorded)
+        yield from self._events(side, recorded)
 
-    def _poses(self, side: str, name: str, way: Way) -> Iterator[tuple[float, Any, Any]]:
+    def _poses(self, side: str, name: str, recorded: RecordedPaths) -> Iterator[tuple[float, Any, Any]]:
         """Each thing is a frame of its own, in which its shape is at rest."""
-        frame = f"{side}/{name}"
-        yield self._shapes(_topic(side, name, "shape"), [_shape(frame, way, _colour(side))])
+        frame, path = f"{side}/{name}", recorded.paths[name]
+        shape = _shape(frame, path.track.size, _colour(side))
+        yield self._shapes(_topic(side, name, "shape"), [shape])
         poses = channels.PoseInFrameChannel(_topic(side, name, "pose"), context=self._context)
         frames = channels.FrameTransformChannel(_topic(side, name, "frame"), context=self._context)
-        for time, row in zip(way.when, way.rows, strict=True):
+        for time, row in zip(path.when, path.rows, strict=True):
             pose, stamp = _pose(row), messages.Timestamp.from_epoch_secs(time)
             yield time, poses, messages.PoseInFrame(timestamp=stamp, frame_id=_WORLD, pose=pose)
             moved = messages.FrameTransform(
@@ -81,24 +80,25 @@ class _Topics:
             )
             yield time, frames, moved
 
-    def _values(self, side: str, name: str, way: Way) -> Iterator[tuple[float, Any, Any]]:
+    def _values(self, side: str, name: str, recorded: RecordedPaths) -> Iterator[tuple[float, Any, Any]]:
+        path = recorded.paths[name]
         schema = {
             "type": "object",
             "title": "Value",
             "properties": {"value": {"type": "number"}, "unit": {"type": "string"}},
         }
         channel = foxglove.Channel(_topic(side, name), schema=schema, context=self._context)
-        for time, row in zip(way.when, way.rows, strict=True):
-            yield time, channel, {"value": row[0], "unit": way.track.unit}
+        for time, row in zip(path.when, path.rows, strict=True):
+            yield time, channel, {"value": row[0], "unit": path.track.unit}
 
-    def _events(self, side: str) -> Iterator[tuple[float, Any, Any]]:
+    def _events(self, side: str, recorded: RecordedPaths) -> Iterator[tuple[float, Any, Any]]:
         levels = {
             Weight.READING: messages.LogLevel.Debug,
             Weight.COMMAND: messages.LogLevel.Info,
             Weight.FAULT: messages.LogLevel.Warning,
         }
         channel = channels.LogChannel(f"/{side}/log", context=self._context)
-        for one in events(self._shown, dict(self._shown.sides)[side]):
+        for one in events(self._shown, recorded):
             line = messages.Log(
                 timestamp=messages.Timestamp.from_epoch_secs(one.time), level=levels[one.weight],
                 message=one.text, name=side, file=one.file, line=one.line,
@@ -111,16 +111,17 @@ def _topic(*parts: str) -> str:
 
 
 def _block(block: Block) -> Any:
-    red, green, blue, *opacity = block.colour or (*(part / 255 for part in BLOCK), 0.4)
+    name, centre, size, wanted = block
+    red, green, blue, *opacity = wanted or (*(part / 255 for part in BLOCK), 0.4)
     colour = messages.Color(r=red, g=green, b=blue, a=opacity[0] if opacity else 1.0)
-    cube = messages.CubePrimitive(pose=_pose(block.centre), size=_vector(block.size), color=colour)
-    return messages.SceneEntity(frame_id=_WORLD, id=block.name, cubes=[cube])
+    cube = messages.CubePrimitive(pose=_pose(centre), size=_vector(size), color=colour)
+    return messages.SceneEntity(frame_id=_WORLD, id=name, cubes=[cube])
 
 
-def _shape(frame: str, way: Way, colour: Any) -> Any:
+def _shape(frame: str, size: Triple | None, colour: Any) -> Any:
     """A box, or a small ball for what has no size."""
     about: dict[str, Any] = {"frame_id": frame, "id": frame, "frame_locked": True}
-    pose, size = _pose((0.0, 0.0, 0.0)), way.track.size
+    pose = _pose((0.0, 0.0, 0.0))
     if size is not None:
         cube = messages.CubePrimitive(pose=pose, size=_vector(size), color=colour)
         return messages.SceneEntity(**about, cubes=[cube])
@@ -128,8 +129,8 @@ def _shape(frame: str, way: Way, colour: Any) -> Any:
     return messages.SceneEntity(**about, spheres=[ball])
 
 
-def _path(name: str, way: Way, colour: Any) -> Any:
-    points = [messages.Point3(x=x, y=y, z=z) for x, y, z in way.outline]
+def _path(recorded: RecordedPaths, name: str, colour: Any) -> Any:
+    points = [messages.Point3(x=x, y=y, z=z) for x, y, z in recorded.paths[name].outline]
     line = messages.LinePrimitive(pose=_pose((0.0, 0.0, 0.0)), thickness=_LINE, points=points, color=colour)
     return messages.SceneEntity(frame_id=_WORLD, id=f"path of {name}", lines=[line])
 

@@ -16,11 +16,9 @@ from typing import Any
 import rerun
 from rerun import blueprint as layout
 
-from mutabot.errors import UsageError
-from mutabot.evidence.paths import TrackPath as Way
-from mutabot.evidence.recording import Block, Recording, TrackKind
+from mutabot.api.reports import RecordedPaths, UsageError
 
-from .shown import BLOCK, COLOURS, Shown, Weight, events, things_in, values_in
+from .shown import BLOCK, COLOURS, Block, Shown, Weight, events, things_in, values_in
 from .sights import has_screen
 
 READER = "Rerun"
@@ -43,8 +41,8 @@ def write(file: Path, shown: Shown) -> None:
         stream.log("/", rerun.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
         for block in shown.blocks:
             _log_block(stream, block)
-        for side, recording in shown.sides:
-            _Side(stream, shown, side, recording).log()
+        for side, recorded in shown.sides:
+            _Side(stream, shown, side, recorded).log()
         stream.flush()
         stream.disconnect()
 
@@ -52,21 +50,23 @@ def write(file: Path, shown: Shown) -> None:
 class _Side:
     """One side of what is shown."""
 
-    def __init__(self, stream: rerun.RecordingStream, shown: Shown, name: str, recording: Recording) -> None:
-        self._stream, self._shown, self._name, self._recording = stream, shown, name, recording
+    def __init__(
+        self, stream: rerun.RecordingStream, shown: Shown, name: str, recorded: RecordedPaths
+    ) -> None:
+        self._stream, self._shown, self._name, self._recorded = stream, shown, name, recorded
         self._colour = COLOURS[name]
 
     def log(self) -> None:
-        for name, way in things_in(self._recording):
-            self._log_thing(name, way)
-        for name, way in values_in(self._recording):
-            self._log_value(name, way)
+        for name in things_in(self._recorded):
+            self._log_thing(name)
+        for name in values_in(self._recorded):
+            self._log_value(name)
         self._log_events()
 
-    def _log_thing(self, name: str, way: Way) -> None:
-        path = self._path("things", name)
+    def _log_thing(self, name: str) -> None:
+        path, way = self._path("things", name), self._recorded.paths[name]
         turned: dict[str, Any] = {}
-        if way.track.kind is TrackKind.POSE:
+        if way.track.kind == "pose":
             turned["quaternion"] = [(*row[4:7], row[3]) for row in way.rows]  # x, y, z, w
         moved = rerun.Transform3D.columns(translation=way.points, **turned)
         self._stream.send_columns(path, [self._times(way.when)], moved)
@@ -78,14 +78,14 @@ class _Side:
             shape = rerun.Boxes3D(
                 sizes=[way.track.size], colors=self._colour, labels=label, show_labels=False
             )
-        elif way.track.kind is TrackKind.POSE:
+        elif way.track.kind == "pose":
             self._stream.log(path, rerun.TransformAxes3D(_AXIS), static=True)
         self._stream.log(path, shape, static=True)
         line = rerun.LineStrips3D([way.points], radii=_LINE, colors=self._colour)
         self._stream.log(self._path("paths", name), line, static=True)
 
-    def _log_value(self, name: str, way: Way) -> None:
-        path = self._path("values", name)
+    def _log_value(self, name: str) -> None:
+        path, way = self._path("values", name), self._recorded.paths[name]
         unit = f", {way.track.unit}" if way.track.unit else ""
         line = rerun.SeriesLines(colors=self._colour, names=f"{self._name}: {name}{unit}")
         self._stream.log(path, line, static=True)
@@ -94,7 +94,7 @@ class _Side:
 
     def _log_events(self) -> None:
         levels = {Weight.READING: "DEBUG", Weight.COMMAND: "INFO", Weight.FAULT: "WARN"}
-        found = events(self._shown, self._recording)
+        found = events(self._shown, self._recorded)
         if found:
             where = [f" ({one.file}:{one.line})" if one.file else "" for one in found]
             texts = [f"{one.text}{place}" for one, place in zip(found, where, strict=True)]
@@ -109,12 +109,13 @@ class _Side:
 
 
 def _log_block(stream: rerun.RecordingStream, block: Block) -> None:
-    colour = tuple(round(255 * part) for part in block.colour) if block.colour is not None else (*BLOCK, 90)
+    name, centre, size, wanted = block
+    colour = tuple(round(255 * part) for part in wanted) if wanted is not None else (*BLOCK, 90)
     box = rerun.Boxes3D(
-        centers=[block.centre], sizes=[block.size], colors=[colour], fill_mode="solid",
-        labels=[block.name], show_labels=False,
+        centers=[centre], sizes=[size], colors=[colour], fill_mode="solid",
+        labels=[name], show_labels=False,
     )  # fmt: skip
-    stream.log(rerun.new_entity_path(["blocks", block.name]), box, static=True)
+    stream.log(rerun.new_entity_path(["blocks", name]), box, static=True)
 
 
 def _layout(shown: Shown) -> Any:

@@ -7,9 +7,11 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import Any
 
-from mutabot.evidence.paths import TrackPath, paths_of
-from mutabot.evidence.recording import Block, RecordedCall, RecordedMoment, Recording, TrackKind
+from mutabot.api.reports import RecordedPaths
 
+Triple = tuple[float, float, float]
+#: name, centre, size (m) and colour of a box that never moves, see docs/motion.md
+Block = tuple[str, Triple, Triple, tuple[float, ...] | None]
 #: of both sides: red, green and blue that people with any kind of sight tell apart
 COLOURS = {"original": (86, 180, 233), "mutant": (230, 159, 0)}
 #: of blocks without a wish
@@ -40,8 +42,8 @@ class Shown:
     place: str
     test: str
     round: int
-    original: Recording | None
-    mutant: Recording | None
+    original: RecordedPaths | None
+    mutant: RecordedPaths | None
     story: str = ""
     apart: float | None = None
     ended: tuple[str, str] = ("", "")
@@ -59,10 +61,10 @@ class Shown:
     @property
     def fault(self) -> float | None:
         """When the mutant changed something for the first time, s; None if it did not."""
-        return self.mutant.fault if self.mutant is not None else None
+        return self.mutant.recording.fault if self.mutant is not None else None
 
     @property
-    def sides(self) -> tuple[tuple[str, Recording], ...]:
+    def sides(self) -> tuple[tuple[str, RecordedPaths], ...]:
         """The recordings that there are, with the names of their sides."""
         both = ("original", self.original), ("mutant", self.mutant)
         return tuple((name, found) for name, found in both if found is not None)
@@ -70,7 +72,7 @@ class Shown:
     @property
     def blocks(self) -> list[Block]:
         """What stands around on either side, each once."""
-        return list(dict.fromkeys(block for _, found in self.sides for block in found.blocks))
+        return list(dict.fromkeys(block for _, found in self.sides for block in found.recording.blocks))
 
     @property
     def about(self) -> dict[str, str]:
@@ -90,24 +92,27 @@ class Shown:
     @property
     def clock(self) -> str:
         """What the times are of."""
-        return "simulated time" if all(found.is_simulated for _, found in self.sides) else "wall clock"
+        return (
+            "simulated time" if all(found.recording.is_simulated for _, found in self.sides) else "wall clock"
+        )
 
 
-def end_of(recording: Recording) -> float:
+def end_of(recorded: RecordedPaths) -> float:
     """The last moment of a recording, s."""
+    recording = recorded.recording
     calls = (one.ended for one in recording.calls if one.ended is not None)
     moments = (one.time for one in recording.moments)
     return max((*recording.times[-1:], *calls, *moments), default=0.0)
 
 
-def things_in(recording: Recording) -> list[tuple[str, TrackPath]]:
-    """What moves in space, with its name."""
-    return [(name, way) for name, way in paths_of(recording).items() if way.track.kind is not TrackKind.VALUE]
+def things_in(recorded: RecordedPaths) -> list[str]:
+    """The names of what moves in space."""
+    return [name for name, path in recorded.paths.items() if path.track.kind != "value"]
 
 
-def values_in(recording: Recording) -> list[tuple[str, TrackPath]]:
-    """What has a value over time, with its name."""
-    return [(name, way) for name, way in paths_of(recording).items() if way.track.kind is TrackKind.VALUE]
+def values_in(recorded: RecordedPaths) -> list[str]:
+    """The names of what has a value over time."""
+    return [name for name, path in recorded.paths.items() if path.track.kind == "value"]
 
 
 _TOUCH = {"touch": "{} touch", "part": "{} no longer touch"}
@@ -139,24 +144,28 @@ class ShownEvent:
     line: int = 0
 
 
-def events(shown: Shown, recording: Recording) -> list[ShownEvent]:
+def events(shown: Shown, recorded: RecordedPaths) -> list[ShownEvent]:
     """All of one side, in the order of their times; calls without a time are left out."""
-    found = [_call(one) for one in recording.calls if one.began is not None]
-    found += [ShownEvent(one.time, _moment(one)) for one in recording.moments]
+    recording, found = recorded.recording, []
+    for call in recording.calls:
+        if call.began is None:
+            continue
+        file, _, line = call.place.rpartition(":")
+        text = _said(call.pattern or call.operation.rpartition(":")[2], call.written, call.read)
+        weight = Weight.COMMAND if call.written or not call.read else Weight.READING
+        found.append(ShownEvent(call.began, text, weight, file, int(line) if line.isdigit() else 0))
+    for moment in recording.moments:
+        text = _TOUCH.get(moment.what, "{}").format(moment.text.replace(", ", " and "))
+        found.append(ShownEvent(moment.time, text))
     if recording.fault is not None:
         found.append(ShownEvent(recording.fault, f"FAULT: {shown.what}", Weight.FAULT))
     return sorted(found, key=lambda one: one.time)
 
 
-def _call(call: RecordedCall) -> ShownEvent:
-    assert call.began is not None
-    file, _, line = call.place.rpartition(":")
-    name = call.pattern or call.operation.rpartition(":")[2]
-    read = f"reads {_values(call.read)}" if call.read else ""
-    written = {part: value for part, value in call.written.items() if value != 0} or call.written
-    said = " ".join(part for part in (name, _values(written), read) if part)
-    weight = Weight.COMMAND if call.written or not call.read else Weight.READING
-    return ShownEvent(call.began, said, weight, file, int(line) if line.isdigit() else 0)
+def _said(name: str, written: Mapping[str, Any], read: Mapping[str, Any]) -> str:
+    """A call with its values: of those written, such as differ from 0, if there are any."""
+    wrote = {part: value for part, value in written.items() if value != 0} or written
+    return " ".join(filter(None, (name, _values(wrote), f"reads {_values(read)}" if read else "")))
 
 
 def _values(values: Mapping[str, Any]) -> str:
@@ -165,7 +174,3 @@ def _values(values: Mapping[str, Any]) -> str:
 
 def _number(value: Any) -> str:
     return f"{value:.5g}" if isinstance(value, float) else str(value)
-
-
-def _moment(moment: RecordedMoment) -> str:
-    return _TOUCH.get(moment.what, "{}").format(moment.text.replace(", ", " and "))

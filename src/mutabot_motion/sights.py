@@ -14,7 +14,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from mutabot.errors import UsageError
+from mutabot.api.reports import UsageError
 
 from .shown import Shown
 

@@ -13,8 +13,6 @@ from dataclasses import dataclass, replace
 from itertools import accumulate
 from typing import Any
 
-from mutabot.frozen import frozen
-
 from .project import Addition, PlaceInTest, SuiteFiles, equal, function_of, text_of, within
 from .readings import ORACLE, Measured, Read, ReadExpression, is_number, known
 
@@ -41,7 +39,7 @@ Mutants = Mapping[str, Mapping[tuple[int, str], Read]]
 Trials = frozenset[tuple[str, int]]
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Band:
     """What a reading of the original stays within.
 
@@ -201,7 +199,7 @@ def _is_given(text: str, originals: Mapping[tuple[int, str], Read], mutants: Mut
     )
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class _ReadAtEnd:
     """What was read at the end of a test.
 

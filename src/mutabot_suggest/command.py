@@ -10,7 +10,7 @@ import typer
 from mutabot.api.reports import CommandContext, MutantResult, Results, Verdict
 
 from .found import NothingToSuggestError
-from .shown import by_survivor, data_of_suggestions, print_suggestions
+from .shown import data_of_suggestions, keep, print_suggestions
 
 #: fresh seeds: each is run
 _MOST_SEEDS = 10_000
@@ -46,7 +46,7 @@ def suggest(
     request = context.request_again(results, jobs)
     with context.progress() as progress:
         found = find_checks(request, chosen, progress, seeds=seeds)
-    context.keep_suggestions(results, by_survivor(found))
+    keep(context, results, found)
     context.print_json(data_of_suggestions(found)) if json else print_suggestions(context, found)
 
 

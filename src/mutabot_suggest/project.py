@@ -12,9 +12,10 @@ import difflib
 import os
 import shutil
 import sys
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from unittest.mock import patch
@@ -23,10 +24,8 @@ import libcst as cst
 from libcst.codemod import CodemodContext
 from libcst.codemod.visitors import AddImportsVisitor
 
-from mutabot.campaign.request import Request
-from mutabot.errors import ConfigurationError
-from mutabot.frozen import frozen
-from mutabot.journal.files import HOME
+from mutabot.api.processes import Request
+from mutabot.api.reports import UsageError
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 Definition = ast.ClassDef | Function
@@ -136,7 +135,7 @@ def top_names(module: ast.Module) -> set[str]:
 PYTEST, UNITTEST, OTHER = "pytest", "unittest", "other"
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class PlaceInTest:
     """A test at whose end something can be looked at; all parameters of it are one place.
 
@@ -158,7 +157,7 @@ class PlaceInTest:
         return tuple(self.node.split("::")[1:])
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Addition:
     """What is added to the end of a test.
 
@@ -358,7 +357,7 @@ def _with_end(function: cst.FunctionDef, additions: Sequence[Addition]) -> cst.F
 
 
 #: folders that no test needs and that may be large
-_LEFT = {HOME, ".git", ".hg", "__pycache__", ".pytest_cache", ".mypy_cache", ".ruff_cache", ".tox", ".nox"}
+_LEFT = {".git", ".hg", "__pycache__", ".pytest_cache", ".mypy_cache", ".ruff_cache", ".tox", ".nox"}
 _LEFT |= {"node_modules"}
 _PATH = "PYTHONPATH"
 
@@ -367,24 +366,25 @@ _PATH = "PYTHONPATH"
 def copy_of(request: Request, texts: Mapping[str, str]) -> Iterator[Request]:
     """The request for a private copy of the project in which files have these texts.
 
-    Raises ConfigurationError if there is no place for it.
+    Raises UsageError if there is no place for it.
     """
     with TemporaryDirectory(prefix="mutabot-suggest-", ignore_cleanup_errors=True) as home:
         root = Path(home) / request.root.name
         try:
-            shutil.copytree(request.root, root, symlinks=True, ignore=_ignored)
+            left = {*_LEFT, request.journal_path.parent.name}
+            shutil.copytree(request.root, root, symlinks=True, ignore=partial(_ignored, left))
             for file, text in texts.items():
                 (root / file).write_bytes(text.encode("utf-8"))
         except (OSError, shutil.Error) as error:
             problem = f"the project cannot be copied to {home} (set TMPDIR to another place): {error}"
-            raise ConfigurationError(problem) from error
+            raise UsageError(problem) from error
         paths = _paths(request.root, root, os.environ.get(_PATH, ""))
         with patch.dict(os.environ, {_PATH: os.pathsep.join(paths)}):
-            yield replace(request, configuration=request.configuration.model_copy(update={"root": root}))
+            yield request.changed(root=root)
 
 
-def _ignored(folder: str, names: Sequence[str]) -> set[str]:
-    return {name for name in names if name in _LEFT or Path(folder, name, "pyvenv.cfg").exists()}
+def _ignored(left: Collection[str], folder: str, names: Sequence[str]) -> set[str]:
+    return {name for name in names if name in left or Path(folder, name, "pyvenv.cfg").exists()}
 
 
 def _paths(own: Path, copy: Path, before: str) -> list[str]:

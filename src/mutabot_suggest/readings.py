@@ -12,17 +12,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, TypeGuard
 
-from mutabot.campaign.baseline.taking import take_baseline
-from mutabot.campaign.beginning import open_executor
-from mutabot.campaign.campaign import Campaign
-from mutabot.campaign.engines.controls import run_controls
-from mutabot.campaign.request import Progress, Request
-from mutabot.campaign.run import as_it_is_now
-from mutabot.frozen import frozen
-from mutabot.model import Mutant, Operation, Probe
-from mutabot.model.events import TestEnd
-from mutabot.model.operation import owner_of
-from mutabot.model.quantity import step_of
+from mutabot.api.processes import Request, Result
+from mutabot.api.reports import CampaignRun, MutantResult, Progress
+from mutabot.api.values import Operation
 
 from .project import Addition, PlaceInTest, SuiteFiles, copy_of, edited, name_in, text_of, top_names
 
@@ -32,7 +24,7 @@ ORACLE, PROBE, HAND = 0, 1, 2
 _STEPS = 1.5
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class ReadExpression:
     """An expression that reads something.
 
@@ -62,7 +54,9 @@ def readings_at(project: SuiteFiles, place: PlaceInTest) -> list[ReadExpression]
     coarse = max((probe.tolerance for probe in vocabulary.probes), default=1e-6)
     found = [*_by_oracle(project, place, module, coarse)]
     found += [ReadExpression(text, ORACLE, coarse) for text in _by_tests(place, module)]
-    calls = [(one.target, ["()", ""], one.tolerance) for one in vocabulary.probes if not owner_of(one.target)]
+    calls = [
+        (one.target, ["()", ""], one.tolerance) for one in vocabulary.probes if not _is_of_objects(one.target)
+    ]
     calls += [(one.target, list(_calls(one)), coarse) for one in vocabulary.operations]
     for target, endings, tolerance in calls:
         where, _, attribute = target.partition(":")
@@ -72,11 +66,16 @@ def readings_at(project: SuiteFiles, place: PlaceInTest) -> list[ReadExpression]
     return list({one.text: one for one in reversed(found)}.values())[::-1]
 
 
+def _is_of_objects(target: str) -> bool:
+    """Whether ``module:qualified.name`` is read from objects of a class."""
+    return "." in target.partition(":")[2]
+
+
 def of_objects(project: SuiteFiles) -> list[tuple[str, float]]:
     """Readings of objects, ``module:Class.name``, each with its tolerance."""
     vocabulary = project.request.vocabulary
     coarse = max((probe.tolerance for probe in vocabulary.probes), default=1e-6)
-    found = {probe.target: probe.tolerance for probe in vocabulary.probes if owner_of(probe.target)}
+    found = {probe.target: probe.tolerance for probe in vocabulary.probes if _is_of_objects(probe.target)}
     for one in vocabulary.operations:
         if _only_reads(one) and not one.patterns and "." in one.qualname:
             found.setdefault(one.target, coarse)
@@ -162,7 +161,7 @@ def measure(
     request: Request,
     project: SuiteFiles,
     places: Mapping[str, PlaceInTest],
-    survivors: Sequence[tuple[Mutant, Sequence[int]]],
+    survivors: Sequence[tuple[MutantResult, Sequence[int]]],
     progress: Progress,
 ) -> Measured:
     """Run a copy of the project whose tests note what they can read.
@@ -179,28 +178,27 @@ def measure(
     for place in dict.fromkeys(places.values()):
         measured.readings[place] = readings_at(project, place)
         additions.append(_noting(place, measured.readings[place], measured.objects))
-    with copy_of(request, edited(project, additions)) as copied:
-        probes = (*copied.vocabulary.probes, Probe(_PROBE, 1e9))
-        noting = replace(copied, vocabulary=replace(copied.vocabulary, probes=probes))
-        with open_executor(noting, progress) as opened:
-            baseline, results = take_baseline(noting, opened, progress, repetitions=1)
-            for result in results:
-                for place, test, read in _read_in(result.ends, places):
-                    measured.originals.setdefault(place, {})[result.task.key[0], test] = read
-            _run_survivors(Campaign(noting, baseline, opened, progress), measured, places, survivors)
+    with (
+        copy_of(request, edited(project, additions)) as copied,
+        CampaignRun.open(copied.changed(probes={_PROBE: 1e9}), progress) as campaign,
+    ):
+        for result in campaign.originals:
+            round, _ = result.task.key
+            for place, test, read in _read_in(result, places):
+                measured.originals.setdefault(place, {})[round, test] = read
+        _run_survivors(campaign, measured, places, survivors)
     return measured
 
 
 def _run_survivors(
-    campaign: Campaign,
+    campaign: CampaignRun,
     measured: Measured,
     places: Mapping[str, PlaceInTest],
-    survivors: Sequence[tuple[Mutant, Sequence[int]]],
+    survivors: Sequence[tuple[MutantResult, Sequence[int]]],
 ) -> None:
     baseline, progress = campaign.baseline, campaign.progress
-    now = [(as_it_is_now(campaign.request, baseline, mutant), rounds) for mutant, rounds in survivors]
-    for _ in run_controls(campaign, [mutant for mutant, _ in now]):
-        pass
+    now = [(campaign.current(one.mutant), rounds) for one, rounds in survivors]
+    campaign.prove(mutant for mutant, _ in now)
     trials = [(mutant, round) for mutant, rounds in now for round in rounds]
     progress.stage("survivors", len(trials))
     tasks = (
@@ -212,17 +210,15 @@ def _run_survivors(
         mutant, round = result.task.key
         progress.advance(f"#{mutant.number} round {round + 1}")
         reaching = baseline.tests_reaching(round, mutant)  # a check stands where the mutant is reached
-        for place, test, read in _read_in(result.ends, places):
+        for place, test, read in _read_in(result, places):
             if test in reaching:
                 measured.mutants.setdefault(place, {}).setdefault(mutant.id, {})[round, test] = read
 
 
-def _read_in(
-    ends: Iterable[TestEnd], places: Mapping[str, PlaceInTest]
-) -> Iterator[tuple[PlaceInTest, str, Read]]:
+def _read_in(result: Result, places: Mapping[str, PlaceInTest]) -> Iterator[tuple[PlaceInTest, str, Read]]:
     """What passed tests read, each with its place and node id."""
     prefix = f"{_PROBE}."
-    for end in ends:
+    for end in result.ends:
         values = end.probes.items()
         read = {name.removeprefix(prefix): value for name, value in values if name.startswith(prefix)}
         if end.test in places and read and end.outcome == "passed":
@@ -260,5 +256,18 @@ def known(measured: Measured, place: PlaceInTest, text: str) -> ReadExpression:
         found = ReadExpression(text, *((PROBE, objects[0]) if objects else (HAND, coarse)))
     runs = measured.originals.get(place, {}).values()
     values = {read[text] for read in runs if is_number(read.get(text))}
-    step = step_of(values) if len(values) > 1 else None
+    step = _step_of(values) if len(values) > 1 else None
     return found if step is None else replace(found, tolerance=max(found.tolerance, _STEPS * step))
+
+
+#: decimals of a step at most: finer ones cannot be told from no steps at all
+_DECIMALS = 4
+
+
+def _step_of(values: Iterable[float]) -> float | None:
+    """The power of ten of which all these are multiples, below 1; None if there is none, or all are whole."""
+    values = list(values)
+    for decimals in range(_DECIMALS + 1):
+        if all(abs(value - round(value, decimals)) <= 1e-9 * max(1.0, abs(value)) for value in values):
+            return 10.0**-decimals if decimals else None
+    return None

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import asdict
 from typing import Any
 
-from mutabot.api.reports import CommandContext, Suggestion
+from mutabot.api.reports import CommandContext, Results
 
 from .found import Dropped, ProvenCheck, Suggestions, Unsolved
 
@@ -75,13 +75,13 @@ def _left(one: Unsolved, found: Suggestions) -> str:
     return f"#{found.numbers.get(one.mutant, 0)} {found.descriptions.get(one.mutant, '')}: {one.reason}"
 
 
-def by_survivor(found: Suggestions) -> dict[str, Suggestion]:
-    """Return what reports say of each survivor by its id: a check that kills it, or why none does."""
-    said = {one.mutant: Suggestion(reason=one.reason) for one in found.unsolved}
+def keep(context: CommandContext, results: Results, found: Suggestions) -> None:
+    """Keep for reports, of each survivor, the first check that kills it, or why none does."""
+    checks: dict[str, tuple[str, str, tuple[str, ...]]] = {}
     for one in reversed(found.checks):
         statement, *notes = check_lines(one, found)
-        said |= dict.fromkeys(one.kills, Suggestion(one.test, statement, tuple(notes)))
-    return said
+        checks |= dict.fromkeys(one.kills, (one.test, statement, tuple(notes)))
+    context.keep_suggestions(results, checks, {one.mutant: one.reason for one in found.unsolved})
 
 
 def data_of_suggestions(found: Suggestions) -> dict[str, Any]:

@@ -8,18 +8,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from mutabot.campaign.beginning import open_executor
-from mutabot.campaign.request import Progress, Request
-from mutabot.campaign.run import run_campaign
-from mutabot.errors import MutabotError
-from mutabot.execution.task import Task
-from mutabot.frozen import frozen
-from mutabot.journal.reader import JournalReader
-from mutabot.model import By, Mutant, Verdict
-from mutabot.model.deadline import Limit
-from mutabot.model.events import TestEnd
-from mutabot.model.mutant_end import MutantEnd
-from mutabot.results.results import MutantResult
+from mutabot.api.processes import Request
+from mutabot.api.reports import (
+    CampaignRun,
+    MutabotError,
+    MutantEnd,
+    MutantResult,
+    Progress,
+    Results,
+    Verdict,
+)
 
 from .checks import ProposedCheck, Trials, candidates, unseen
 from .found import Dropped, NothingToSuggestError, ProvenCheck, Suggestions, Unsolved
@@ -32,20 +30,20 @@ _ATTEMPTS = 5
 
 def _sorted_out(
     chosen: Sequence[MutantResult],
-) -> tuple[dict[str, tuple[Mutant, list[int]]], list[Unsolved], list[str]]:
+) -> tuple[dict[str, tuple[MutantResult, list[int]]], list[Unsolved], list[str]]:
     """The survivors that may look other than the original, the others, and the tests where the first acted.
 
     The first by id, with the rounds in which they survived. No check at the ends of these tests can kill the
     others.
     """
-    to_kill: dict[str, tuple[Mutant, list[int]]] = {}
+    to_kill: dict[str, tuple[MutantResult, list[int]]] = {}
     never: list[Unsolved] = []
     tests: dict[str, None] = {}
     for one in chosen:
         different = [out for out in one.survived if out.indistinguishable is not True]
         reason = "no test reaches it; add a test that does"
         if different:
-            to_kill[one.mutant.id] = one.mutant, [out.round for out in different]
+            to_kill[one.mutant.id] = one, [out.round for out in different]
             tests.update({looked.test: None for out in different for looked in out.looked if looked.acted})
             continue
         if one.survived:
@@ -57,28 +55,28 @@ def _sorted_out(
 
 
 def why_unsolved(
-    mutant: Mutant,
+    mutant: str,
     measured: Measured,
     found: Sequence[ProposedCheck],
     proof: Proof,
     refused: Mapping[str, str],
 ) -> Unsolved:
-    """The reason, with what differs most and how far the original itself spreads."""
-    failed = [one for one in found if one in proof.failed and mutant.id in dict(one.trials)]
+    """The reason for a mutant, by its id, with what differs most and how far the original itself spreads."""
+    failed = [one for one in found if one in proof.failed and mutant in dict(one.trials)]
     if failed:
-        return Unsolved(mutant.id, f"a check that would notice it failed its proof: {failed[0].statement}")
-    if mutant.id in refused:
-        return Unsolved(mutant.id, refused[mutant.id])
+        return Unsolved(mutant, f"a check that would notice it failed its proof: {failed[0].statement}")
+    if mutant in refused:
+        return Unsolved(mutant, refused[mutant])
     nothing = "nothing differs in what its tests can read at their ends"
-    return Unsolved(mutant.id, max(_differences(mutant, measured), default=(0.0, nothing))[1])
+    return Unsolved(mutant, max(_differences(mutant, measured), default=(0.0, nothing))[1])
 
 
-def _differences(mutant: Mutant, measured: Measured) -> list[tuple[float, str]]:
+def _differences(mutant: str, measured: Measured) -> list[tuple[float, str]]:
     """How far readings are from the original's, in what the original does by itself, each in words."""
     found = []
     for place, by_mutant in measured.mutants.items():
         originals = measured.originals.get(place, {})
-        for key, read in by_mutant.get(mutant.id, {}).items():
+        for key, read in by_mutant.get(mutant, {}).items():
             for text, value in read.items():
                 before = originals.get(key, {}).get(text)
                 if not is_number(value) or not is_number(before) or value == before:
@@ -98,7 +96,7 @@ def _short(value: float) -> str:
     return repr(float(f"{value:.3g}"))
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Quiet:
     """Progress without the remarks of campaigns that only serve."""
 
@@ -165,7 +163,7 @@ def suggest(
     checks = _proven(proof, found, measured, [*range(request.rounds), *fresh])
     texts = texts_with(project, [one for one in checks if one.place.style != OTHER])
     killed = {mutant for one in checks for mutant, _ in proof.kills[one]}
-    left = [mutant for name, (mutant, _) in to_kill.items() if name not in killed]
+    left = [mutant for mutant in to_kill if mutant not in killed]
     return replace(
         nothing,
         checks=tuple(_suggestion(one, proof.kills[one], seeds) for one in checks),
@@ -265,12 +263,8 @@ class Proof:
         with copy_of(self.request, texts) as copied:
             these = _only(copied, checks)
             self.progress.stage("proof on the original", len(rounds))
-            with open_executor(these, self.progress) as opened:
-                share = these.forks
-                tasks = (
-                    Task(round, these.job(round), startup=Limit(300.0), may_share=share) for round in rounds
-                )
-                for result in opened.run(tasks):
+            with CampaignRun.of_original(these, rounds, self.progress) as results:
+                for result in results:
                     self.progress.advance(f"round {result.task.key + 1}")
                     where = f"round {result.task.key + 1} of the original"
                     if result.end is None or result.end.errors or not result.ends:
@@ -279,7 +273,7 @@ class Proof:
                     for end in result.ends:
                         if end.outcome == "failed":
                             text = f"fails in {where}: {(end.message or 'no message').splitlines()[0]}"
-                            for one in _blamed(checks, end, texts):
+                            for one in _blamed(checks, end.test, end.place or "", texts):
                                 found.setdefault(one, text)
         return found
 
@@ -307,13 +301,14 @@ class Proof:
         only = tuple(dict.fromkeys(mutant for one in checks for mutant in mutants[one.place]))
         with copy_of(self.request, texts_with(self.project, checks)) as copied:
             these = _only(copied, checks)
-            path = run_campaign(replace(these, only=only, every_test=True, repeats=False), self.progress)
-            with JournalReader.open(path) as journal:
-                outcomes = journal.outcomes()
+            path = CampaignRun.to_end(
+                replace(these, only=only, every_test=True, repeats=False), self.progress
+            )
+            outcomes = Results.read(path).outcomes
         killed: dict[str, set[tuple[str, int]]] = {}
         for outcome in outcomes:
             for kill in outcome.kills if outcome.verdict is Verdict.KILLED else ():
-                if kill.by is By.CHECK:
+                if kill.by == "check":
                     killed.setdefault(_own_name(kill.test), set()).add((outcome.mutant, outcome.round))
         for one in checks:
             self.kills[one] = frozenset(killed.get(_own_name(one.place.node), ()))
@@ -333,16 +328,18 @@ def texts_with(project: SuiteFiles, checks: Sequence[ProposedCheck]) -> dict[str
 
 def _only(request: Request, checks: Sequence[ProposedCheck]) -> Request:
     tests = tuple(dict.fromkeys(one.place.node for one in checks))
-    return replace(request, configuration=request.configuration.model_copy(update={"tests": tests}))
+    return request.changed(tests=tests)
 
 
-def _blamed(checks: Sequence[ProposedCheck], end: TestEnd, texts: Mapping[str, str]) -> list[ProposedCheck]:
-    """The checks that let a test fail: that at the place of the failure, else all that it makes."""
-    file, _, line = (end.place or "").rpartition(":")
+def _blamed(
+    checks: Sequence[ProposedCheck], test: str, place: str, texts: Mapping[str, str]
+) -> list[ProposedCheck]:
+    """The checks that let a test fail: that at the place, ``file:line``, else all of the test."""
+    file, _, line = place.rpartition(":")
     lines = texts.get(file, "").splitlines()
     if line.isdigit() and 0 < int(line) <= len(lines):
         found = [one for one in checks if one.statement == lines[int(line) - 1].strip()]
         if found:
             return found
-    node = end.test.partition("[")[0]
+    node = test.partition("[")[0]
     return [one for one in checks if one.place.node == node] or list(checks)

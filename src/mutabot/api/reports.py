@@ -7,42 +7,41 @@ from typing import TYPE_CHECKING
 from mutabot.lazy import lazily
 
 if TYPE_CHECKING:
+    from mutabot.campaign.again import CampaignRun
     from mutabot.campaign.request import Progress
     from mutabot.cli.context import CommandContext
     from mutabot.errors import MutabotError, UsageError
+    from mutabot.evidence.paths import RecordedPaths
     from mutabot.model.mutant_end import MutantEnd
-    from mutabot.model.outcome import Outcome, Verdict
+    from mutabot.model.outcome import Verdict
     from mutabot.results.results import MutantResult, Results
-    from mutabot.results.suggested import Suggestion
 
 __all__ = [
+    "CampaignRun",
     "CommandContext",
     "MutabotError",
     "MutantEnd",
     "MutantResult",
-    "Outcome",
     "Progress",
+    "RecordedPaths",
     "Results",
-    "Suggestion",
     "UsageError",
     "Verdict",
 ]
 _HOMES = {
+    "mutabot.campaign.again": ("CampaignRun",),
     "mutabot.campaign.request": ("Progress",),
     "mutabot.cli.context": ("CommandContext",),
     "mutabot.errors": (
         "MutabotError",
         "UsageError",
     ),
+    "mutabot.evidence.paths": ("RecordedPaths",),
     "mutabot.model.mutant_end": ("MutantEnd",),
-    "mutabot.model.outcome": (
-        "Outcome",
-        "Verdict",
-    ),
+    "mutabot.model.outcome": ("Verdict",),
     "mutabot.results.results": (
         "MutantResult",
         "Results",
     ),
-    "mutabot.results.suggested": ("Suggestion",),
 }
 __getattr__, __dir__ = lazily(__name__, _HOMES)

@@ -6,7 +6,7 @@ import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection, Mapping
 from contextlib import AbstractContextManager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, Self
 
@@ -19,7 +19,7 @@ from mutabot.families import USUAL
 from mutabot.faults import Project
 from mutabot.frozen import frozen
 from mutabot.journal.files import HOME, JOURNAL
-from mutabot.model import Moment, Vocabulary
+from mutabot.model import Moment, Probe, Vocabulary
 from mutabot.model.job import Job
 
 if TYPE_CHECKING:
@@ -203,6 +203,28 @@ class Request:
         from mutabot.execution.workers import Workers  # noqa: PLC0415  # a request alone needs none
 
         return Workers(self.root, self.arguments, self.jobs, tell)
+
+    def changed(
+        self,
+        *,
+        root: Path | None = None,
+        tests: tuple[str, ...] | None = None,
+        probes: Mapping[str, float] | None = None,
+    ) -> Self:
+        """Return the same request for a changed project.
+
+        Args:
+            root: the folder of a copy of the project; None for the project itself.
+            tests: the tests to run, as arguments of pytest; None for those of the configuration.
+            probes: further probes, ``module:qualified.name``, each with its tolerance.
+        """
+        changes = {"root": root, "tests": tests}
+        configuration = self.configuration.model_copy(
+            update={name: value for name, value in changes.items() if value is not None}
+        )
+        added = (Probe(target, tolerance) for target, tolerance in (probes or {}).items())
+        vocabulary = replace(self.vocabulary, probes=(*self.vocabulary.probes, *added))
+        return replace(self, configuration=configuration, vocabulary=vocabulary)
 
     def clock(self) -> float:
         """Seconds since some moment: what the campaign may spend is counted by these."""

@@ -1,56 +1,41 @@
-"""Run a campaign: baseline, plan, what still holds, controls, mutants. The journal is there at once.
-
-Also one mutant of a finished campaign again, beside what its journal says.
-"""
+"""Run a campaign: baseline, plan, what still holds, controls, mutants. The journal is there at once."""
 
 from __future__ import annotations
 
 import errno
 import platform
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import replace
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mutabot import __version__, extensions
-from mutabot.campaign import beginning
-from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.beginning import begin, locked_executor, selected, whole_plan
-from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.confirmation import decide, earlier_decision
-from mutabot.campaign.engines.controls import run_controls
-from mutabot.campaign.engines.replay import replay
 from mutabot.campaign.engines.rerun import refuse_flaky, rerun
 from mutabot.campaign.evidence import CampaignEvidence, recorded
-from mutabot.campaign.faults.providers import family_of, texts_of
-from mutabot.campaign.plan import Plan, carry, drawing, make_plan, reaching, summaries
+from mutabot.campaign.faults.providers import family_of
+from mutabot.campaign.plan import Plan, carry, drawing, reaching, summaries
 from mutabot.campaign.reuse.keys import Dependencies, OutcomeWriter
 from mutabot.campaign.reuse.original import OriginalRuns
 from mutabot.campaign.reuse.snapshot import Snapshot, State
 from mutabot.campaign.schedule import OUT_OF_TIME, run_planned
 from mutabot.campaign.sharding.shards import part_of, write_shard
 from mutabot.campaign.suppressions import note_accepted, text_of
-from mutabot.errors import ControlError, JournalError, SelectionError, in_short
+from mutabot.errors import ControlError, JournalError, in_short
 from mutabot.execution.interruption import interruptions_kept
-from mutabot.faults import PlannedMutant
 from mutabot.journal import records
 from mutabot.journal.journal import Journal
-from mutabot.journal.reader import JournalReader
-from mutabot.model.activation import Activation
-from mutabot.model.mutant import Place
-from mutabot.model.outcome import in_words
 
 from .reuse.reuse import Reused, Revision, altered_since, note_outdated, only_altered, open_others, reuse
 
 if TYPE_CHECKING:
-    from mutabot.campaign.baseline.baseline import Baseline
+    from mutabot.campaign.campaign import Campaign
     from mutabot.campaign.request import Progress, Request
     from mutabot.execution.task import Executor, Result
     from mutabot.journal.reader import JournalReader
-    from mutabot.model import Mutant
 
 #: what else decides how a campaign ends, beside the user's own files
 _VERSIONS = ("pytest", "wrapt", "pytest-bdd")
@@ -288,54 +273,3 @@ def _meta(request: Request) -> dict[str, Any]:
         "started": time.time(),
         "vocabulary": request.vocabulary,
     }
-
-
-# One mutant again
-
-
-def replay_one(
-    request: Request, journal: JournalReader, mutant: Mutant, rounds: Iterable[int], progress: Progress
-) -> list[records.Replayed]:
-    """Run one mutant again in these rounds, beside what the journal says of it.
-
-    Raises what ``with_fresh_baseline`` raises.
-    """
-    rounds = sorted(set(rounds))
-    first = {(one.mutant, one.round): one for one in journal.outcomes()}
-    with with_fresh_baseline(request, mutant, rounds[-1], progress) as (campaign, now):
-        for _ in run_controls(campaign, [now]):
-            pass
-        progress.stage("replay", len(rounds))
-        second = {}
-        for outcome in replay(campaign, [(now, round) for round in rounds]):
-            second[outcome.round] = outcome
-            progress.advance(in_words(outcome))
-    return [records.Replayed(round, first.get((now.id, round)), second[round]) for round in rounds]
-
-
-@contextmanager
-def with_fresh_baseline(
-    request: Request, mutant: Mutant, last: int, progress: Progress
-) -> Iterator[tuple[Campaign, Mutant]]:
-    """Take the baseline again up to a round; give the campaign, and the mutant in the program as it is now.
-
-    Raises SelectionError if the program no longer has the mutant, and what a baseline raises.
-    """
-    request = replace(request, rounds=last + 1)
-    with beginning.open_executor(request, progress) as opened:
-        texts = texts_of(request.project, progress.note)
-        baseline, _ = take_baseline(request, opened, progress, texts=texts, repetitions=1)
-        yield Campaign(request, baseline, opened, progress), as_it_is_now(request, baseline, mutant)
-
-
-def as_it_is_now(request: Request, baseline: Baseline, mutant: Mutant) -> Mutant:
-    """The mutant in the program as it is now: edits elsewhere move it."""
-    planned = {one.id: one for one in make_plan(baseline, request.project).mutants}
-    place = Place.of(mutant)
-    if place in baseline.hits:  # which it also is if nobody asks for its family or magnitude now
-        baseline.faults.by_id[mutant.id] = PlannedMutant(mutant, active=Activation.of_call(place))
-        return mutant
-    if mutant.id not in planned:
-        problem = f"the program has changed: no test reaches {mutant.id} any more"
-        raise SelectionError(problem)
-    return replace(planned[mutant.id], number=mutant.number)

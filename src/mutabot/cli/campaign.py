@@ -9,9 +9,10 @@ from typing import Annotated
 import typer
 
 from mutabot.campaign import beginning
-from mutabot.campaign import run as running
+from mutabot.campaign.again import replay_one
 from mutabot.campaign.plan import listed_rules
 from mutabot.campaign.request import Request
+from mutabot.campaign.run import run_campaign
 from mutabot.campaign.sharding import shards
 from mutabot.cli import options
 from mutabot.cli.context import CommandContext, decided
@@ -67,7 +68,7 @@ def run(
     json: bool = False,
 ) -> None:
     """Run the campaign, or continue it."""
-    run = partial(running.run_campaign, request)
+    run = partial(run_campaign, request)
     if stream and json:
         raise UsageError(f"--format {stream} and --json: only one of them can be printed")
     if stream:
@@ -121,7 +122,7 @@ def replay(
         rounds = range(found.rounds) if round is None else [found.round_index(round)]
         request = context.request_again(found, jobs)
         with context.progress() as progress:
-            replayed = running.replay_one(request, journal, chosen, rounds, progress)
+            replayed = replay_one(request, journal, chosen, rounds, progress)
     data = replayed_data(chosen, replayed)
     context.print_json(data) if json else print_replayed(make_console(), chosen, replayed)
     differs = any(one.agrees is False for one in replayed)

@@ -55,11 +55,23 @@ class CommandContext:
         """Open what was recorded in the last campaign, to be closed. Raises JournalError."""
         return StoredEvidence(self.journal)
 
-    def keep_suggestions(self, results: Results, found: Mapping[str, Suggestion]) -> None:
-        """Keep what is suggested for survivors, by their ids, for reports of this campaign.
+    def keep_suggestions(
+        self,
+        results: Results,
+        checks: Mapping[str, tuple[str, str, tuple[str, ...]]],
+        reasons: Mapping[str, str],
+    ) -> None:
+        """Keep what was found for survivors, by their ids, for reports of this campaign.
+
+        Args:
+            checks: a check that kills it: the test that it is added to, its code, and what there is to say of
+                it, a line each.
+            reasons: why there is none.
 
         Raises UsageError if it cannot be written.
         """
+        found = {survivor: Suggestion(reason=why) for survivor, why in reasons.items()}
+        found |= {survivor: Suggestion(*check) for survivor, check in checks.items()}
         keep_suggestions(self.journal, results.meta, found)
 
     def request_again(self, results: Results, jobs: int | None) -> Request:

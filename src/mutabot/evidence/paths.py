@@ -11,8 +11,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from math import inf, isnan, sqrt
+from typing import Self
 
-from mutabot.evidence.recording import Recording, Track
+from mutabot.evidence.recording import Recording, Track, bytes_of, from_bytes
 
 Point = tuple[float, float, float]
 #: a row of a track: the numbers of one moment
@@ -120,19 +121,20 @@ class TrackPath:
         return max(0, bisect_right(self.when, time + _SAME) - 1)
 
 
-def paths_of(recording: Recording) -> dict[str, TrackPath]:
-    """Everything that was tracked, by name, if it was ever there."""
-    found = {name: TrackPath(track, recording.times) for name, track in recording.tracks.items()}
-    return {name: path for name, path in found.items() if path.rows}
-
-
 @dataclass(frozen=True)
 class RecordedPaths:
-    """A recording, and its paths, which are worked out once."""
+    """What was recorded of one test, and the paths of what was tracked, which are worked out once."""
 
     recording: Recording
 
+    @classmethod
+    def from_text(cls, text: str) -> Self:
+        """Read what a test reports as its recording. Raises ValueError for anything else."""
+        return cls(from_bytes(bytes_of(text)))
+
     @cached_property
     def paths(self) -> dict[str, TrackPath]:
-        """Everything that was tracked."""
-        return paths_of(self.recording)
+        """Everything that was tracked, by name, if it was ever there; times in s, positions in m."""
+        recording = self.recording
+        found = {name: TrackPath(track, recording.times) for name, track in recording.tracks.items()}
+        return {name: path for name, path in found.items() if path.rows}

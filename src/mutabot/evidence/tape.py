@@ -1,88 +1,39 @@
 """The tape of the running test, on which feeds write and which the session reads; and its film.
 
-There is one tape per process. Outside a campaign, and between tests, there is none and feeds do nothing. A
-film holds the pictures of one test, each as its difference from the one before, compressed: most of a work
-cell stands still.
+There is one tape per process. Outside a campaign, and between tests, there is none and feeds do nothing.
 """
 
 from __future__ import annotations
 
-import os
-import struct
-import zlib
 from array import array
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
-from typing import Any
+from typing import Any, Protocol
 
 from mutabot.model.clocks import monotonic
 
 from .recording import Block, RecordedMoment, Recording, Track, TrackKind
 
-#: before each picture of a film: its time in s, height, width, and bytes that follow
-HEAD = struct.Struct("<dIII")
 #: pictures from which on no more are taken: four minutes at 25 per second
 MOST_PICTURES = 6000
 
 
-class FilmWriter:
-    """Takes pictures down, until it is closed or its process ends.
+class PictureWriter(Protocol):
+    """Takes pictures down.
 
     Attributes:
         count: how many there are.
     """
 
-    def __init__(self, path: str) -> None:
-        self._file = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_CLOEXEC, 0o600)
-        self._before = b""
-        self.count = 0
+    count: int
 
     def add(self, time: float, picture: Any) -> None:
         """Add one. Raises ValueError for what is no picture, TypeError for what holds no numbers.
 
         Args:
             time: s.
-            picture: shape (height, width, 3) or (height, width, 4), of bytes; the fourth of each is left out.
+            picture: shape (height, width, 3) or (height, width, 4), of bytes.
         """
-        height, width, pixels = pixels_of(picture)
-        data = zlib.compress(differing(pixels, self._before), 1)
-        left = memoryview(HEAD.pack(time, height, width, len(data)) + data)
-        while left:
-            left = left[os.write(self._file, left) :]
-        self._before = pixels
-        self.count += 1
-
-    def close(self) -> None:
-        """No more come."""
-        os.close(self._file)
-
-
-def pixels_of(picture: Any) -> tuple[int, int, bytes]:
-    """Height, width and the pixels of a picture; raises as ``FilmWriter.add``."""
-    view = memoryview(picture)
-    if view.ndim != 3 or view.shape is None or view.shape[2] not in (3, 4) or view.format != "B":
-        raise ValueError(
-            f"a picture has the shape (height, width, 3) and numbers of the type uint8, not {view.shape} "
-            f"of the type {view.format!r}"
-        )
-    height, width, depth = view.shape
-    if not height or not width:
-        raise ValueError(f"a picture of {width} by {height} pixels")
-    data = view.tobytes()
-    if depth == 3:
-        return height, width, data
-    pixels = bytearray(height * width * 3)
-    for colour in range(3):
-        pixels[colour::3] = data[colour::4]
-    return height, width, bytes(pixels)
-
-
-def differing(pixels: bytes, before: bytes) -> bytes:
-    """What differs from a picture of the same size, bit by bit; applied twice it gives the picture back."""
-    if len(pixels) != len(before):
-        return pixels
-    both = int.from_bytes(pixels, "little") ^ int.from_bytes(before, "little")
-    return both.to_bytes(len(pixels), "little")
 
 
 #: moments from which on only every second one is kept, and half as many are taken from then on
@@ -108,7 +59,7 @@ class Tape:
         filmed_by: whose pictures it takes: of several simulations those of the last that began.
     """
 
-    def __init__(self, film: FilmWriter | None = None) -> None:
+    def __init__(self, film: PictureWriter | None = None) -> None:
         self.recording = Recording()
         self.film = film
         self.filmed_by: object = None
@@ -244,7 +195,7 @@ def running() -> Tape | None:
     return _tape
 
 
-def begin(film: FilmWriter | None = None) -> Tape:
+def begin(film: PictureWriter | None = None) -> Tape:
     """A test begins that is to be recorded, and maybe filmed."""
     global _tape  # noqa: PLW0603  # simulators know this module, not an object of ours
     _tape = Tape(film)

@@ -74,11 +74,13 @@ class Pictures:
 
     Attributes:
         test: its node id.
-        file: absolute path of the film, see ``evidence.tape``.
+        file: absolute path of the film.
+        writer: reference to what makes an ``evidence.tape.PictureWriter`` of the path, ``module:attribute``.
     """
 
     test: str
     file: str
+    writer: str
 
 
 @frozen
@@ -165,6 +167,12 @@ class Job:
             reaching={}, tests=None,
         )  # fmt: skip
         return replace(slim, simulated={}, extensions={}) if self.is_of_text else slim
+
+    def filmed(self, test: str, file: str, writer: str) -> Job:
+        """Return the same job with one test that is recorded and filmed; see ``Pictures``."""
+        # libraries of graphics reserve far more addresses than they use
+        pictures = Pictures(test, file, writer)
+        return replace(self, stop_at_kill=False, evidence=True, pictures=pictures, memory=None)
 
     def left_out(self, mutant: str) -> frozenset[str]:
         """Return the tests that are left out for this mutant once it has been reached."""

@@ -11,9 +11,7 @@ from operator import ne
 
 from PIL import Image, ImageDraw
 
-from mutabot.evidence.paths import TrackPath
-from mutabot.evidence.recording import Recording, TrackKind
-from mutabot.model import units
+from mutabot.api.reports import RecordedPaths
 from mutabot_motion.shown import end_of, things_in
 
 from .lettering import letters
@@ -51,14 +49,14 @@ class Drawn:
             one scale.
     """
 
-    def __init__(self, recording: Recording, others: Iterable[Recording] = ()) -> None:
+    def __init__(self, recording: RecordedPaths, others: Iterable[RecordedPaths] = ()) -> None:
         self.end = end_of(recording)
-        self._paths = dict(things_in(recording))
+        self._paths = {name: recording.paths[name] for name in things_in(recording)}
         self._views = _views(_room([recording, *others]))
         self._empty = Image.new("RGB", (_WIDTH, _HEIGHT), _GROUND)
         draw = ImageDraw.Draw(self._empty)
         for (name, _, up), view in zip(_VIEWS, self._views, strict=True):
-            for block in sorted(recording.blocks, key=lambda one: one.centre[3 - view.right - up]):
+            for block in sorted(recording.recording.blocks, key=lambda one: one.centre[3 - view.right - up]):
                 _draw_block(draw, view, block.centre, block.size)
             bottom = view.centre[1] + _HEIGHT / 4
             letters(14).draw(draw, (_EDGE, bottom - 8), name, _TEXT, "lb")
@@ -77,7 +75,7 @@ class Drawn:
                 if len(trail) > 1:
                     draw.line(trail, fill=_colour(number), width=2, joint="curve")
                 if trail:
-                    _draw_thing(draw, view, path, until - 1, _colour(number))
+                    _draw_thing(draw, view, path.rows[until - 1], path.track.size, _colour(number))
         return image
 
 
@@ -85,13 +83,13 @@ def _colour(number: int) -> str:
     return _COLOURS[number % len(_COLOURS)]
 
 
-def _room(recordings: Sequence[Recording]) -> list[tuple[float, float]]:
+def _room(recordings: Sequence[RecordedPaths]) -> list[tuple[float, float]]:
     """Along each axis, between which coordinates anything is, m; blocks only beside what moves."""
     points = [
         point
         for recording in recordings
-        for _, path in things_in(recording)
-        for point in path.points
+        for name in things_in(recording)
+        for point in recording.paths[name].points
         if not any(map(isnan, point))
     ]
     if not points:
@@ -123,18 +121,31 @@ def _draw_block(
         draw.rectangle((low[0], top, high[0], bottom), fill=_BLOCK, outline=_OUTLINE)
 
 
-def _draw_thing(draw: ImageDraw.ImageDraw, view: _View, path: TrackPath, row: int, colour: str) -> None:
-    """A box by its edges, as it is turned; anything else as a dot."""
-    place, size = path.points[row], path.track.size
+def _draw_thing(
+    draw: ImageDraw.ImageDraw, view: _View, row: Sequence[float], size: Sequence[float] | None, colour: str
+) -> None:
+    """A box by its edges, as it is turned; anything else as a dot. ``row``: as in a track."""
+    place, turn = row[:3], row[3:] or (1.0, 0.0, 0.0, 0.0)
     if size is None:
         x, y = view.pixel(place)
         draw.ellipse((x - 5, y - 5, x + 5, y + 5), fill=colour)
         return
-    pose = path.rows[row][3:7] if path.track.kind is TrackKind.POSE else (1.0, 0.0, 0.0, 0.0)
-    turn, corners = units.Quaternion(*pose), {}
+    corners = {}
     for signs in product((-0.5, 0.5), repeat=3):
-        offset = turn.rotated([part * edge for part, edge in zip(signs, size, strict=True)])
+        offset = _rotated(turn, [part * edge for part, edge in zip(signs, size, strict=True)])
         corners[signs] = view.pixel([one + other for one, other in zip(place, offset, strict=True)])
     for one, other in combinations(corners, 2):
         if sum(map(ne, one, other)) == 1:  # they differ along one edge
             draw.line((corners[one], corners[other]), fill=colour, width=3)
+
+
+def _rotated(turn: Sequence[float], vector: Sequence[float]) -> list[float]:
+    """A vector, rotated by a unit quaternion w, x, y, z."""
+    w, *axis = turn
+    twice = [2.0 * part for part in _cross(axis, vector)]
+    return [v + w * t + c for v, t, c in zip(vector, twice, _cross(axis, twice), strict=True)]
+
+
+def _cross(one: Sequence[float], other: Sequence[float]) -> tuple[float, float, float]:
+    (a, b, c), (x, y, z) = one, other
+    return b * z - c * y, c * x - a * z, a * y - b * x

@@ -1,17 +1,83 @@
-"""Read a film that the test process wrote: see ``mutabot.evidence.tape.FilmWriter``."""
+"""A film: the pictures of one test, written by its process and read when that has ended.
+
+Each picture is kept as its difference from the one before, compressed: most of a work cell stands still.
+"""
 
 from __future__ import annotations
 
+import os
+import struct
 import zlib
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
-from mutabot.evidence.tape import HEAD, differing
-from mutabot.frozen import frozen
+#: before each picture of a film: its time in s, height, width, and bytes that follow
+_HEAD = struct.Struct("<dIII")
 
 
-@frozen
+class FilmWriter:
+    """Takes pictures down, until it is closed or its process ends.
+
+    Attributes:
+        count: how many there are.
+    """
+
+    def __init__(self, path: str) -> None:
+        self._file = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_CLOEXEC, 0o600)
+        self._before = b""
+        self.count = 0
+
+    def add(self, time: float, picture: Any) -> None:
+        """Add one. Raises ValueError for what is no picture, TypeError for what holds no numbers.
+
+        Args:
+            time: s.
+            picture: shape (height, width, 3) or (height, width, 4), of bytes; the fourth of each is left out.
+        """
+        height, width, pixels = _pixels_of(picture)
+        data = zlib.compress(_differing(pixels, self._before), 1)
+        left = memoryview(_HEAD.pack(time, height, width, len(data)) + data)
+        while left:
+            left = left[os.write(self._file, left) :]
+        self._before = pixels
+        self.count += 1
+
+    def close(self) -> None:
+        """No more come."""
+        os.close(self._file)
+
+
+def _pixels_of(picture: Any) -> tuple[int, int, bytes]:
+    """Height, width and the pixels of a picture; raises as ``FilmWriter.add``."""
+    view = memoryview(picture)
+    if view.ndim != 3 or view.shape is None or view.shape[2] not in (3, 4) or view.format != "B":
+        raise ValueError(
+            f"a picture has the shape (height, width, 3) and numbers of the type uint8, not {view.shape} "
+            f"of the type {view.format!r}"
+        )
+    height, width, depth = view.shape
+    if not height or not width:
+        raise ValueError(f"a picture of {width} by {height} pixels")
+    data = view.tobytes()
+    if depth == 3:
+        return height, width, data
+    pixels = bytearray(height * width * 3)
+    for colour in range(3):
+        pixels[colour::3] = data[colour::4]
+    return height, width, bytes(pixels)
+
+
+def _differing(pixels: bytes, before: bytes) -> bytes:
+    """What differs from a picture of the same size, bit by bit; applied twice it gives the picture back."""
+    if len(pixels) != len(before):
+        return pixels
+    both = int.from_bytes(pixels, "little") ^ int.from_bytes(before, "little")
+    return both.to_bytes(len(pixels), "little")
+
+
+@dataclass(frozen=True, slots=True)
 class Picture:
     """One picture.
 
@@ -46,7 +112,7 @@ class Film:
         """All of them, one after the other."""
         before = b""
         for (at, height, width, size), file in self._heads():
-            before = differing(zlib.decompress(file.read(size)), before)
+            before = _differing(zlib.decompress(file.read(size)), before)
             yield Picture(at, height, width, before)
 
     def _heads(self) -> Iterator[tuple[tuple[float, int, int, int], BinaryIO]]:
@@ -55,8 +121,8 @@ class Film:
             return
         length = self._path.stat().st_size
         with self._path.open("rb") as file:
-            while len(head := file.read(HEAD.size)) == HEAD.size:
-                time, height, width, size = HEAD.unpack(head)
+            while len(head := file.read(_HEAD.size)) == _HEAD.size:
+                time, height, width, size = _HEAD.unpack(head)
                 after = file.tell() + size
                 if after > length:
                     return

@@ -12,7 +12,7 @@ from typing import Any
 
 import av
 
-from mutabot.errors import UsageError
+from mutabot.api.reports import UsageError
 from mutabot_motion.pictures.film import Film
 from mutabot_motion.shown import Shown
 from mutabot_motion.sights import written_whole
@@ -51,7 +51,7 @@ def _drawn(shown: Shown, why: str) -> tuple[Shots, Shots]:
     original = shown.original
     # a mutant in which nothing that was recorded differs has no recording of its own
     mutant = shown.mutant if shown.mutant is not None or shown.story else original
-    if original is None or mutant is None or not (original.tracks and mutant.tracks):
+    if original is None or mutant is None or not (original.recording.tracks and mutant.recording.tracks):
         raise UsageError(
             f"there is nothing to make a video of: {why}; and no simulator tells where things are "
             "(mutabot.evidence.Feed, see docs/motion.md)"

@@ -58,9 +58,7 @@ def test_a_mutant_that_changes_what_the_program_returns_can_be_told_apart(tmp_pa
         [negated[key] for key in negated if f":{name}:" in key] for name in ("run", "check")
     )
     assert (read.indistinguishable, read.distance) == (False, 0.0)
-    assert read.divergence == (
-        "run returned ['seen'][0] -0.25 instead of 0.25 (off by 0.5)",
-    )
+    assert read.divergence == ("run returned ['seen'][0] -0.25 instead of 0.25 (off by 0.5)",)
     assert checked.indistinguishable is False
     assert checked.divergence == ("check raised mission:Lost: at -0.25 only with the mutant",)
 

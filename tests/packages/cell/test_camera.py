@@ -17,7 +17,7 @@ CODE = """
 import sys
 from mutabot_cell import Cell
 from mutabot.evidence import tape
-from mutabot.evidence.tape import FilmWriter
+from mutabot_motion.pictures.film import FilmWriter
 
 cell = Cell(1)
 before = cell.simulation.model.vis.quality.shadowsize, cell.simulation.model.vis.quality.offsamples

@@ -5,6 +5,7 @@ from __future__ import annotations
 from array import array
 from typing import Any
 
+from mutabot.evidence.paths import RecordedPaths
 from mutabot.evidence.recording import Block, RecordedCall, RecordedMoment, Recording, Track, TrackKind
 from mutabot_motion.shown import Shown
 
@@ -48,8 +49,8 @@ def shown(**changes: Any) -> Shown:
         "place": "mission.py:3",
         "test": PLACE,
         "round": 1,
-        "original": recording(),
-        "mutant": recording(lets_go=True),
+        "original": RecordedPaths(recording()),
+        "mutant": RecordedPaths(recording(lets_go=True)),
         "story": "a box slipped from the fingers at 1.1 s",
         "apart": 1.1,
     }

@@ -11,8 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mutabot.evidence import Feed, tape
-from mutabot.evidence.tape import FilmWriter
-from mutabot_motion.pictures.film import Film
+from mutabot_motion.pictures.film import Film, FilmWriter
 
 
 def picture(pixels: bytes, height: int, width: int, depth: int = 3) -> memoryview:

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from mutabot.evidence.paths import RecordedPaths
 from mutabot_motion.sights import sights_of
 from packages.motion.sample import STEPS, recording, shown
 
@@ -73,7 +74,7 @@ def test_without_a_mutants_recording_the_original_is_there_alone(tmp_path: Path)
 
 
 def test_times_of_the_wall_clock_are_called_so(tmp_path: Path) -> None:
-    rrd.write(tmp_path / "a.rrd", shown(original=recording(is_simulated=False), mutant=None))
+    rrd.write(tmp_path / "a.rrd", shown(original=RecordedPaths(recording(is_simulated=False)), mutant=None))
     assert {name for one in chunks(tmp_path / "a.rrd") for name in one.timeline_names} == {"wall clock"}
 
 

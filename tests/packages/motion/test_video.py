@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from mutabot.errors import UsageError
-from mutabot.evidence.tape import FilmWriter
-from mutabot_motion.pictures.film import Film
+from mutabot.evidence.paths import RecordedPaths
+from mutabot_motion.pictures.film import Film, FilmWriter
 from packages.motion.sample import recording, shown
 
 av = pytest.importorskip("av")
@@ -95,7 +95,7 @@ def test_without_pictures_the_paths_are_drawn_and_why_is_said(tmp_path: Path) ->
 
 
 @pytest.mark.parametrize(
-    "lacking", [{"mutant": None}, {"original": None}, {"original": recording(tracks={})}]
+    "lacking", [{"mutant": None}, {"original": None}, {"original": RecordedPaths(recording(tracks={}))}]
 )
 def test_with_nothing_to_show_no_file_is_left(lacking: dict[str, Any], tmp_path: Path) -> None:
     none = Film(tmp_path / "none")
@@ -114,7 +114,7 @@ def test_a_mutant_in_which_nothing_differs_is_drawn_as_the_original(tmp_path: Pa
 
 def test_a_video_that_is_interrupted_leaves_nothing_and_an_earlier_one_as_it_was(tmp_path: Path) -> None:
     file = tmp_path / "a.mp4"
-    write_video(file, Frames(shown(), (Drawn(recording()), Drawn(recording()))))
+    write_video(file, Frames(shown(), (Drawn(RecordedPaths(recording())), Drawn(RecordedPaths(recording())))))
     before = file.read_bytes()
 
     class Interrupted:
@@ -127,16 +127,16 @@ def test_a_video_that_is_interrupted_leaves_nothing_and_an_earlier_one_as_it_was
             self.calls += 1
             if self.calls > 5:
                 raise KeyboardInterrupt
-            return Drawn(recording()).at(time)
+            return Drawn(RecordedPaths(recording())).at(time)
 
     with pytest.raises(KeyboardInterrupt):
-        write_video(file, Frames(shown(), (Interrupted(), Drawn(recording()))))
+        write_video(file, Frames(shown(), (Interrupted(), Drawn(RecordedPaths(recording())))))
     assert file.read_bytes() == before
     assert [one.name for one in tmp_path.iterdir()] == ["a.mp4"]
 
 
 def test_a_drawing_shows_more_as_time_goes_on_and_both_sides_in_one_scale() -> None:
-    original, mutant = recording(), recording(lets_go=True)
+    original, mutant = RecordedPaths(recording()), RecordedPaths(recording(lets_go=True))
     drawn = Drawn(original, [mutant])
     early, late = drawn.at(0.2), drawn.at(2.0)
     ground = {early.getpixel((1, 1)), late.getpixel((1, 1))}
@@ -170,7 +170,7 @@ def test_a_file_that_cannot_be_a_video_is_refused_beforehand(name: str, told: st
     ("end", "speed"), [(0.0, 0.125), (0.9, 0.25), (3.0, 1.0), (120.0, 1.0), (600.0, 8.0)]
 )
 def test_what_is_short_is_shown_slowly_and_what_is_long_quickly(end: float, speed: float) -> None:
-    drawn = Drawn(recording())
+    drawn = Drawn(RecordedPaths(recording()))
     drawn.end = end
     assert Frames(shown(), (drawn, drawn)).speed == speed
 
@@ -179,6 +179,6 @@ def test_texts_of_any_length_and_script_find_room(tmp_path: Path) -> None:
     long = "é→−中" * 200
     frames = Frames(
         shown(what=long, test=long, story=long + " " + long, place=long),
-        (Drawn(recording()), Drawn(recording())),
+        (Drawn(RecordedPaths(recording())), Drawn(RecordedPaths(recording()))),
     )
     assert [frames.at(time).size for time in islice((0.0, 1.2, 2.0), 3)] == [frames.size] * 3

@@ -15,7 +15,8 @@ from typing import Any
 import pytest
 
 from campaign.project import CONFIGURATION, Quiet, outcomes, request_for, write_project
-from mutabot.campaign.run import replay_one, run_campaign
+from mutabot.campaign.again import replay_one
+from mutabot.campaign.run import run_campaign
 from mutabot.cli.request import request_again
 from mutabot.config.configuration import load_configuration
 from mutabot.journal.reader import JournalReader

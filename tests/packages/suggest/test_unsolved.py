@@ -40,7 +40,7 @@ def test_a_difference_within_the_spread_kills_nothing_and_is_told(
 ) -> None:
     found = measured([0.1, 0.105, 0.102, 0.104, 0.101, 0.103], mutant, tolerance)
     assert candidates(PROJECT, found) == ([], {})
-    assert why_unsolved(MUTANT, found, [], _Unproven(), {}).reason.startswith(said)  # type: ignore[arg-type]
+    assert why_unsolved(MUTANT.id, found, [], _Unproven(), {}).reason.startswith(said)  # type: ignore[arg-type]
 
 
 def test_a_difference_beyond_the_band_is_a_check() -> None:

@@ -26,13 +26,13 @@ from typing import TYPE_CHECKING, Any
 from mutabot.errors import in_words, nearest_name, text_of
 from mutabot.evidence import tape as tapes
 from mutabot.evidence.recording import RecordedCall, to_text
-from mutabot.evidence.tape import FilmWriter, Tape
 from mutabot.model.clocks import monotonic, thread_time
 from mutabot.model.data import data_of, fields_of, is_of_numpy, is_textual, items_of
 from mutabot.model.path import class_name
 from mutabot.runtime.targets.target import resolve
 
 if TYPE_CHECKING:
+    from mutabot.evidence.tape import PictureWriter, Tape
     from mutabot.model import Probe
     from mutabot.model.job import Pictures
     from mutabot.runtime.observation.clock import Instances
@@ -384,12 +384,14 @@ class TestRecording:
     ) -> None:
         self._clock, self._aside, self._is_simulated = clock, aside, is_simulated
         self._tape: Tape | None = None
-        self._film: FilmWriter | None = None
+        self._film: PictureWriter | None = None
         self._filmed: str | None = None
 
     def film(self, pictures: Pictures) -> None:
         """Film a test that is still to come."""
-        self._film, self._filmed = FilmWriter(pictures.file), pictures.test
+        from pkgutil import resolve_name  # noqa: PLC0415  # no campaign films
+
+        self._film, self._filmed = resolve_name(pictures.writer)(pictures.file), pictures.test
 
     def start(self, test: str, *, is_wanted: bool) -> None:
         """A test begins."""

@@ -1,0 +1,122 @@
+"""Run parts of a campaign again, beside its journal: its original, and some of its mutants."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Self
+
+from mutabot.campaign import beginning
+from mutabot.campaign.baseline.taking import take_baseline
+from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.engines.controls import run_controls
+from mutabot.campaign.engines.replay import replay
+from mutabot.campaign.faults.providers import texts_of
+from mutabot.campaign.plan import make_plan
+from mutabot.campaign.run import run_campaign
+from mutabot.errors import SelectionError
+from mutabot.execution.task import Result, Task
+from mutabot.faults import PlannedMutant
+from mutabot.journal.records import Replayed
+from mutabot.model.activation import Activation
+from mutabot.model.deadline import Limit
+from mutabot.model.mutant import Mutant, Place
+from mutabot.model.outcome import in_words
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from mutabot.campaign.request import Progress, Request
+    from mutabot.journal.reader import JournalReader
+
+#: seconds that the original gets until its first test begins, where nothing is known of it
+_STARTUP = 300.0
+
+
+@dataclass(frozen=True)
+class CampaignRun(Campaign):
+    """A campaign that is run in parts: its baseline is taken, what else is run its user says.
+
+    ``task`` makes tasks of its mutants, and ``executor`` runs them.
+
+    Attributes, beside those of ``Campaign``:
+        originals: what became of the suite on the original, once per round; ``task.key`` is the round (from
+            0) and a 0.
+        planned: the mutants of the program as it is now, by their ids.
+    """
+
+    originals: tuple[Result, ...] = ()
+    planned: Mapping[str, Mutant] = field(default_factory=dict)
+
+    @classmethod
+    @contextmanager
+    def open(cls, request: Request, progress: Progress) -> Iterator[Self]:
+        """Take the baseline, each round once. Leaving the context ends all processes.
+
+        Raises ConfigurationError for a vocabulary that does not fit the program, NothingToDoError without
+        tests, BaselineError when tests fail.
+        """
+        with beginning.open_executor(request, progress) as opened:
+            texts = texts_of(request.project, progress.note)
+            baseline, results = take_baseline(request, opened, progress, texts=texts, repetitions=1)
+            planned = {one.id: one for one in make_plan(baseline, request.project).mutants}
+            yield cls(request, baseline, opened, progress, originals=tuple(results), planned=planned)
+
+    @staticmethod
+    def to_end(request: Request, progress: Progress) -> Path:
+        """Run a whole campaign and return the path of its journal. Raises what ``run_campaign`` raises."""
+        return run_campaign(request, progress)
+
+    @staticmethod
+    @contextmanager
+    def of_original(
+        request: Request, rounds: Iterable[int], progress: Progress
+    ) -> Iterator[Iterator[Result]]:
+        """Run the suite on the original in these rounds (from 0), whatever comes of it.
+
+        Gives the results as they come; ``task.key`` is the round. Leaving the context ends all processes.
+        """
+        with beginning.open_executor(request, progress) as opened:
+            startup, may_share = Limit(_STARTUP), request.forks
+            yield opened.run(
+                Task(round, request.job(round), startup=startup, may_share=may_share) for round in rounds
+            )
+
+    def current(self, mutant: Mutant) -> Mutant:
+        """Return a mutant as it is in the program now: edits elsewhere move it.
+
+        Raises SelectionError if the program no longer has it.
+        """
+        place = Place.of(mutant)
+        if place in self.baseline.hits:  # which it also is if nobody asks for its family or magnitude now
+            self.baseline.faults.by_id[mutant.id] = PlannedMutant(mutant, active=Activation.of_call(place))
+            return mutant
+        if mutant.id not in self.planned:
+            raise SelectionError(f"the program has changed: no test reaches {mutant.id} any more")
+        return replace(self.planned[mutant.id], number=mutant.number)
+
+    def prove(self, mutants: Iterable[Mutant]) -> None:
+        """Run controls for the way these mutants are run in. Raises ControlError if one ends wrongly."""
+        for _ in run_controls(self, list(mutants)):
+            pass
+
+
+def replay_one(
+    request: Request, journal: JournalReader, mutant: Mutant, rounds: Iterable[int], progress: Progress
+) -> list[Replayed]:
+    """Run one mutant again in these rounds, beside what the journal says of it.
+
+    Raises what ``CampaignRun.open`` and ``CampaignRun.current`` raise.
+    """
+    rounds = sorted(set(rounds))
+    first = {(one.mutant, one.round): one for one in journal.outcomes()}
+    with CampaignRun.open(replace(request, rounds=rounds[-1] + 1), progress) as campaign:
+        now = campaign.current(mutant)
+        campaign.prove([now])
+        progress.stage("replay", len(rounds))
+        second = {}
+        for outcome in replay(campaign, [(now, round) for round in rounds]):
+            second[outcome.round] = outcome
+            progress.advance(in_words(outcome))
+    return [Replayed(round, first.get((now.id, round)), second[round]) for round in rounds]
