@@ -106,6 +106,8 @@ class _Function:
         return made - others
 
     def _is_made(self, value: ast.expr) -> bool:
+        while isinstance(value, ast.Attribute | ast.Subscript):  # a part of what is made
+            value = value.value
         if isinstance(value, ast.Call):
             found = self._found(value.func)
             module = (getattr(found, "__module__", "") or "").partition(".")[0]
@@ -118,11 +120,13 @@ class _Function:
             return True
         if isinstance(function, ast.Name) and root == "cls":
             return True  # an object is made
+        if isinstance(function, ast.Attribute) and function.attr in _METHODS and function.attr != "get":
+            return True
         if isinstance(function, ast.Attribute) and root in ("self", "cls") and self._owner is not None:
             found = inspect.getattr_static(self._owner, function.attr, None)
             return isinstance(function.value, ast.Name) and self._may_be_called(found, self._owner)
         if root is None or (root not in self._names and not hasattr(_builtins(), root)):
-            return isinstance(function, ast.Attribute) and function.attr in _METHODS
+            return isinstance(function, ast.Attribute) and function.attr == "get"
         return self._may_be_called(self._found(function), None)
 
     def _may_be_called(self, found: Any, owner: type | None) -> bool:

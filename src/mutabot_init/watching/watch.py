@@ -40,7 +40,9 @@ _NO_ROBOTS = frozenset(
     {
         "_pytest", "pytest", "pluggy", "mutabot", "numpy", "scipy", "pandas", "matplotlib", "hypothesis",
         "yaml", "loguru", "attr", "attrs", "pydantic", "typing_extensions", "torch", "jax", "sympy", "rich",
-        "networkx", "click", "typer", "PIL", "math3d", "transforms3d",
+        "networkx", "click", "typer", "PIL", "casadi", "ikpy", "kinpy", "math3d", "modern_robotics",
+        "pinocchio", "pyquaternion", "pytransform3d", "quaternion", "ruckig", "spatialmath",
+        "tf_transformations", "toppra", "transformations", "transforms3d", "trimesh",
     }
 )  # fmt: skip
 #: names of arguments that tell which command a call is

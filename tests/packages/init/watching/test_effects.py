@@ -8,6 +8,7 @@ import socket
 import time
 from typing import Any
 
+import numpy as np
 import pytest
 
 from mutabot_init.watching.effects import only_computes
@@ -70,6 +71,18 @@ def fill(target: list[float], value: float) -> list[float]:
     return target
 
 
+def table(values: list[float]) -> Any:
+    found = np.zeros((len(values), 2))
+    for index, value in enumerate(values):
+        found[index] = value
+    found = np.array(found).T
+    return found.copy()
+
+
+def fetched(client: Any, name: str) -> Any:
+    return client.session.request(name)
+
+
 def filled(value: float) -> list[float]:
     target = [0.0]
     target[0] = value
@@ -93,6 +106,7 @@ def remove(name: str) -> Any:
     ("function", "expected"),
     [
         (Robot.__dict__["at"], True), (Robot.forward, True), (Robot.where, True), (filled, True),
+        (table, True), (fetched, False),
         (factorial, True), (Robot.ask, False), (Robot.move, False), (Robot.alias, False),
         (Robot.each, False), (Robot.turn, False), (Robot.wait, False), (Robot.stands_in, False),
         (Robot.agrees, False), (Robot.later, False), (fill, False), (shown, False), (remove, False),
