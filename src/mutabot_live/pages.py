@@ -20,6 +20,7 @@ from mutabot.report.html.folder import Recorded, campaign_data, mutant_page, scr
 from mutabot.report.texts import Cleaner, portable
 from mutabot.results.results import MutantResult, Results
 from mutabot.results.stored import StoredEvidence
+from mutabot.results.suggested import kept_suggestions
 
 #: seconds between two looks into the journal, at least; and how many times as long as one takes
 _LEAST, _TIMES = 1.0, 20.0
@@ -138,7 +139,8 @@ class Pages:
         result = next(found, None)
         if result is None:
             return None
-        page = script(f"mutant {number}", {**mutant_page(result), "suggestion": None})
+        suggestions = kept_suggestions(self._journal, campaign.meta) if campaign is not None else {}
+        page = script(f"mutant {number}", mutant_page(result, suggestions.get(result.mutant.id)))
         with closing(StoredEvidence(self._journal)) as evidence:
             # originals that were asked for before keep their numbers: browsers know them by these
             known = self._recorded.originals if self._recorded is not None else {}

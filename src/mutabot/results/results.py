@@ -53,6 +53,11 @@ class MutantResult:
     outdated: bool = False
     acceptance: Acceptance | None = None
 
+    def __repr__(self) -> str:
+        state = "accepted" if self.is_accepted else self.status or "not run"
+        mutant = self.mutant
+        return f"<mutant {mutant.number}, {state}: {mutant.site.span.place} {mutant.description}>"
+
     @property
     def outcomes(self) -> tuple[Outcome, ...]:
         """The outcomes there are."""

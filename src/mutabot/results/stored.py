@@ -7,12 +7,15 @@ are stable: columns may be added, at the end.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
+from html import escape
 from pathlib import Path
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
+from mutabot.errors import plural
 from mutabot.evidence.recording import Recording, from_bytes
 from mutabot.frozen import frozen
 from mutabot.journal.files import find_journal
@@ -24,8 +27,8 @@ from mutabot.results.thresholds import Thresholds, thresholds_of
 if TYPE_CHECKING:
     from mutabot.results.score import Group
 
-#: recordings that are held
-_HELD = 32
+#: recordings that are held; survivors that a notebook shows by itself
+_HELD, _SHOWN = 32, 10
 
 
 class StoredEvidence:
@@ -111,9 +114,58 @@ class StoredCampaign(Results):
         """The ladders of graded mutants, the loosest first."""
         return thresholds_of(self)
 
+    def __repr__(self) -> str:
+        counts = ", ".join(f"{count} {name}" for name, count in self._counts.items())
+        size = f"{plural(len(self.mutants), 'mutant')} × {plural(self.rounds, 'round')}"
+        return f"<campaign, {self.state}: {size}: {counts}>"
+
+    def _repr_html_(self) -> str:
+        """Scores and the first survivors, for notebooks."""
+        scores = [
+            (f"{one.family} · {one.role}", str(one.mutants), _percent(one.scores.mean),
+             _percent(one.scores.mean_check), str(one.scores.accepted))
+            for one in self.groups
+        ]  # fmt: skip
+        first = self.survivors[:_SHOWN]
+        survivors = [
+            (str(one.mutant.number), one.mutant.site.span.place, one.mutant.operator,
+             one.mutant.description, one.why)
+            for one in first
+        ]  # fmt: skip
+        left = len(self.survivors) - len(first)
+        return "".join(
+            [
+                f"<p>{escape(repr(self)[1:-1])}</p>",
+                _table(("family · role", "mutants", "score", "check score", "accepted"), scores),
+                _table(("no.", "place", "operator", "survivor", "effect"), survivors),
+                f"<p>and {left} more survivors</p>" if left else "",
+            ]
+        )
+
+    @property
+    def _counts(self) -> dict[str, int]:
+        """Mutants by what they are counted as."""
+        states = ("accepted" if one.is_accepted else one.status or "not run" for one in self.mutants)
+        return dict(Counter(map(str, states)))
+
     def rows(self) -> list[dict[str, Any]]:
         """One row per outcome, by column; docs/reports.md has them. ``pandas.DataFrame`` takes this."""
         return list(rows(self))
+
+
+def _percent(share: float | None) -> str:
+    return "–" if share is None else f"{100 * share:.1f} %"
+
+
+def _table(head: Sequence[str], found: Sequence[Sequence[str]]) -> str:
+    """An HTML table; nothing without rows."""
+    if not found:
+        return ""
+    lines = (
+        "".join(f"<{kind}>{escape(cell)}</{kind}>" for cell in row)
+        for kind, row in (("th", head), *(("td", row) for row in found))
+    )
+    return f"<table>{''.join(f'<tr>{line}</tr>' for line in lines)}</table>"
 
 
 def open(path: str | Path = ".") -> StoredCampaign:

@@ -11,6 +11,8 @@ from typing import Any
 import pytest
 
 from mutabot.journal.journal import Journal
+from mutabot.journal.records import BaselineTest, ControlEnd
+from mutabot.model.events import TestEnd
 from mutabot_live.pages import Pages
 from mutabot_live.server import LiveFeed, Server
 from results import samples
@@ -129,5 +131,32 @@ def test_it_fills_and_says_how_it_ended(page: Any, tmp_path: Path) -> None:
         assert given == ["stop"]
     finally:
         page.close()  # a server that ends resets what the browser still listens to
+        feed.close()
+        server.close()
+
+
+def test_before_the_first_verdict_nothing_is_said_of_tests_readings_and_controls(
+    page: Any, tmp_path: Path
+) -> None:
+    path = tmp_path / "journal.sqlite"
+    feed, pages = LiveFeed(), Pages(path, "cell", lambda: 1)
+    server = Server(pages, feed, {})
+    try:
+        with Journal.create(path, meta=samples.meta()) as journal:
+            journal.add_tests([BaselineTest(0, 0, TestEnd(samples.TEST, "passed", wall=0.5))])
+            journal.set_plan(samples.MUTANTS, samples.LEFT_OUT, sources={"mission.py": samples.PROGRAM})
+            journal.add_control(ControlEnd("tests/test_mission.py", "identity", True, "as it must"))
+            feed.put(state(1))
+            page.goto(server.address)
+            _wait_for_version(page, 1)
+            overview = page.inner_text("main")
+            page.get_by_role("link", name="Tests", exact=True).click()
+            tests = page.inner_text("main")
+        assert "Nothing is judged yet" in overview
+        assert "1 control run so far, none of them failed." in overview
+        for text in ("kill nothing", "kills nothing:", "Every test killed", "Both control mutants"):
+            assert text not in overview
+        assert "0 of 1 test killed a mutant so far" in tests
+    finally:
         feed.close()
         server.close()

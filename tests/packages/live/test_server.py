@@ -13,6 +13,7 @@ import pytest
 
 import mutabot
 from mutabot.errors import UsageError
+from mutabot.results.suggested import Suggestion, keep_suggestions
 from mutabot_live.pages import Pages
 from mutabot_live.server import LiveFeed, Server
 from packages.live.visits import ask, command, listening, origin
@@ -57,6 +58,14 @@ def test_it_is_the_report_that_is_written_to_a_folder(served: Served) -> None:
         assert answer.status == 200, name
         served_alone = r",\"version\":1(?=}'\);\n$)"
         assert re.sub(served_alone, "", answer.text) == (folder / name).read_text("utf-8"), name
+
+
+def test_a_check_that_was_suggested_is_on_the_page_of_its_survivor(served: Served) -> None:
+    journal = served.folder / "journal.sqlite"
+    found = mutabot.open(journal)
+    keep_suggestions(journal, found.meta, {found.mutant("2").mutant.id: Suggestion("t", "assert box.open")})
+    assert "assert box.open" in ask(served.address, "data/mutants/2.js").text
+    assert "assert box.open" not in ask(served.address, "data/mutants/3.js").text
 
 
 def test_originals_are_there_once_a_mutant_that_needs_them_was_asked_for(served: Served) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -88,3 +89,24 @@ def test_opening_a_campaign_loads_neither_pandas_nor_what_runs_one(project: Path
     loaded = set(done.stdout.split())
     assert "mutabot.results.results" in loaded
     assert not loaded & {"pandas", "pyarrow", "numpy", "libcst", "mutabot.campaign", "mutabot.operators"}
+
+
+def test_a_notebook_shows_scores_and_survivors_and_no_more(tmp_path: Path) -> None:
+    accepted = {"mutants": {samples.NEGATE.id: {"why": "x", "source": "a.toml:1"}}}
+    campaign = mutabot.open(samples.write_journal(tmp_path / "journal.sqlite", accepted=accepted))
+    text = campaign._repr_html_()
+    assert len(text) < 5_000
+    assert "robot · program" in text
+    assert "gripper.command: do nothing" in text
+    assert samples.NEGATE.description not in text
+    counts = "1 killed, 1 survived, 1 timeout, 1 accepted, 1 not covered"
+    assert repr(campaign) == f"<campaign, complete: 5 mutants × 2 rounds: {counts}>"
+    assert repr(campaign.mutant("2")) == "<mutant 2, survived: mission.py:2 gripper.command: do nothing>"
+
+
+def test_texts_of_programs_are_texts_in_a_notebook(tmp_path: Path) -> None:
+    hostile = replace(samples.SKIP, description="<script>alert(1)</script>")
+    mutants = tuple(hostile if one is samples.SKIP else one for one in samples.MUTANTS)
+    text = mutabot.open(samples.write_journal(tmp_path / "j.sqlite", mutants=mutants))._repr_html_()
+    assert "<script>" not in text
+    assert "&lt;script&gt;" in text

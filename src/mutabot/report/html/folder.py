@@ -177,9 +177,7 @@ def _write_data(folder: Path, contents: Contents, limit: int) -> int:
     used += (folder / "sources.js").write_bytes(script("sources", sources))
     for result in campaign.mutants:
         number = result.mutant.number
-        check = contents.suggestions.get(result.mutant.id, Suggestion())
-        shown = data_of.facts(check, "code test notes") if check.code else None
-        page = {**mutant_page(result), "suggestion": shown}
+        page = mutant_page(result, contents.suggestions.get(result.mutant.id))
         file = folder / "mutants" / f"{number}.js"
         used += file.write_bytes(script(f"mutant {number}", page))
     recorded = Recorded(contents.evidence, contents.clean)
@@ -332,11 +330,18 @@ def _differences(numbers: Sequence[int]) -> list[int]:
 _NOTHING: tuple[Any, ...] = (None, (), [], {}, "")
 
 
-def mutant_page(result: MutantResult) -> dict[str, Any]:
-    """Return all but the recordings: the mutant of the results document, without what is empty."""
+def mutant_page(result: MutantResult, suggestion: Suggestion | None = None) -> dict[str, Any]:
+    """Return all but the recordings: the mutant of the results document, without what is empty.
+
+    Args:
+        suggestion: what was suggested for it; None if nothing was looked for.
+    """
     number, diverged = telling(result) or (0, None)
     place = place_text(result, number, diverged) if diverged is not None and diverged.example else ""
-    return {**told(data_of(result)), "change": result.change, "told": place}
+    check = (
+        data_of.facts(suggestion, "code test notes") if suggestion is not None and suggestion.code else None
+    )
+    return {**told(data_of(result)), "change": result.change, "told": place, "suggestion": check}
 
 
 def told(value: Any) -> Any:

@@ -38,6 +38,7 @@
 
   /** Whether the page is served by the campaign itself: then it says above how far it is. */
   const isUnderWay = (campaign) => Boolean(mutabot.live) && campaign.state === "running";
+  mutabot.isUnderWay = isUnderWay;
 
   function state(campaign) {
     const meta = campaign.meta;
@@ -191,9 +192,11 @@
     const lines = [];
     const wrong = campaign.controls.filter((one) => !one.ok);
     if (campaign.controls.length) {
+      const both = ["identity", "fatal"].every((name) => campaign.controls.some((one) => one.control === name)) && !isUnderWay(campaign);
       lines.push(wrong.length
         ? h("li", { class: "bad" }, `${count(wrong.length, "control")} failed: `, wrong.map((one) => `${one.control} for ${one.test_file}, ${one.detail}`).join("; "))
-        : h("li", null, "Both control mutants behaved correctly: the no-op survived, the crashing one was killed."));
+        : h("li", null, both ? "Both control mutants behaved correctly: the no-op survived, the crashing one was killed."
+          : `${count(campaign.controls.length, "control run")} so far, none of them failed.`));
     }
     if (campaign.flaky.length) lines.push(h("li", { class: "bad" }, `${count(campaign.flaky.length, "unreliable test")} excluded:`, h("ul", null, campaign.flaky.map((one) => h("li", null, one)))));
     if (campaign.confirmed) lines.push(h("li", null, `${campaign.confirmed}.`));

@@ -11,7 +11,8 @@
     const rows = summed(campaign);
     const none = rows.filter((one) => !one.kills);
     body.append(
-      h("p", { class: "lead" }, none.length
+      h("p", { class: "lead" }, mutabot.isUnderWay(campaign) ? `${rows.length - none.length} of ${count(rows.length, "test")} killed a mutant so far; the others may still do so.`
+        : none.length
         ? `${none.length} of ${count(rows.length, "test")} ${none.length === 1 ? "kills" : "kill"} nothing.`
         : rows.length === 1 ? "The only test kills mutants." : `Each of the ${rows.length} tests kills mutants.`),
       h("p", { class: "hint" }, "A run stops at the first test that kills the mutant: a test that kills nothing may simply have run after another test had already killed it. ",
