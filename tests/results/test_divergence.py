@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
 from mutabot.model import By, Compared, Kind, Outcome, Path, Quantity, Verdict
+from mutabot.model.outcome import Apart, Diverged
 from mutabot.results.divergence import change_text, explain, quantity_of
 from mutabot.results.results import MutantResult
 from tests.results.samples import BACK, NEGATE, REVERSE, SKIP, VOCABULARY, mutant
@@ -105,3 +107,23 @@ def test_a_change_in_the_last_digits_is_printed_with_these() -> None:
     assert explain(NEGATE, [outcome]) == (
         "had -0.32741042 instead of -0.32741041; not compared with the original: look"
     )
+
+
+def test_the_change_is_that_of_the_test_whose_story_is_told() -> None:
+    def in_test(name: str, value: float, **details: Any) -> Diverged:
+        return Diverged(name, 1.0, "", "box ended 0.3 m off", example=(0.5, value), **details)
+
+    lost = in_test("lost", 0.7, scatters="box by 0.5 m")
+    one = replace(FAR, example=(0.5, 0.9), diverged=(lost, in_test("told", 0.6)))
+    assert change_text(NEGATE, one) == "had 0.6 instead of 0.5"
+    assert MutantResult(NEGATE, (one,), None, "").change == "had 0.6 instead of 0.5"
+    assert "had 0.6 instead of 0.5" in explain(NEGATE, [one])
+    assert change_text(NEGATE, replace(one, diverged=())) == "had 0.9 instead of 0.5"
+
+
+def test_a_survivor_is_told_in_the_round_that_differs_in_a_stable_test() -> None:
+    apart = (Apart("box", "m", 1.0, 9.0, 1.0, 9.0, 9.0, 0.001),)
+    lost = Diverged("lost", 1.0, "", "box ended 9 m off", apart, scatters="box by 0.5 m")
+    near = Diverged("near", 1.0, "", "box ended 2 mm off", (replace(apart[0], final=0.002, aside=0.0),))
+    rounds = (replace(FAR, round=0, diverged=(lost,)), replace(FAR, round=1, diverged=(near,)))
+    assert explain(NEGATE, rounds).endswith("box ended 2 mm off")

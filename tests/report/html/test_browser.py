@@ -253,3 +253,18 @@ def test_a_campaign_that_was_interrupted_says_so_and_what_to_do(
     assert "not complete (interrupted)" in page.locator("main").inner_text()
     assert visit.wrong == []
     page.close()
+
+
+def test_the_timeline_has_a_time_on_each_side_and_one_column_on_a_phone(visit: Visit) -> None:
+    visit.open("#/mutant/2")
+    visit.page.wait_for_selector("canvas.scene")
+    row = visit.page.locator(".events tr.faulty")
+    assert [row.locator(f"td[data-side={side}] .time").count() for side in ("original", "mutant")] == [1, 1]
+    visit.page.set_viewport_size({"width": 400, "height": 900})
+    original, mutant = (
+        row.locator(f"td[data-side={side}]").bounding_box() for side in ("original", "mutant")
+    )
+    assert mutant["x"] == original["x"]
+    assert mutant["y"] > original["y"]
+    assert visit.page.evaluate("document.documentElement.scrollWidth") <= 400
+    assert visit.wrong == []

@@ -132,7 +132,8 @@
     const ends = [usual, mutant].map((each) => (each ? Math.max(each.end || 0, ...each.calls.map((call) => call.ended || 0), 0) : 0));
     const outcome = page.rounds[found.round];
     const diverged = outcome && outcome.diverged.find((each) => each.test === found.test);
-    const begin = diverged && diverged.apart.length ? diverged.apart[0].at : diverged && diverged.at !== null ? diverged.at : mutant.fault;
+    const [farthest] = diverged ? [...diverged.measurements, ...diverged.apart].filter((each) => typeof each.at === "number").sort((each, other) => other.deviation - each.deviation) : [];
+    const begin = farthest ? farthest.at : diverged && diverged.at !== null ? diverged.at : mutant.fault;
     const clock = new mutabot.recordings.Clock(Math.max(...ends), begin ?? Math.max(...ends));
     const named = (each) => each && [...each.tracks.values()].some((track) => track.times.length);
     holder.replaceChildren();

@@ -45,8 +45,12 @@
 
   const differs = ([one, other]) => !one || !other || (one.call ? !same(one.call, other.call) : Math.abs((one.time ?? 0) - (other.time ?? 0)) > LATE);
   const name = (call) => call.operation.replace(/^.*:/, "");
-  const amounts = (pairs, fault) => pairs.filter(([what, value]) => value !== 0 || pairs.length === 1 || (fault && what === fault.name))
-    .map(([what, value]) => h("span", { class: "amount" }, `${what.replace(/^\./, "")} `, h("b", null, text(value))));
+  /** Values in words; those that read otherwise on the other side are marked. */
+  const amounts = (pairs, fault, others) => pairs.filter(([what, value]) => value !== 0 || pairs.length === 1 || (fault && what === fault.name))
+    .map(([what, value]) => {
+      const other = others && others.find(([name]) => name === what);
+      return h("span", { class: "amount" }, `${what.replace(/^\./, "")} `, h("b", { class: other && text(other[1]) !== text(value) ? "other" : null }, text(value)));
+    });
   /** The values as the fault changed them. */
   const changed = (pairs, fault) => pairs.map(([what, value]) => [what, fault && what === fault.name ? fault.value : value]);
 
@@ -60,11 +64,11 @@
   function cell(one, other, fault, isMutant, clock) {
     const side = isMutant ? "mutant" : "original";
     if (!one) return h("td", { class: "gone", "data-side": side }, h("span", { class: "unseen" }, "nothing"), "—");
+    const beside = other && other.call;
     const inside = one.call
-      ? [h("span", { class: `event ${one.call.role}` }, name(one.call)), " ", isMutant && fault && fault.isSkipped ? h("strong", null, "not sent") : amounts(isMutant ? changed(one.call.written, fault) : one.call.written, fault), one.call.read.length ? [" → ", amounts(isMutant ? changed(one.call.read, fault) : one.call.read, fault)] : null, h("small", null, one.call.place)]
+      ? [h("span", { class: `event ${one.call.role}` }, name(one.call)), " ", isMutant && fault && fault.isSkipped ? h("strong", null, "not sent") : amounts(isMutant ? changed(one.call.written, fault) : one.call.written, fault, beside && beside.written), one.call.read.length ? [" → ", amounts(isMutant ? changed(one.call.read, fault) : one.call.read, fault, beside && beside.read)] : null, h("small", null, one.call.place)]
       : [h("span", { class: "event contact" }, one.what === "touch" ? "touch" : one.what === "part" ? "part" : "note"), " ", one.text];
-    const apart = one.call && other && other.call && !same(one.call, other.call);
-    return h("td", { class: apart ? "apart" : null, "data-side": side }, moment(one, other, clock, isMutant), inside,
+    return h("td", { "data-side": side }, moment(one, other, clock, isMutant), inside,
       fault && isMutant ? h("p", { class: "acts" }, h("span", { class: "flag" }, "fault"), ` ${fault.text}`) : null);
   }
 
