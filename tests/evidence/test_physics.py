@@ -6,9 +6,12 @@ from math import sqrt
 
 import pytest
 
+from mutabot.evidence import tape as tapes
+from mutabot.evidence.feed import Feed
 from mutabot.evidence.paths import RecordedPaths
 from mutabot.evidence.physics import COLLISION, DRAG, DURATION, IMPACT, RELEASE, SLIP, SPEED, Fact, facts_of
-from tests.evidence.worlds import SHELF, TABLE, Place, line, recorded
+from mutabot.evidence.recording import Recording
+from tests.evidence.worlds import SHELF, TABLE, Place, apart, line, recorded
 
 #: half of a box's edge, and the height of the table's top, m
 HALF, TOP = 0.025, 0.0
@@ -106,3 +109,31 @@ def test_a_second_world_in_a_test_is_no_leap() -> None:
     recording = recorded([SHELF, SHELF, ABOVE, ABOVE])
     recording.times[2:] = type(recording.times)("d", [0.101, 0.201])
     assert facts_of(RecordedPaths(recording))[SPEED, "tool"].value == 0.0
+
+
+def with_margin(*margins: float) -> Recording:
+    """A tool that stands still, beside a limit."""
+    tape = tapes.begin()
+    now = [0]
+    feed = Feed(lambda: now[0] / 10)
+    feed.point("tool", lambda: (0.0, 0.0, 1.0))
+    feed.value("joint limit margin", lambda: margins[now[0]], unit="deg")
+    for now[0] in range(len(margins)):
+        feed.tick()
+    tapes.stop()
+    tape.recording.is_simulated = True
+    return tape.recording
+
+
+@pytest.mark.parametrize(
+    ("margins", "story"),
+    [
+        ((40.0, 2.1, 40.0), "joint limit margin fell to 2.1 deg (original: 38 deg)"),
+        ((40.0, 30.0, 40.0), "the same movements happened at other times"),
+        ((40.0, 39.0, 60.0), "the same movements happened at other times"),
+    ],
+)
+def test_how_near_to_a_limit_is_told_if_it_is_much_nearer(margins: tuple[float, ...], story: str) -> None:
+    found = apart(with_margin(40.0, 38.0, 40.0), with_margin(*margins))
+    assert found is not None
+    assert found.story == story

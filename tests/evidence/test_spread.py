@@ -8,7 +8,7 @@ import pytest
 
 from mutabot.evidence import tape as tapes
 from mutabot.evidence.feed import Feed
-from mutabot.evidence.paths import RecordedPaths
+from mutabot.evidence.paths import RecordedPaths, turned_aside
 from mutabot.evidence.recording import Recording
 from mutabot.evidence.spread import spread_between
 from mutabot.evidence.story import diverged
@@ -137,3 +137,20 @@ def test_things_that_left_their_paths_are_told_together() -> None:
         "box and tool left their paths by up to 0.2 m and 0.2 m but reached the correct end positions"
         in story
     )
+
+
+def test_what_turns_the_same_way_at_other_moments_is_not_turned_aside() -> None:
+    usual = turning(*range(0, 180, 10))
+    found = diverged("test", RecordedPaths(usual), RecordedPaths(turning(*range(5, 175, 10), 170)))
+    assert found is not None
+    (one,) = (one for one in found.apart if one.name == "tool turned")
+    assert one.largest > 4.9
+    assert one.aside == pytest.approx(0.0, abs=0.2)
+
+
+def test_turned_aside_is_the_angle_whatever_the_sign_of_the_quaternions() -> None:
+    usual = RecordedPaths(turning(0, 30, 60)).paths["tool"].rows
+    other = RecordedPaths(turning(45, 100)).paths["tool"].rows
+    flipped = [(*row[:3], *(-part for part in row[3:])) for row in other]
+    assert turned_aside(other, usual) == pytest.approx(40.0, abs=0.2)
+    assert turned_aside(flipped, usual) == pytest.approx(40.0, abs=0.2)

@@ -7,7 +7,7 @@ from dataclasses import field
 from math import acos, degrees, dist, inf
 from typing import NamedTuple
 
-from mutabot.evidence.paths import LENGTH, RecordedPaths, Row, TrackPath, aside
+from mutabot.evidence.paths import LENGTH, RecordedPaths, Row, TrackPath, aside, turned_aside
 from mutabot.evidence.recording import TrackKind
 from mutabot.frozen import frozen
 from mutabot.model.deviation import TOLERANCES, TURNS, difference_of
@@ -17,8 +17,6 @@ from mutabot.model.outcome import Apart
 BodyPair = tuple[str, ...]
 #: the share of a value's own range that counts as the same
 SHARE = 0.01
-#: orientations of a run that are compared with those of another one
-_MOST_TURNED = 150
 #: what the name of an orientation ends with
 TURNED = " turned"
 
@@ -52,11 +50,6 @@ def measures_of(path: TrackPath) -> Iterator[Measure]:
     yield Measure(track.name, "m", LENGTH, lambda one, other: dist(one[:3], other[:3]))
     if track.kind is TrackKind.POSE:
         yield Measure(f"{track.name}{TURNED}", "deg", TOLERANCES["deg"], turned)
-
-
-def _some(rows: Sequence[Row]) -> Sequence[Row]:
-    """Rows at equal distances, as many as are compared with each other in a moment."""
-    return rows[:: len(rows) // _MOST_TURNED + 1]
 
 
 def turned(one: Row, other: Row) -> float:
@@ -161,8 +154,7 @@ def aside_of(measure: Measure, before: TrackPath, after: TrackPath) -> float | N
     None for angles that are values: in which range they are depends on how full turns are counted.
     """
     if measure.name.endswith(TURNED):
-        known = _some(before.rows)
-        return max((min(turned(one, row) for one in known) for row in _some(after.rows)), default=0.0)
+        return turned_aside(after.rows, before.rows)
     if measure.unit in TURNS:
         return None
     if before.track.kind is TrackKind.VALUE:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
-from mutabot.evidence.physics import COLLISION, DRAG, DURATION, IMPACT, RELEASE, SLIP, SPEED, Fact
+from mutabot.evidence.physics import COLLISION, DRAG, DURATION, IMPACT, MARGIN, RELEASE, SLIP, SPEED, Fact
 from mutabot.model.deviation import TOLERANCES
 from mutabot.model.outcome import Measurement
 
@@ -13,10 +13,20 @@ if TYPE_CHECKING:
     from mutabot.evidence.differences import Spread
 
 #: differences from which on each is worth telling: recordings have some ten moments a second
-_LEAST = {RELEASE: 0.01, IMPACT: 0.1, SLIP: 0.005, DRAG: 0.02, SPEED: 0.05, COLLISION: 0.0, DURATION: 0.5}
+_LEAST = {
+    RELEASE: 0.01,
+    IMPACT: 0.1,
+    SLIP: 0.005,
+    DRAG: 0.02,
+    SPEED: 0.05,
+    COLLISION: 0.0,
+    DURATION: 0.5,
+    MARGIN: 1e-6,
+}
 #: share of the original's greatest speed from which on another one is worth telling
 _FASTER = 0.2
-_UNITS = {IMPACT: "m/s", COLLISION: "m/s", SPEED: "m/s", DURATION: "s"}
+#: share of the original's least margin below which another one is worth telling
+_NEARER = 0.5
 
 FactsByName = Mapping[tuple[str, str], Fact]
 
@@ -46,11 +56,13 @@ def _measured(
             continue
         before = usual.value if usual is not None else None
         more, least = fact.value - (before or 0.0), _LEAST[fact.name]
-        if is_cut and (fact.name == DURATION or more < 0.0):
+        if is_cut and (fact.name == DURATION or (more < 0.0 and fact.name != MARGIN)):
             continue
-        unit = _UNITS.get(fact.name, "m")
+        if fact.name == MARGIN and fact.value > _NEARER * (before or 0.0):
+            continue
+        unit = fact.unit
         by_itself = spread.measured.get(key, 0.0)
         least = max(least, _FASTER * (before or 0.0)) if fact.name == SPEED else least
         if abs(more) > max(least, by_itself) or fact.name == COLLISION:
-            tolerance = TOLERANCES[unit]
+            tolerance = TOLERANCES.get(unit, least)
             yield Measurement(fact.name, fact.thing, unit, fact.value, before, fact.at, tolerance, by_itself)

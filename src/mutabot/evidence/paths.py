@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from math import inf, isnan, sqrt
+from math import asin, degrees, dist, inf, isnan, sqrt
 from typing import Self
 
 from mutabot.evidence.recording import Recording, Track, bytes_of, from_bytes
@@ -21,6 +21,8 @@ Row = tuple[float, ...]
 
 #: a length that counts as none, m
 LENGTH = 0.001
+#: orientations of a run that are compared, and how near two quaternions are that count as one: 0.1 degrees
+_MOST_TURNS, _SAME_TURN = 150, 0.0009
 #: two times that differ by less are the same moment, s
 _SAME = 1e-6
 
@@ -58,6 +60,46 @@ def aside(points: Iterable[Point], path: Sequence[Point]) -> float:
                 break
         worst = max(worst, least)
     return sqrt(worst)
+
+
+def turned_aside(rows: Sequence[Row], path: Sequence[Row]) -> float:
+    """Return the greatest angle of orientations from those that a path takes, also between its moments, deg.
+
+    Unit quaternions at the angle a lie 2 sin(a / 4) apart, and those between two moments near their chord.
+    """
+    known = _turns(path)
+    chords = [*pairwise(known)] or [(known[0], known[0])]
+    worst = 0.0
+    for one in _turns(rows):
+        least = inf
+        for start, end in chords:
+            least = min(least, _chord(one, start, end), _chord([-part for part in one], start, end))
+            if least <= worst:
+                break
+        worst = max(worst, least)
+    return degrees(4.0 * asin(min(1.0, sqrt(worst) / 2.0)))
+
+
+def _turns(rows: Sequence[Row]) -> list[list[float]]:
+    """Quaternions, each with the sign that is nearer to the one before, without repetitions."""
+    found: list[list[float]] = []
+    for row in rows[:: len(rows) // _MOST_TURNS + 1]:
+        one = list(row[3:7])
+        if found and sum(a * b for a, b in zip(one, found[-1], strict=True)) < 0.0:
+            one = [-part for part in one]
+        if not found or dist(one, found[-1]) > _SAME_TURN:
+            found.append(one)
+    return found
+
+
+def _chord(point: Sequence[float], start: Sequence[float], end: Sequence[float]) -> float:
+    """The square of a point's distance from a line between two others."""
+    along = [b - a for a, b in zip(start, end, strict=True)]
+    way = [b - a for a, b in zip(start, point, strict=True)]
+    length = sum(part * part for part in along)
+    share = sum(a * b for a, b in zip(along, way, strict=True)) / length if length else 0.0
+    share = min(1.0, max(0.0, share))
+    return sum((b - share * a) ** 2 for a, b in zip(along, way, strict=True))
 
 
 def _segment(one: Point, other: Point) -> tuple[float, ...]:

@@ -15,10 +15,13 @@ from mutabot.evidence.contacts import ContactSpan, RecordedContacts, is_within
 
 if TYPE_CHECKING:
     from mutabot.evidence.paths import RecordedPaths, Row, TrackPath
+from mutabot.evidence.recording import TrackKind
 
 #: what is measured
 RELEASE, IMPACT, SLIP, DRAG = "release height", "impact speed", "slip", "drag"
-COLLISION, SPEED, DURATION = "collision speed", "greatest speed", "duration"
+COLLISION, SPEED, DURATION, MARGIN = "collision speed", "greatest speed", "duration", "least margin"
+#: how the names of values end that tell how near something is to a limit
+_MARGIN = "margin"
 #: m/s²
 _GRAVITY = 9.81
 #: s: moments that lie closer together belong to two worlds; what falls longer is not followed
@@ -33,9 +36,10 @@ class Fact(NamedTuple):
     Attributes:
         name: one of the names above.
         thing: of what.
-        value: in m, m/s or s.
+        value: how much; of what may occur several times the largest, of margins the least.
         at: when, s.
         other: onto what it fell, over what it was dragged, what was hit.
+        unit: of the value.
     """
 
     name: str
@@ -43,6 +47,7 @@ class Fact(NamedTuple):
     value: float
     at: float
     other: str = ""
+    unit: str = "m"
 
 
 def facts_of(seen: RecordedPaths) -> dict[tuple[str, str], Fact]:
@@ -56,21 +61,27 @@ def facts_of(seen: RecordedPaths) -> dict[tuple[str, str], Fact]:
     for thing in contacts.things:  # the impact that belongs to the release
         release = found.get((RELEASE, thing))
         if release is not None:
-            found[IMPACT, thing] = Fact(IMPACT, thing, _impact(contacts, release), release.at, release.other)
+            found[IMPACT, thing] = Fact(
+                IMPACT, thing, _impact(contacts, release), release.at, release.other, "m/s"
+            )
     return found
 
 
 def _facts(contacts: RecordedContacts) -> Iterator[Fact]:
     seen = contacts.seen
     if seen.recording.times:
-        yield Fact(DURATION, "test", seen.recording.times[-1], seen.recording.times[-1])
+        yield Fact(DURATION, "test", seen.recording.times[-1], seen.recording.times[-1], unit="s")
     for name in contacts.tools:
-        yield from (Fact(SPEED, name, speed, time) for time, speed in _speeds(seen.paths[name]))
+        yield from (Fact(SPEED, name, speed, time, unit="m/s") for time, speed in _speeds(seen.paths[name]))
     for thing in contacts.things:
         yield from _releases(contacts, thing)
         yield from _slips(contacts, thing)
         yield from _drags(contacts, thing)
     yield from _collisions(contacts)
+    for name, path in seen.paths.items():
+        if path.track.kind is TrackKind.VALUE and name.endswith(_MARGIN):
+            least, time = min((row[0], time) for time, row in zip(path.when, path.rows, strict=True))
+            yield Fact(MARGIN, name, least, time, unit=path.track.unit)
 
 
 def _speeds(path: TrackPath) -> Iterator[tuple[float, float]]:
@@ -216,4 +227,4 @@ def _collisions(contacts: RecordedContacts) -> Iterator[Fact]:
         begin = found[0][0]
         tools = [contacts.seen.paths[name] for name in contacts.tools]
         speeds = [speed for path in tools for time, speed in _speeds(path) if begin - 0.25 <= time <= begin]
-        yield Fact(COLLISION, f"{robots[0]}, {other}", max(speeds, default=0.0), begin, other)
+        yield Fact(COLLISION, f"{robots[0]}, {other}", max(speeds, default=0.0), begin, other, "m/s")

@@ -21,6 +21,7 @@ from mutabot.evidence.physics import (
     DRAG,
     DURATION,
     IMPACT,
+    MARGIN,
     RELEASE,
     SLIP,
     SPEED,
@@ -32,6 +33,8 @@ from mutabot.model.outcome import Apart, Diverged, Measurement
 
 #: parts of a sentence, how many of them may be contacts, and differences that are kept
 _MOST_PARTS, _MOST_CONTACTS, _MOST = 3, 2, 8
+#: deg by which a thing must be turned on its way
+_LEAST_TURN = 5.0
 #: things of which it is told how far they left their paths
 _MOST_PATHS = 2
 #: s by which a test must end earlier, and by which a thing must be let go at another time
@@ -249,6 +252,8 @@ class _ComparedRuns:
             return f"{one.thing} was dragged {_beside(one)} over the {self.facts[DRAG, one.thing].other}"
         if one.name == SPEED:
             return f"{one.thing} moved at up to {_beside(one)}"
+        if one.name == MARGIN:
+            return f"{one.thing} fell to {_beside(one)}"
         return ""
 
     def _delay(self) -> str:
@@ -292,8 +297,8 @@ def _amount(value: float, unit: str = "m", digits: int = 2) -> str:
 
 
 def _is_told(one: Apart) -> bool:
-    """Whether it is no mere delay, and more than the original does by itself."""
-    return not one.is_delay and one.deviation > 1.0
+    """Whether it is no mere delay, and more than the original does by itself; of margins the least counts."""
+    return not one.is_delay and one.deviation > 1.0 and not one.name.endswith("margin")
 
 
 def _strayed(one: Apart, *, is_whole: bool) -> str:
@@ -324,7 +329,7 @@ def _detours(apart: Sequence[Apart], *, is_whole: bool) -> Iterator[tuple[float,
         end = f" but reached the correct end position{plural}" if is_whole else ""
         yield paths[0].deviation, f"{names} left {its} by up to {far}{end}"
     for one in found:
-        if one.name.endswith(TURNED):
+        if one.name.endswith(TURNED) and (one.aside or 0.0) > _LEAST_TURN:
             thing, far = one.name.removesuffix(TURNED), amount(one.aside or 0.0, one.unit)
             yield one.deviation, f"{thing} was turned by up to {far} on its way"
 

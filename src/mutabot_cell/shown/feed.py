@@ -34,6 +34,9 @@ def tell_of(simulation: Simulation, scene: Scene) -> Feed:
         feed.pose(part.name, _pose(data, body), size=part.extent)
     for prefix, robot in simulation.robots.items():
         feed.value(f"{prefix}fingers closed", robot.closed_path, unit="m")
+        margin = _limit_margin(simulation, robot)
+        if margin is not None:
+            feed.value(f"{prefix}joint limit margin", margin, unit="deg")
     contacts = Contacts(simulation)
     feed.contacts(contacts.read, robots=contacts.robots)
     for fixture in scene.fixtures:
@@ -51,6 +54,17 @@ def _tool_pose(data: mujoco.MjData, robot: Robot) -> Callable[[], list[float]]:
         return [*data.site_xpos[site].tolist(), *turned.tolist()]
 
     return tool
+
+
+def _limit_margin(simulation: Simulation, robot: Robot) -> Callable[[], float] | None:
+    """How near the joint is to its limit that is nearest to one, deg; None if no joint has any."""
+    model, places = simulation.model, simulation.data.qpos
+    joints = [model.joint(robot.prefix + name).id for name in robot.model.joints]
+    limited = [joint for joint in joints if model.jnt_limited[joint]]
+    if not limited:
+        return None
+    where, (lower, upper) = model.jnt_qposadr[limited], model.jnt_range[limited].T
+    return lambda: float(np.degrees(np.minimum(places[where] - lower, upper - places[where]).min()))
 
 
 class _Teller:
