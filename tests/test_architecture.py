@@ -16,17 +16,17 @@ from rooms import SOURCE, files, gathered, imports, levels, name_of, rooms
 
 #: package -> packages of ours it may import, beside ``frozen`` and ``lazy``
 ALLOWED = {
-    "limits": set(),
-    "errors": {"limits"},
+    "errors": set(),
     "extensions": {"errors"},
     "families": set(),
-    "faults": {"errors", "extensions", "families", "languages", "model", "operators", "original"},
+    "faults": {"errors", "extensions", "families", "languages", "model", "operators", "original", "thresholds"},
+    "thresholds": {"errors", "families", "model"},
     "repository": set(),
     "shared_memory": set(),
-    "model": {"errors", "extensions", "families", "limits"},
+    "model": {"errors", "extensions", "families"},
     "languages": {"extensions", "model"},
     "operators": {"errors", "extensions", "families", "model"},
-    "config": {"errors", "extensions", "families", "limits", "model", "operators", "faults"},
+    "config": {"errors", "extensions", "families", "model", "operators", "faults", "thresholds"},
     "evidence": {"model"},
     "runtime": {"errors", "extensions", "model", "languages", "operators", "evidence", "shared_memory"},
     "execution": {"errors", "evidence", "extensions", "model"},
@@ -38,14 +38,14 @@ ALLOWED = {
     },
     "campaign": {
         "errors", "extensions", "families", "faults", "model", "original", "languages", "config", "execution",
-        "operators", "journal", "evidence", "repository",
+        "operators", "journal", "evidence", "repository", "thresholds",
     },
-    "results": {"errors", "families", "model", "journal", "evidence"},
-    "report": {"errors", "extensions", "model", "journal", "results", "evidence"},
+    "results": {"errors", "families", "model", "journal", "evidence", "thresholds"},
+    "report": {"errors", "extensions", "model", "journal", "results", "evidence", "thresholds"},
     "__main__": {"cli"},
     "cli": {
-        "errors", "extensions", "families", "faults", "limits", "model", "config", "execution",
-        "journal", "campaign", "results", "report",
+        "errors", "extensions", "families", "faults", "model", "config", "execution",
+        "journal", "campaign", "results", "report", "thresholds",
     },
 }  # fmt: skip
 FILES = files()

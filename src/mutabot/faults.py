@@ -28,8 +28,8 @@ from mutabot.languages.registry import front_end_of, program_files
 from mutabot.model import LeftOut, Moment, Mutant, ProgramText, Site, TextPlace, Vocabulary
 from mutabot.model.activation import Activation
 from mutabot.model.codec import to_data
-from mutabot.model.graded import Demand
 from mutabot.model.mutant import Place
+from mutabot.thresholds.demands import Demand
 
 if TYPE_CHECKING:
     from mutabot.operators.operator import Rule

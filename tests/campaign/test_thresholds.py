@@ -8,7 +8,7 @@ import pytest
 
 from mutabot.campaign.run import run_campaign
 from mutabot.journal.journal import Journal
-from mutabot.model.graded import Bracket, MagnitudeResult, bracket_of, seen
+from mutabot.thresholds.brackets import Bracket, MagnitudeResult, bracket_of, seen
 from tests.campaign.project import Quiet, request_for, write_project
 
 ROBOT = """

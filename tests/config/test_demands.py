@@ -9,7 +9,7 @@ import pytest
 from mutabot.config.configuration import load_configuration
 from mutabot.errors import ConfigurationError
 from mutabot.model import Kind
-from mutabot.model.graded import Demand
+from mutabot.thresholds.demands import Demand
 
 GOOD = 'program = ["mission.py"]\nvocabulary = ["robot.toml"]\n'
 

@@ -29,7 +29,7 @@ from mutabot.report.texts import portable
 from mutabot.results.gate import decide
 from mutabot.results.results import read_results
 from mutabot.results.stored import open as open_campaign
-from mutabot.results.thresholds import thresholds_of
+from mutabot.thresholds.thresholds import thresholds_of
 from results import samples
 
 TIMES, SEED = 1000, 24

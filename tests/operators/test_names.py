@@ -27,7 +27,7 @@ OTHERWISE = {
     "reverse": {"campaign/baseline/writes.py"},  # a method of lists
     "drop": {"mutabot_init"},
     "delay": {"mutabot_init"},
-    "offset": {"mutabot_init", "model"},  # what a demand means that names none
+    "offset": {"mutabot_init", "thresholds"},  # what a demand means that names none
 }
 #: what an id ends with, and what a selection may be made of
 AT_THE_END = re.compile(r"^(?:.*:)?(?P<name>[\w-]+)(?:=.*)?$", re.DOTALL)

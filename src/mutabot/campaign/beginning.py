@@ -15,7 +15,6 @@ from mutabot.campaign.baseline.wrappers import shared_sites
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.duration import Duration, duration_of
 from mutabot.campaign.engines.engine import try_controls
-from mutabot.campaign.faults.demanded import split_ladders
 from mutabot.campaign.faults.providers import texts_of
 from mutabot.campaign.plan import Plan, draw, make_plan
 from mutabot.campaign.request import CheckReport, ExecutorChoice, Preview, Progress, Request
@@ -38,6 +37,7 @@ from mutabot.model.events import Remark
 from mutabot.model.mutant import Place
 from mutabot.model.outcome import by_heading
 from mutabot.model.selection import select
+from mutabot.thresholds.planned import split_ladders
 
 if TYPE_CHECKING:
     from mutabot.campaign.baseline.baseline import Baseline

@@ -7,27 +7,29 @@ of the time that is left. What is under way when the time is up is cut off, and 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from contextlib import nullcontext, suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from mutabot.campaign.baseline.seeds import record_more_seeds
 from mutabot.campaign.engines.engine import run_trials
-from mutabot.campaign.faults.demanded import demanded_of, split_ladders
 from mutabot.campaign.plan import shuffled
 from mutabot.config.options import in_words
+from mutabot.errors import plural
 from mutabot.execution.interruption import OutOfTimeError, limited
 from mutabot.journal.records import BUDGET, Budgeted
+from mutabot.thresholds.planned import demanded_of, split_ladders
+from mutabot.thresholds.search import search_ladders
 
 from .confirmation import confirm
-from .search import run_ladders
 
 if TYPE_CHECKING:
     from mutabot.campaign.campaign import Campaign, MutantRun, RunId
     from mutabot.campaign.reuse.keys import OutcomeWriter
     from mutabot.campaign.reuse.reuse import Reused
     from mutabot.model import Mutant, Outcome, Verdict
+    from mutabot.thresholds.planned import Ladders
 
 #: how a campaign ended whose budget was not enough
 OUT_OF_TIME = "out of time"
@@ -61,8 +63,7 @@ def run_planned(
         else:
             _run_batches(campaign, alone, writer, found, until)
         confirm(campaign, alone, writer, found.done)
-        always = demanded_of(ladders, request.configuration.demands, request.vocabulary)
-        run_ladders(campaign.whole, ladders, writer, found.done, always)
+        _run_ladders(campaign.whole, ladders, writer, found.done)
         is_whole = True
     if until is not None:
         known: Budgeted = writer.journal.meta()[BUDGET]
@@ -101,6 +102,32 @@ def _run_batches(
     finally:
         cut_off = len(outcomes) - budgeted.run
         writer.journal.set_meta(BUDGET, replace(budgeted, cut_off=cut_off))
+
+
+def _run_ladders(
+    campaign: Campaign, ladders: Ladders, writer: OutcomeWriter, done: Collection[RunId]
+) -> None:
+    """Find the thresholds. ``done``: the runs whose outcomes the journal holds already."""
+    if not ladders:
+        return
+    request = campaign.request
+    kept = {
+        (one.mutant, one.round): one for one in writer.journal.outcomes() if (one.mutant, one.round) in done
+    }
+
+    def run(runs: Sequence[MutantRun]) -> list[Outcome]:
+        found = [kept[mutant.id, round] for mutant, round in runs if (mutant.id, round) in kept]
+        new = [(mutant, round) for mutant, round in runs if (mutant.id, round) not in kept]
+        run_trials(campaign, new, writer, found.append)
+        return found
+
+    always = demanded_of(ladders, request.configuration.demands, request.vocabulary)
+    count = search_ladders(ladders, run, rounds=request.rounds, seed=request.seed, always=always)
+    whole = request.rounds * sum(map(len, ladders.values()))
+    campaign.progress.note(
+        f"thresholds: {plural(len(ladders), 'ladder')} in {plural(request.rounds, 'round')} took "
+        f"{plural(count, 'run')}; all their magnitudes would have taken {whole}"
+    )
 
 
 def in_order(

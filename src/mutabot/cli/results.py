@@ -16,13 +16,13 @@ from mutabot.errors import JournalError, UsageError
 from mutabot.report.document import shown_data
 from mutabot.report.format import Format, Material, format_of, names
 from mutabot.report.html.folder import Contents, check_folder, write_folder
-from mutabot.report.terminal.campaign import print_thresholds
 from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.mutant import print_mutant
+from mutabot.report.terminal.thresholds import print_thresholds
 from mutabot.report.texts import Cleaner, portable
 from mutabot.results.results import Results
 from mutabot.results.suggested import kept_suggestions
-from mutabot.results.thresholds import thresholds_of
+from mutabot.thresholds.thresholds import thresholds_of
 
 #: stands for standard output
 _STANDARD = Path("-")

@@ -20,8 +20,8 @@ from mutabot.extensions import brought, not_installed
 from mutabot.families import USUAL
 from mutabot.faults import families_brought, known_families, need_vocabulary, why_unknown
 from mutabot.model import Moment
-from mutabot.model.graded import Demand
 from mutabot.model.mutant import EVERY
+from mutabot.thresholds.demands import Demand
 
 from .demands import check_demands
 from .document import Document

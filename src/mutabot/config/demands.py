@@ -9,10 +9,10 @@ from pydantic import AfterValidator, Field
 
 from mutabot.errors import unknown_name_text
 from mutabot.model import Kind
-from mutabot.model.graded import OFFSET, Demand, parse_amount
 from mutabot.model.mutant import means_numbers
 from mutabot.model.quantity import MEASURED, measures_of
 from mutabot.model.units import OF_ANY, UNITS, units_of
+from mutabot.thresholds.demands import OFFSET, Demand, parse_amount
 
 from .table import Table
 

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import field
 from enum import StrEnum
+from itertools import groupby
 from typing import Any
 
 from mutabot.frozen import frozen
@@ -445,3 +446,14 @@ def without_accidents(message: str | None) -> str | None:
 
 def _end(outcome: Outcome) -> tuple[Any, ...]:
     return outcome.verdict, outcome.by, outcome.test, without_accidents(outcome.message)
+
+
+def numbers_text(numbers: Iterable[int]) -> str:
+    """Return ``round 3``, ``rounds 1 and 2``, ``rounds 1 and 3 to 5``."""
+    runs: list[str] = []
+    for _, group in groupby(enumerate(sorted({*numbers})), key=lambda pair: pair[1] - pair[0]):
+        run = [number for _, number in group]
+        runs += [f"{run[0]} to {run[-1]}"] if len(run) > 2 else map(str, run)
+    *others, last = runs
+    text = f"{', '.join(others)} and {last}" if others else last
+    return f"{'round' if text.isdigit() else 'rounds'} {text}"

@@ -16,11 +16,11 @@ from mutabot.journal import records
 from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity, Span
 from mutabot.model.outcome import Apart, Measurement
 from mutabot.report.texts import effect_text, excerpt, state_of, telling
-from mutabot.results import ladders, thresholds
 from mutabot.results.results import Encoder, MutantResult, Results
 from mutabot.results.score import Group, RoundScores, Score
 from mutabot.results.statistics import Confirmed, Estimate, false_kills, false_survivors
-from mutabot.results.thresholds import line_of
+from mutabot.thresholds import ladders, thresholds
+from mutabot.thresholds.thresholds import line_of
 
 if TYPE_CHECKING:
     from mutabot.results.suggested import Suggestion

@@ -12,7 +12,7 @@ from mutabot.model import LeftOut, Mutant, Span, Verdict
 from mutabot.model.outcome import NOTHING, by_heading, first_line
 from mutabot.results.results import OUTSIDE, Results, unlooked
 from mutabot.results.statistics import Estimate, Interval, false_kills, false_survivors
-from mutabot.results.thresholds import line_of, thresholds_of
+from mutabot.thresholds.thresholds import line_of, thresholds_of
 
 from .texts import acceptance_text, effect_text, escaped, rounds_text
 

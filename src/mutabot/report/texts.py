@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from mutabot.journal.records import Reaching, Untested
 from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity
-from mutabot.model.outcome import first_line
-from mutabot.results.divergence import numbers_text, weight_of
+from mutabot.model.outcome import first_line, numbers_text
+from mutabot.results.divergence import weight_of
 
 if TYPE_CHECKING:
     from mutabot.model import Span

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
-from itertools import groupby
+from collections.abc import Sequence
 
 from mutabot.model import Mutant, Outcome, Quantity, Verdict, Vocabulary
 from mutabot.model.outcome import first_line
@@ -90,14 +89,3 @@ def _end_text(outcome: Outcome) -> str:
             return f"killed by {outcome.by or 'a test'}: {first_line(outcome.message)}"
         case _:
             return f"{outcome.verdict}: {first_line(outcome.message)}"
-
-
-def numbers_text(numbers: Iterable[int]) -> str:
-    """Return ``round 3``, ``rounds 1 and 2``, ``rounds 1 and 3 to 5``."""
-    runs: list[str] = []
-    for _, group in groupby(enumerate(sorted({*numbers})), key=lambda pair: pair[1] - pair[0]):
-        run = [number for _, number in group]
-        runs += [f"{run[0]} to {run[-1]}"] if len(run) > 2 else map(str, run)
-    *others, last = runs
-    text = f"{', '.join(others)} and {last}" if others else last
-    return f"{'round' if text.isdigit() else 'rounds'} {text}"

@@ -11,12 +11,12 @@ from mutabot.families import GRADED
 from mutabot.frozen import frozen
 from mutabot.journal.records import INCOMPLETE, ShardOf
 from mutabot.model import Verdict
-from mutabot.results.ladders import ladders_of
-from mutabot.results.thresholds import unmet
+from mutabot.thresholds.ladders import ladders_of
+from mutabot.thresholds.thresholds import unmet
 
 if TYPE_CHECKING:
-    from mutabot.model.graded import Demand
     from mutabot.results.results import Results
+    from mutabot.thresholds.demands import Demand
 
 #: what a campaign can be asked to have none of, and numbers of mutants that a line gives
 FAIL_ON, _SHOWN = ("survivors", "untested"), 20

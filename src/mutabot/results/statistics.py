@@ -31,8 +31,8 @@ from statistics import NormalDist, fmean
 from mutabot.frozen import frozen
 from mutabot.journal.records import LET_THROUGH, Repeated, Repeats, is_wrong, run_short
 from mutabot.model import Outcome, Verdict
+from mutabot.thresholds.ladders import LEVEL
 
-LEVEL = 0.95
 _NORMAL = NormalDist().inv_cdf(0.5 + LEVEL / 2)
 #: weight of the one killed and the one surviving mutant that are imagined when the spread of mutants is
 #: estimated; without them, a single odd outcome among equal ones makes the interval far too narrow

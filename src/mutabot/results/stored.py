@@ -22,7 +22,7 @@ from mutabot.journal.files import find_journal
 from mutabot.journal.recordings import ORIGINAL, Recordings
 from mutabot.model.codec import shallow
 from mutabot.results.results import Encoder, Results
-from mutabot.results.thresholds import Thresholds, thresholds_of
+from mutabot.thresholds.thresholds import Thresholds, thresholds_of
 
 if TYPE_CHECKING:
     from mutabot.results.score import Group

@@ -5,8 +5,8 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mutabot.campaign.search import LadderSearch
-from mutabot.model.graded import MagnitudeResult, bracket_of
+from mutabot.thresholds.brackets import MagnitudeResult, bracket_of
+from mutabot.thresholds.search import LadderSearch
 
 SIZE = 7
 #: the first step that is noticed in a round; SIZE if none is

@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 from mutabot.report.document import data_of, dumps
-from mutabot.report.terminal.campaign import bar, print_thresholds
 from mutabot.report.terminal.console import make_console
-from mutabot.results.thresholds import Thresholds, thresholds_of
+from mutabot.report.terminal.thresholds import bar, print_thresholds
+from mutabot.thresholds.thresholds import Thresholds, thresholds_of
 from results import samples
 from results.thresholds import journals
 from results.thresholds.journals import Rungs

@@ -12,8 +12,8 @@ from mutabot.journal.journal import Journal
 from mutabot.model import By, Mutant, Outcome, Verdict, Vocabulary
 from mutabot.model.codec import to_data
 from mutabot.model.mutant import Site
-from mutabot.results.ladders import Ladder, ladders_of
 from mutabot.results.results import Results, read_results
+from mutabot.thresholds.ladders import Ladder, ladders_of
 from results import samples
 
 SIZES = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)

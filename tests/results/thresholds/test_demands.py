@@ -9,9 +9,9 @@ import pytest
 
 from mutabot.errors import ExitCode
 from mutabot.model import Kind
-from mutabot.model.graded import Demand, parse_amount, wanted_magnitudes
 from mutabot.results.gate import decide
-from mutabot.results.thresholds import unmet
+from mutabot.thresholds.demands import Demand, parse_amount, wanted_magnitudes
+from mutabot.thresholds.thresholds import unmet
 from results.thresholds import journals
 from results.thresholds.journals import Rungs
 

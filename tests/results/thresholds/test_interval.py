@@ -8,8 +8,8 @@ from statistics import NormalDist
 
 import pytest
 
-from mutabot.model.graded import MagnitudeResult, bracket_of
-from mutabot.results.ladders import (
+from mutabot.thresholds.brackets import MagnitudeResult, bracket_of
+from mutabot.thresholds.ladders import (
     median_between,
     ranks,
     share_noticed,

@@ -11,10 +11,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from mutabot.report.document import data_of, dumps
-from mutabot.report.terminal.campaign import print_thresholds
 from mutabot.report.terminal.console import make_console
-from mutabot.results.ladders import Ladder, ladders_of
-from mutabot.results.thresholds import line_of, thresholds_of
+from mutabot.report.terminal.thresholds import print_thresholds
+from mutabot.thresholds.ladders import Ladder, ladders_of
+from mutabot.thresholds.thresholds import line_of, thresholds_of
 from results.thresholds import journals
 from results.thresholds.journals import LETTERS, SIZES, Rungs
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.results.thresholds import amount, line_of, violations_in_words
+from mutabot.thresholds.thresholds import amount, line_of, violations_in_words
 from results.thresholds import journals
 
 

@@ -14,7 +14,6 @@ from dataclasses import replace
 from random import Random
 from typing import Any, ClassVar
 
-from mutabot.campaign.faults.demanded import ladders_last, with_demanded
 from mutabot.errors import ExtensionError, MutabotError, OperatorError, unknown_name_text
 from mutabot.families import CALLS, CATALOGUE, GRADED, MESSAGES, MIDDLEWARE, OF_CALLS, ROBOT
 from mutabot.faults import (
@@ -45,6 +44,8 @@ from mutabot.operators.passage import CallRecord, rehearse
 from mutabot.operators.registry import names as operators_on_calls
 from mutabot.operators.registry import operator as operator_named
 from mutabot.original import Hit, NoAnswerError, Original, RecordedAnswers, idle_of
+from mutabot.thresholds.demands import is_same
+from mutabot.thresholds.planned import at_magnitude, demanded_of, split_ladders
 
 
 def at_moments(
@@ -142,7 +143,7 @@ class CallFaults(FaultProvider):
         found += _not_covered(original, project.vocabulary, operators, self.name)
         if project.moments != (None,):
             found = at_moments(found, original, project.vocabulary, project.moments)
-        return Planned(ladders_last(with_demanded(found, project)))
+        return Planned(_ladders_last(_with_demanded(found, project)))
 
     def draws(self, operator: str) -> bool:
         """Return whether one of its operators draws new random numbers in each round."""
@@ -504,3 +505,39 @@ def rules_of(families: Collection[str]) -> list[Rule]:
 def operators_of_packages() -> dict[str, str]:
     """The operators of the packages' providers, with their families. To look at these may take its time."""
     return {rule.name: rule.family for one in brought_providers() for rule in one.rules()}
+
+
+def _with_demanded(planted: Sequence[PlannedMutant], project: Project) -> list[PlannedMutant]:
+    """These mutants, with one for each demanded magnitude that its ladder lacks.
+
+    Where a family was not asked for, the ladders stay of which a demand speaks, and no others of it.
+    """
+    demands, families = project.demands, project.families
+    if not demands:
+        return [*planted]
+    ladders = split_ladders(one.mutant for one in planted if one.reason is None)[1]
+    wanted = demanded_of(ladders, demands, project.vocabulary)
+    found = [
+        one
+        for one in planted
+        if one.reason is not None or one.mutant.family in families or wanted.get(one.mutant.ladder)
+    ]
+    places = {one.mutant.ladder: one for one in reversed(found) if one.reason is None}
+    for name, mutants in ladders.items():
+        found += [
+            replace(places[name], mutant=at_magnitude(mutants[0], size))
+            for size in wanted.get(name, ())
+            if not any(is_same(one.magnitude or 0.0, size) for one in mutants)
+        ]
+    return found
+
+
+def _ladders_last(planted: Sequence[PlannedMutant]) -> list[PlannedMutant]:
+    """These mutants with an order by which those with sizes come last, ladder by ladder."""
+    _, ladders = split_ladders(one.mutant for one in planted if one.reason is None)
+    steps = [mutant.id for mutants in ladders.values() for mutant in mutants]
+    order = {mutant: (1, number) for number, mutant in enumerate(steps)}
+    return [
+        replace(one, order=order[one.mutant.id]) if one.reason is None and one.mutant.id in order else one
+        for one in planted
+    ]

@@ -29,7 +29,7 @@ from mutabot.results.divergence import weight_of
 from mutabot.results.results import MutantResult, Results, killing_tests, unlooked
 from mutabot.results.stored import StoredEvidence
 from mutabot.results.suggested import Suggestion
-from mutabot.results.thresholds import line_of, thresholds_of
+from mutabot.thresholds.thresholds import line_of, thresholds_of
 
 #: facts of a row of the list, by the names that they have in the results document
 _ROW = (

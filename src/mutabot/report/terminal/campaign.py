@@ -1,7 +1,4 @@
-"""A campaign on the terminal: its plan, the summary of a run, the table of mutants, and thresholds as bars.
-
-Also the operators that there are.
-"""
+"""A campaign on the terminal: its plan, the summary of a run, the table of mutants, and operators."""
 
 from __future__ import annotations
 
@@ -17,14 +14,12 @@ from rich.text import Text
 from mutabot.errors import plural
 from mutabot.report.document import data_of
 from mutabot.report.sections import Section, sections, size_text, skipped, untested
-from mutabot.results.thresholds import Thresholds, amount, line_of, rounds_left_out, violations_in_words
 
 from .console import Breakable, below, heading, legend, letters, make_table, plain, print_section, short_place
 
 if TYPE_CHECKING:
     from mutabot.journal.records import Untested
     from mutabot.model import LeftOut, Mutant
-    from mutabot.results.ladders import Ladder
     from mutabot.results.results import Results
 
 #: rounds from which on a row gives counts in place of one letter each
@@ -158,76 +153,3 @@ def print_rules(console: Console, rules: Iterable[Mapping[str, str]]) -> None:
             for line in (rule["summary"], *more):
                 console.print(below(line, 3))
     console.print(f"\n{plural(len(found), 'operator')}")
-
-
-#: lines of a section that are shown; --json has all
-_MOST = 12
-_LEGEND = "· no round notices   ▒ some do   █ all do   × the robot refuses; one sign per magnitude"
-
-
-def print_thresholds(console: Console, thresholds: Thresholds) -> None:
-    """Print the thresholds of a campaign, the loosest first."""
-    size = f"{plural(len(thresholds.all), 'ladder')} × {plural(thresholds.rounds, 'round')}"
-    columns = ("*fault", ">none up to", "magnitudes", ">all from", "*noticed by")
-    rows = [_row(one) for one in thresholds.ladders]
-    print_section(console, Section(f"{size}: {thresholds.state}", columns, rows, [_LEGEND]))
-    for name, lines in _sections(thresholds).items():
-        if lines:
-            print_section(console, Section(name, lines=lines), _MOST)
-    console.print(Text(f"\n{_confidence(thresholds)}", style="dim"))
-
-
-def _row(one: Ladder) -> tuple[str, ...]:
-    none = amount(one.none_up_to, one.unit) if one.none_up_to else "–"
-    every = amount(one.all_from, one.unit) if one.all_from in one.sizes else "–"
-    return f"{one.place} {one.name}", none, bar(one), every, _noticed_by(one)
-
-
-def bar(ladder: Ladder) -> str:
-    """Return one sign per magnitude: whether no round, some or all notice it, or the robot refuses it."""
-    refused = ladder.refused_from
-    return "".join(
-        "×" if refused is not None and size >= refused else
-        "█" if size >= ladder.all_from else
-        "·" if size <= ladder.none_up_to else
-        "▒"
-        for size in ladder.sizes
-    )  # fmt: skip
-
-
-def _noticed_by(ladder: Ladder) -> str:
-    by = Counter(one.noticed_by for one in ladder.counted if one.noticed_by is not None)
-    rounds = len(ladder.counted)
-    told = [f"{name} in {count} of {plural(rounds, 'round')}" for name, count in by.most_common()]
-    return ", ".join(told) or line_of(ladder)
-
-
-def _sections(thresholds: Thresholds) -> dict[str, list[str]]:
-    """What needs a look, by its heading."""
-    known = [(f"{one.place} {one.name}", one) for one in thresholds.ladders]
-    return {
-        "Out of order: a larger fault was missed": [
-            f"{name}: {text}" for name, one in known for text in violations_in_words(one)
-        ],
-        "Rounds that do not count": [
-            f"{name}: {text}" for name, one in known for text in rounds_left_out(one)
-        ],
-        "Not judged": [f"{one.place} {one.name}: {one.why_unjudged}" for one in thresholds.unjudged],
-    }
-
-
-def _confidence(thresholds: Thresholds) -> str:
-    """What the table says about further rounds, and what it cost."""
-    parts = []
-    first = max(thresholds.ladders, key=lambda one: len(one.counted), default=None)
-    if first is not None and first.median is None:
-        parts.append("One round says nothing about further rounds.")
-    elif first is not None and first.median is not None:
-        level = f"With {100 * first.median.level:.0f} % confidence"
-        ends = "the largest fault that no round noticed and the smallest that every round noticed"
-        parts.append(f"{level} the median threshold lies between {ends}.")
-        shares = [one.share_shown for one in thresholds.ladders if one.share_shown is not None]
-        if shares:
-            share = f"at least {100 * min(shares):.0f} % of further rounds do (95 %)"
-            parts.append(f"Where all rounds notice, {share}.")
-    return " ".join(parts)

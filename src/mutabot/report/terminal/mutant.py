@@ -10,10 +10,9 @@ from rich.table import Table
 from rich.text import Text
 
 from mutabot.errors import plural
-from mutabot.model.outcome import end_in_words
+from mutabot.model.outcome import end_in_words, numbers_text
 from mutabot.report.sections import Section, between
 from mutabot.report.texts import acceptance_text, effect_text, excerpt, telling
-from mutabot.results.divergence import numbers_text
 
 from .console import Breakable, below, heading, letters, make_table, mark_of, plain, print_section
 

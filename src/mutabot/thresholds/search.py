@@ -13,23 +13,21 @@ the others, which begin with what it found, run side by side.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from random import Random
 from typing import TYPE_CHECKING
 
-from mutabot.campaign.engines.engine import run_trials
-from mutabot.errors import plural
-from mutabot.model.graded import MagnitudeResult, bracket_of, seen
+from mutabot.thresholds.brackets import MagnitudeResult, bracket_of, seen
 
 if TYPE_CHECKING:
-    from mutabot.campaign.campaign import Campaign
-    from mutabot.campaign.faults.demanded import Ladders
-    from mutabot.campaign.reuse.keys import OutcomeWriter
-    from mutabot.model import Outcome
+    from mutabot.model import Mutant, Outcome
+    from mutabot.thresholds.planned import Ladders
 
 #: indices of a ladder's magnitudes, from the smallest
 LadderStep = int
+#: a mutant, and the round in which it is run
+Trial = tuple["Mutant", int]
 
 
 @dataclass(slots=True)
@@ -117,56 +115,40 @@ def _middle(row: Mapping[LadderStep, MagnitudeResult], low: LadderStep, high: La
     return {between[len(between) // 2]} if between else set()
 
 
-def run_ladders(
-    campaign: Campaign,
+def search_ladders(
     ladders: Ladders,
-    writer: OutcomeWriter,
-    done: Collection[tuple[str, int]],
+    run: Callable[[Sequence[Trial]], Iterable[Outcome]],
+    *,
+    rounds: int,
+    seed: int,
     always: Mapping[str, Collection[float]],
-) -> None:
-    """Find the thresholds; every outcome is in the journal within a second.
+) -> int:
+    """Find the thresholds of all ladders. Returns how many runs that took, known ones included.
 
-    ``done`` are the ids and rounds whose outcomes the journal holds already. ``always`` gives magnitudes that
-    are run in every round, by ladder.
-
-    Raises ControlError for a control that ends wrongly.
+    Args:
+        ladders: their mutants, rising.
+        run: gives the outcomes of mutants in rounds; one that is missing is asked for again.
+        rounds: how many there are.
+        seed: breaks ties.
+        always: magnitudes that are run in every round, by ladder.
     """
-    if not ladders:
-        return
-    kept = {
-        (one.mutant, one.round): one for one in writer.journal.outcomes() if (one.mutant, one.round) in done
-    }
-    request, searches = campaign.request, dict[str, LadderSearch]()
+    searches = dict[str, LadderSearch]()
     for name, mutants in ladders.items():
         demanded = always.get(name, ())
         steps = frozenset(step for step, one in enumerate(mutants) if one.magnitude in demanded)
-        searches[name] = LadderSearch(len(mutants), request.rounds, request.seed, steps)
-    found: list[Outcome] = []
-
-    def run(known: range) -> None:
-        """Run until nothing more is asked in these rounds; a violation asks in all of them."""
+        searches[name] = LadderSearch(len(mutants), rounds, seed, steps)
+    for known in (range(rounds)[:1], range(rounds)):
+        # until nothing more is asked in these rounds; a violation asks in all of them
         while trials := [
             (searches[name], step, mutants[step], round)
             for round in known
             for name, mutants in ladders.items()
             for step in sorted(searches[name].due(round))
         ]:
-            found.clear()
-            new = [(mutant, round) for *_, mutant, round in trials if (mutant.id, round) not in kept]
-            run_trials(campaign, new, writer, found.append)
-            ended = {**kept, **{(one.mutant, one.round): one for one in found}}
+            outcomes = run([(mutant, round) for *_, mutant, round in trials])
+            ended = {(one.mutant, one.round): one for one in outcomes}
             for search, step, mutant, round in trials:
                 outcome = ended.get((mutant.id, round))
                 if outcome is not None:
                     search.take(round, step, seen(outcome))
-
-    rounds = range(request.rounds)
-    run(rounds[:1])
-    run(rounds)
-    whole = len(rounds) * sum(map(len, ladders.values()))
-    runs = sum(len(row) for search in searches.values() for row in search.found.values())
-    campaign.progress.note(
-        f"thresholds: {plural(len(ladders), 'ladder')} in {plural(len(rounds), 'round')} took "
-        f"{plural(runs, 'run')}; all their magnitudes "
-        f"would have taken {whole}"
-    )
+    return sum(len(row) for search in searches.values() for row in search.found.values())

@@ -3,7 +3,7 @@
 The thresholds of R rounds are taken as independent draws. How many of them lie below the median is then a
 binomial number, whatever their distribution is, so that two of them, in order, hold the median between them
 with a known probability. As each is known only as a bracket, the interval goes from the lower end of one to
-the upper end of the other, which can only widen it. Measured by ``benchmarks/threshold_coverage.py``.
+the upper end of the other, which can only widen it. docs/thresholds.md has how often they hold it.
 """
 
 from __future__ import annotations
@@ -12,14 +12,39 @@ import math
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from enum import StrEnum
+from typing import Protocol
 
 from mutabot.errors import plural
 from mutabot.frozen import frozen
 from mutabot.model import By, Mutant, Outcome, Quantity, Verdict
-from mutabot.model.graded import OFFSET, Bracket, bracket_of, is_same, seen
 from mutabot.model.units import UNITS
-from mutabot.results.results import MutantResult, Results
-from mutabot.results.statistics import LEVEL
+from mutabot.thresholds.brackets import Bracket, bracket_of, seen
+from mutabot.thresholds.demands import OFFSET, is_same
+
+#: the confidence of all intervals in reports
+LEVEL = 0.95
+
+
+class GradedResult(Protocol):
+    """What became of one graded mutant: its outcome in each round, None where it has not been run."""
+
+    @property
+    def mutant(self) -> Mutant: ...
+    @property
+    def rounds(self) -> tuple[Outcome | None, ...]: ...
+    @property
+    def quantity(self) -> Quantity | None: ...
+
+
+class GradedResults(Protocol):
+    """What became of all graded mutants of a campaign, and how it ended."""
+
+    @property
+    def graded(self) -> Sequence[GradedResult]: ...
+    @property
+    def rounds(self) -> int: ...
+    @property
+    def state(self) -> str: ...
 
 
 @frozen
@@ -192,7 +217,7 @@ class Ladder:
     """
 
     id: str
-    results: tuple[MutantResult, ...]
+    results: tuple[GradedResult, ...]
     rounds: tuple[LadderRound, ...]
 
     @property
@@ -315,15 +340,15 @@ def looseness(ladder: Ladder) -> tuple[float, float, float]:
     return first, second, third
 
 
-def ladders_of(results: Results) -> tuple[Ladder, ...]:
+def ladders_of(results: GradedResults) -> tuple[Ladder, ...]:
     """The ladders of a campaign, in the order of its plan."""
-    found: dict[str, list[MutantResult]] = {}
+    found: dict[str, list[GradedResult]] = {}
     for one in results.graded:
         found.setdefault(one.mutant.ladder, []).append(one)
     return tuple(_ladder(name, those, results.rounds) for name, those in found.items())
 
 
-def _ladder(name: str, results: Iterable[MutantResult], rounds: int) -> Ladder:
+def _ladder(name: str, results: Iterable[GradedResult], rounds: int) -> Ladder:
     rising = sorted(((one.mutant.magnitude or 0.0, one) for one in results), key=lambda pair: pair[0])
     found = []
     for number in range(rounds):

@@ -14,12 +14,13 @@ from typing import TYPE_CHECKING
 from mutabot.errors import plural, unknown_name_text
 from mutabot.families import GRADED
 from mutabot.model import Outcome, Verdict
-from mutabot.model.graded import Demand, MagnitudeResult, is_at_least, is_same, seen
-from mutabot.results.divergence import numbers_text
-from mutabot.results.ladders import Above, Ladder, LadderRound, ladders_of, looseness
+from mutabot.model.outcome import numbers_text
+from mutabot.thresholds.brackets import MagnitudeResult, seen
+from mutabot.thresholds.demands import Demand, is_at_least, is_same
+from mutabot.thresholds.ladders import Above, Ladder, LadderRound, ladders_of, looseness
 
 if TYPE_CHECKING:
-    from mutabot.results.results import Results
+    from .ladders import GradedResults
 
 
 def amount(magnitude: float, unit: str | None) -> str:
@@ -145,7 +146,7 @@ class Thresholds:
         return (*self.ladders, *self.unjudged)
 
 
-def thresholds_of(results: Results) -> Thresholds:
+def thresholds_of(results: GradedResults) -> Thresholds:
     """The thresholds of a campaign."""
     ladders = ladders_of(results)
     judged = (one for one in ladders if not one.why_unjudged)

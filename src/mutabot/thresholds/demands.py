@@ -1,24 +1,16 @@
-"""Graded faults: what a round says of them, and what users demand.
-
-The detection threshold of a round is the smallest magnitude from which on every magnitude that was run is
-noticed. It is known only as a bracket, between the largest magnitude that was missed and the smallest one
-that was noticed.
-"""
+"""Demands: every such fault that is at least so big must be noticed in every round."""
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Mapping
-from enum import StrEnum
+from collections.abc import Iterable
 
 from mutabot.errors import shortened
 from mutabot.frozen import frozen
 from mutabot.model.mutant import Mutant, fits, is_like
 from mutabot.model.quantity import Kind
 from mutabot.model.units import UNITS, convert_difference, dimension_of
-
-from .outcome import Outcome, Verdict
 
 #: the operator that is meant if a demand names none: a value is off by the magnitude
 OFFSET = "offset"
@@ -131,74 +123,3 @@ def parse_amount(text: str) -> tuple[float, str | None]:
 
 def _rounded(value: float) -> float:
     return float(f"{value:.{_DIGITS}g}")
-
-
-class MagnitudeResult(StrEnum):
-    """How the tests judged one magnitude."""
-
-    #: a check, an exception or a time-out ended it
-    NOTICED = "noticed"
-    #: every test passed, or no test reaches the site
-    MISSED = "missed"
-    #: the robot would not do it, which no test had a hand in
-    REFUSED = "refused"
-    #: it changed nothing, or nobody knows
-    UNKNOWN = "unknown"
-
-    @property
-    def is_valid(self) -> bool:
-        """Whether it says anything about the tests."""
-        return self in (MagnitudeResult.NOTICED, MagnitudeResult.MISSED)
-
-
-def seen(outcome: Outcome) -> MagnitudeResult:
-    """What the tests made of a graded mutant in a round."""
-    if outcome.verdict is Verdict.REFUSED:
-        return MagnitudeResult.REFUSED
-    if not outcome.verdict.is_valid:
-        return MagnitudeResult.UNKNOWN
-    return MagnitudeResult.NOTICED if outcome.verdict.is_killed else MagnitudeResult.MISSED
-
-
-@frozen
-class Bracket:
-    """Where the threshold of one round lies: above ``low``, and at most at ``high``.
-
-    Attributes:
-        low: the largest magnitude that was missed; None if none was.
-        high: the smallest magnitude above it that was noticed; None if none was.
-        refused: the smallest magnitude above ``low``, and below ``high``, that the robot refused; None if
-            none was.
-        out_of_order: pairs of a magnitude that was noticed and a larger one that was missed.
-    """
-
-    low: float | None = None
-    high: float | None = None
-    refused: float | None = None
-    out_of_order: tuple[tuple[float, float], ...] = ()
-
-    @property
-    def is_known(self) -> bool:
-        """Whether anything valid was run."""
-        return self.low is not None or self.high is not None
-
-    @property
-    def is_violated(self) -> bool:
-        """Whether a larger fault was missed where a smaller one was noticed."""
-        return bool(self.out_of_order)
-
-
-def bracket_of(ladder: Mapping[float, MagnitudeResult]) -> Bracket:
-    """The bracket of a round, from what was seen at the magnitudes that were run."""
-    missed = [size for size, one in ladder.items() if one is MagnitudeResult.MISSED]
-    low = max(missed, default=None)
-    above = {size: one for size, one in ladder.items() if low is None or size > low}
-    high = min((size for size, one in above.items() if one is MagnitudeResult.NOTICED), default=None)
-    refused = (
-        size
-        for size, one in above.items()
-        if one is MagnitudeResult.REFUSED and (high is None or size < high)
-    )
-    noticed = sorted(size for size, one in ladder.items() if one is MagnitudeResult.NOTICED)
-    pairs = ((size, larger) for size in noticed for larger in sorted(missed) if larger > size)
-    return Bracket(low, high, min(refused, default=None), tuple(pairs))

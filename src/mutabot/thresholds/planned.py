@@ -1,0 +1,47 @@
+"""Ladders of a plan: mutants of one graded fault at rising magnitudes, and which of these are demanded."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+
+from mutabot.model import Mutant, Vocabulary
+from mutabot.thresholds.demands import Demand, wanted_magnitudes
+
+#: graded faults, each at one site, of one quantity, in one direction: what the ids of its mutants have in
+#: common, and these by rising magnitude
+Ladders = Mapping[str, Sequence[Mutant]]
+
+
+def split_ladders(mutants: Iterable[Mutant]) -> tuple[list[Mutant], Ladders]:
+    """The mutants that stand alone, and the ladders."""
+    found: dict[str, list[Mutant]] = {}
+    for mutant in mutants:
+        found.setdefault(mutant.ladder, []).append(mutant)
+    alone = found.pop("", [])
+    return alone, {name: sorted(those, key=lambda one: one.magnitude or 0.0) for name, those in found.items()}
+
+
+def demanded_of(
+    ladders: Ladders, demands: Sequence[Demand], vocabulary: Vocabulary
+) -> dict[str, tuple[float, ...]]:
+    """The demanded magnitudes of each ladder, by its id."""
+    found = {}
+    for name, (first, *_) in ladders.items() if demands else ():
+        quantity = vocabulary.quantity(first.operation, first.pattern, first.quantity)
+        kind = quantity.kind if quantity is not None else None
+        found[name] = wanted_magnitudes(demands, first, kind)
+    return found
+
+
+def at_magnitude(mutant: Mutant, size: float) -> Mutant:
+    """The same fault at another magnitude."""
+    old, new = f"{mutant.magnitude:g}", f"{size:g}"
+    before, _, behind = mutant.description.rpartition(old)
+    variant = mutant.variant.removeprefix(mutant.direction)
+    return replace(
+        mutant,
+        magnitude=size,
+        variant=f"{mutant.direction}{new}{variant.removeprefix(old)}",
+        description=f"{before}{new}{behind}",
+    )
