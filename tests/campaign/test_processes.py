@@ -129,7 +129,8 @@ STARTS = """
 def ends(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Outcome]:
     """How the mutant that reverses the first move of each script ends, by the script."""
     names = ", ".join(f'"{name}"' for name in SCRIPTS)
-    configuration = CONFIGURATION.replace('"mission.py"', names)
+    # one of them computes until that is up
+    configuration = CONFIGURATION.replace('"mission.py"', names) + "    timeout_seconds = 3\n"
     folder = tmp_path_factory.mktemp("scripts")
     write_project(folder, "", STARTS, more=SCRIPTS, configuration=configuration)
     found = run(folder, only=("*arm.move_by#1:dx:reverse",))

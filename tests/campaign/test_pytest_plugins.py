@@ -119,18 +119,25 @@ def test_options_may_come_from_the_environment_and_name_plugins_of_the_project(
             {"conftest.py": "import nowhere\n"},
             "conftest.py:1: in <module>\n      import nowhere\n  E   ModuleNotFoundError: No module named",
         ),
-        (
+        pytest.param(
             TESTS,
             {"pytest.ini": "[pytest]\naddopts = --strict-config\nnonsense = 3\n"},
             "Unknown config option: nonsense",
+            marks=pytest.mark.whole,
         ),
-        (
+        pytest.param(
             TESTS,
             {"conftest.py": "def pytest_collection_modifyitems():\n    1 / 0\n"},
             "ZeroDivisionError: division by zero",
+            marks=pytest.mark.whole,
         ),
         ("import nowhere\n", {}, "import nowhere\nE   ModuleNotFoundError: No module named 'nowhere'"),
-        ("def test_it(nowhere):\n    pass\n", {}, "test_it: fixture 'nowhere' not found"),
+        pytest.param(
+            "def test_it(nowhere):\n    pass\n",
+            {},
+            "test_it: fixture 'nowhere' not found",
+            marks=pytest.mark.whole,
+        ),
         ("HERE = 1\n", {}, "pytest finds no tests with tests -o pythonpath=."),
     ],
 )

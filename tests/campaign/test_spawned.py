@@ -65,7 +65,6 @@ WAYS = {
     "spawnve": "with_nothing('{}', 'spawn')",
     "execve": "with_nothing('{}', 'execve')",
 }
-LONGER = {"forkserver", "nested", "executor", "spawnve", "execve"}
 
 
 def project(folder: Path, ways: list[str]) -> Path:
@@ -90,9 +89,7 @@ def project(folder: Path, ways: list[str]) -> Path:
     return write_project(folder, mission, tests, configuration=configuration)
 
 
-@pytest.mark.parametrize(
-    "ways", [["spawn", "posix_spawn", "empty_spawn"], pytest.param([*LONGER], marks=pytest.mark.whole)]
-)
+@pytest.mark.parametrize("ways", [["spawn", "empty_spawn"], pytest.param([*WAYS], marks=pytest.mark.whole)])
 def test_processes_below_a_fork_are_its_mutant(tmp_path: Path, ways: list[str]) -> None:
     found = run(project(tmp_path, ways), engine="auto", only=("reverse",))
     assert {(one.verdict, one.test) for one in found.values()} == {

@@ -198,12 +198,17 @@ def test_a_process_below_the_tests_has_the_fault_when_it_has_what_that_needs(
     }  # fmt: skip
 
 
+@pytest.mark.whole
+def test_a_fault_that_does_not_wait_for_its_simulator_cannot_be_put_in_place(tmp_path: Path) -> None:
+    head = "import sys; assert 'belt' in sys.modules, 'the simulator is not there yet'"
+    site, project = installed(tmp_path / "site", head, "''"), write(tmp_path / "project", PROJECT)
+    done = mutabot(site, project, "run", "--json", "--engine", "replay")
+    assert done.returncode == ERRORS
+    assert "slip cannot be put in place: AssertionError: the simulator is not there yet" in done.stdout
+
+
 def test_a_fault_that_needs_a_simulator_waits_until_the_program_has_imported_it(tmp_path: Path) -> None:
     head = "import sys; assert 'belt' in sys.modules, 'the simulator is not there yet'"
     project = write(tmp_path / "project", PROJECT)
-    replay = ("--engine", "replay")
-    too_early = mutabot(installed(tmp_path / "a", head, "''"), project, "run", "--json", "--fresh", *replay)
-    assert too_early.returncode == ERRORS
-    assert "slip cannot be put in place: AssertionError: the simulator is not there yet" in too_early.stdout
-    found = rounds(project, installed(tmp_path / "b", head, "'belt'"), *replay)
+    found = rounds(project, installed(tmp_path / "site", head, "'belt'"), "--engine", "replay")
     assert {size: one["verdict"] for size, one in found.items()} == {"0.05": "survived", "0.5": "killed"}

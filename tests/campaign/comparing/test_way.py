@@ -7,11 +7,10 @@ from pathlib import Path
 import pytest
 
 from mutabot.campaign.comparison import Observation, TraceCall, compare
-from mutabot.campaign.request import REPLAY
 from mutabot.campaign.run import run_campaign
 from mutabot.model import Outcome, Probe, Verdict
 from mutabot.runtime.program_text.switches import Alternatives
-from tests.campaign.project import Quiet, outcomes, request_for, write_project
+from tests.campaign.project import REPLAY, Quiet, outcomes, request_for, write_project
 
 MISSION = """
     class Simulation:

@@ -10,12 +10,11 @@ import pytest
 
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.campaign import Campaign
-from mutabot.campaign.request import REPLAY
 from mutabot.campaign.run import run_campaign
 from mutabot.model import Operation, Verdict, Vocabulary
 from mutabot.model.deadline import Limit
 from mutabot.model.events import TestEnd
-from tests.campaign.project import Quiet, outcomes, request_for, write_project
+from tests.campaign.project import REPLAY, Quiet, outcomes, request_for, write_project
 
 CALLS = Vocabulary((Operation("robot:move", ()),))
 

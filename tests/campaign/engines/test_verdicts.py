@@ -129,7 +129,7 @@ CONFIGURATION = """
     program = ["mission.py"]
     vocabulary = ["robot.toml"]
     pytest_args = ["-o", "pythonpath=."]
-    timeout_seconds = 4
+    timeout_seconds = 2
     memory = "3 GB"
 """
 CRASH = """

@@ -202,7 +202,12 @@ def test_a_recorded_call_keeps_nothing(make_stage: Make, is_async: bool, refuses
 
 @pytest.mark.parametrize(
     ("is_async", "refuses", "is_fork"),
-    [(False, False, False), (True, False, True), (False, True, True), (True, True, False)],
+    [
+        (False, False, False),
+        (True, True, True),
+        pytest.param(True, False, False, marks=pytest.mark.whole),
+        pytest.param(False, True, True, marks=pytest.mark.whole),
+    ],
 )
 def test_no_mutant_keeps_what_a_call_was_given(
     make_stage: Make, is_async: bool, refuses: bool, is_fork: bool
