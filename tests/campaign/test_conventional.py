@@ -103,7 +103,7 @@ SOME = (
 @pytest.fixture(scope="module")
 def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("conventional")
-    return write_project(folder, MISSION, TESTS, configuration=QUICK + "timeout_seconds = 3\n")
+    return write_project(folder, MISSION, TESTS, configuration=QUICK + "timeout_seconds = 2\n")
 
 
 #: by one engine in the short run, by both in the long one; that they agree on every mutant is for the corpus

@@ -298,10 +298,18 @@ sys.exit(main(sys.argv[1:]))
     ("words", "told"),
     [
         (["init"], "the command init comes with the package mutabot_init, which is not installed"),
-        (["suggest"], "the command suggest comes with the package mutabot_suggest, which is not installed"),
-        (["live"], "the command live comes with the package mutabot_live, which is not installed"),
         (["motion", "3"], "the command motion comes with the package mutabot_motion, which is not installed"),
         (["run", "--cluster", "local:2"], "--cluster comes with the package mutabot_dask, which is not"),
+        pytest.param(
+            ["suggest"],
+            "the command suggest comes with the package mutabot_suggest, which is not installed",
+            marks=pytest.mark.whole,
+        ),
+        pytest.param(
+            ["live"],
+            "the command live comes with the package mutabot_live, which is not installed",
+            marks=pytest.mark.whole,
+        ),
         (["list", "--family", "catalogue"], "the family catalogue comes with the package mutabot_catalogue"),
         (["list"], "pyproject.toml:5 · tool.mutabot.cluster: comes with the package mutabot_dask, which"),
     ],

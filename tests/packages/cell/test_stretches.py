@@ -145,8 +145,15 @@ def _of_example(name: str, *modules: str) -> list[object]:
             sys.modules.pop(module, None)
 
 
-@pytest.mark.parametrize("seed", [1, 2], ids=["blue", "red"])
-@pytest.mark.parametrize("program", [paper, sorting])
+@pytest.mark.parametrize(
+    ("program", "seed"),
+    [
+        pytest.param(paper, 1, id="paper"),
+        pytest.param(sorting, 2, id="sorting"),
+        pytest.param(paper, 2, id="paper in red", marks=pytest.mark.whole),
+        pytest.param(sorting, 1, id="sorting in blue", marks=pytest.mark.whole),
+    ],
+)
 def test_the_programs_of_the_examples_run_the_same(program: Story, seed: int) -> None:
     assert check_same(program, lambda: Cell(seed)).error is None
 

@@ -55,6 +55,7 @@ def run_suite(folder: Path, number: int, seed: int) -> subprocess.CompletedProce
     )
 
 
+@pytest.mark.whole
 @pytest.mark.usefixtures("plugins")
 def test_the_program_passes_its_test_for_both_colours(example: Path) -> None:
     with domain() as number:

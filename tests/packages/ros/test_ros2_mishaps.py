@@ -138,6 +138,7 @@ def test_a_driver_that_does_not_come_up_kills_no_mutant(end_of: Callable[..., En
     check_that_a_driver_that_does_not_come_up_kills_no_mutant(end_of(LOOKED_AT))
 
 
+@pytest.mark.whole
 def test_a_full_queue_kills_no_mutant_and_a_topic_without_messages_is_told(
     end_of: Callable[..., End],
 ) -> None:

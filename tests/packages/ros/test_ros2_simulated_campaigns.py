@@ -111,6 +111,7 @@ def test_a_campaign_runs_over_the_simulation_if_the_original_ends_there_as_over_
     ]
 
 
+@pytest.mark.whole
 def test_a_mutant_of_it_is_replayed_over_the_simulation(tmp_path: Path) -> None:
     results = campaign(tmp_path)
     request = request_again(tmp_path, results, 1)
