@@ -223,7 +223,6 @@ def measure(given: argparse.Namespace, folder: Path) -> dict[str, Any]:
     shutil.copytree(EXAMPLES / given.example, root, ignore=shutil.ignore_patterns(".*", "__pycache__"))
     request = request_of(
         root, engine=given.engine, rounds=1, family=["robot"], sample=given.sample, evidence=True,
-        configured_selection=False,
     )  # fmt: skip
     with (
         open_executor(request, Silent()) as opened,

@@ -66,7 +66,7 @@ def request_for(folder: Path, given: argparse.Namespace) -> Request:
         jobs,
         engine=given.engine,
         families=tuple(given.families.split(",")),
-        selection=folder / given.selection if given.selection else None,
+        only=(f"@{folder / given.selection}",) if given.selection else (),
         fresh=True,
     )
 

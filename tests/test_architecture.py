@@ -19,7 +19,9 @@ ALLOWED = {
     "errors": set(),
     "extensions": {"errors"},
     "families": set(),
-    "faults": {"errors", "extensions", "families", "languages", "model", "operators", "original", "thresholds"},
+    "faults": {
+        "errors", "extensions", "families", "languages", "model", "operators", "original", "thresholds",
+    },
     "thresholds": {"errors", "families", "model"},
     "repository": set(),
     "shared_memory": set(),
@@ -220,7 +222,7 @@ _WITH_MODULE = {"mutabot/cli/options.py"}
 
 
 def test_no_two_classes_share_a_name() -> None:
-    """In the core, private classes and aliases of types count as well."""
+    """Private classes and aliases of types count as well, and those of all packages."""
     found: dict[str, set[str]] = {}
     for file in sorted(SOURCE.parent.rglob("*.py")):
         place = str(file.relative_to(SOURCE.parent))
@@ -231,11 +233,10 @@ def test_no_two_classes_share_a_name() -> None:
 
 
 def _types(file: Path) -> Iterator[str]:
-    is_core = file.is_relative_to(SOURCE)
     for node in ast.parse(file.read_text(encoding="utf-8")).body:
-        if isinstance(node, ast.ClassDef) and (is_core or not node.name.startswith("_")):
+        if isinstance(node, ast.ClassDef):
             yield node.name
-        elif isinstance(node, ast.Assign) and is_core and isinstance(node.targets[0], ast.Name):
+        elif isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
             name = node.targets[0].id
             if re.fullmatch(r"_?[A-Z][a-z]\w*", name) and "TypeVar(" not in ast.unparse(node.value):
                 yield name

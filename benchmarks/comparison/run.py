@@ -62,7 +62,7 @@ def main() -> int:
 def _campaign(project: Path, copy: Path, options: Running, *, checks: bool = True) -> Results:
     """What a campaign on a copy of the project finds."""
     shutil.copytree(project, copy, ignore=shutil.ignore_patterns(HOME, "__pycache__"))
-    request = request_of(copy, configured_selection=False, **options)
+    request = request_of(copy, **options)
     request = replace(request, every_test=checks)
     if not checks:
         request, variables = switched_off(request)

@@ -212,7 +212,7 @@ class _Mishap(MessageOperator):
         return await proceed(call.with_call_fault(self.call_fault, context.option))
 
 
-class _Death(_Mishap):
+class _ProcessDeath(_Mishap):
     is_raced = True
     forms = _SENT | _COMING
 
@@ -221,7 +221,7 @@ def _dead(how: str) -> tuple[Example, ...]:
     return tuple(Example(Subject(one), performed=({how: 0.0},)) for one in (GOAL, TICK))
 
 
-class KillNode(_Death):
+class KillNode(_ProcessDeath):
     """The node's process is killed at the call, if it is not that of the tests."""
 
     name = "kill-node"
@@ -230,7 +230,7 @@ class KillNode(_Death):
     examples = _dead("killed")
 
 
-class RestartNode(_Death):
+class RestartNode(_ProcessDeath):
     """The node's process is killed at the call and begins anew with the same command line, once, if it is
     not that of the tests.
     """

@@ -86,7 +86,7 @@ class Dropout(CommandOperator):
         return f"{what} instead of {quantity.label} {quantity.text(before)}"
 
 
-class _Reading(ValueOperator):
+class _ChangedReading(ValueOperator):
     """Changes a reading by those before it at its place, or by chance.
 
     Stands for: A sensor that drops out or is misread: {sensors}.
@@ -97,7 +97,7 @@ class _Reading(ValueOperator):
     of_written = False
 
 
-class OldReading(_Reading):
+class OldReading(_ChangedReading):
     """A reading is that of the call before, or of five calls before, at the same place.
 
     Where: read quantities, at places that a test calls more than once.
@@ -126,7 +126,7 @@ class OldReading(_Reading):
         return f"reads the {subject.required_quantity.label} of {calls} ago"
 
 
-class StuckReading(_Reading):
+class StuckReading(_ChangedReading):
     """From the second call on a place reads what it read first in the test.
 
     Where: read quantities, at places that a test calls more than once.
@@ -155,7 +155,7 @@ def _kept(value: Value) -> Value:
     return copy.copy(value) if hasattr(value, "__len__") and not isinstance(value, str | bytes) else value
 
 
-class Spike(_Reading):
+class Spike(_ChangedReading):
     """One reading in ten, by chance, jumps to the farther end of its range, or to ten times its value if it
     has none.
 
@@ -187,7 +187,7 @@ class Spike(_Reading):
         return f"reads {quantity.label} {quantity.text(before)}, now and then {jump}"
 
 
-class SaturatedReading(_Reading):
+class SaturatedReading(_ChangedReading):
     """A reading is limited to the middle 80 % of its range, or without a range to 80 % of the first one at
     its place in the test.
 
@@ -262,7 +262,7 @@ class WrongObject(ValueOperator):
         return context.next_value(value)
 
 
-class ConfusedLabel(_Reading):
+class ConfusedLabel(_ChangedReading):
     """A label or flag is read as the next of its values, with a probability of 30 %.
 
     Where: read quantities of kind label or flag with two values or more.

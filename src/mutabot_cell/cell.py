@@ -27,7 +27,7 @@ from .errors import BadArgument
 from .force_sensor import Wrench, true_wrench
 from .geometry import Pose, Position
 from .gripper import Gripper
-from .monitors import Condition, Monitors, Values
+from .monitors import Condition, MonitoredValues, Monitors
 from .parts import Part
 from .robot import Robot
 from .scene import Scene
@@ -267,7 +267,9 @@ class Cell:
             raise BadArgument(f"Expected seconds >= 0 but got seconds={seconds!r}")
         self.simulation.advance(seconds)
 
-    def always(self, condition: Callable[[], object], name: str, values: Values | None = None) -> Condition:
+    def always(
+        self, condition: Callable[[], object], name: str, values: MonitoredValues | None = None
+    ) -> Condition:
         """Watch `condition` from now on, at every control tick.
 
         The condition should look at `cell.truth`: a sensor read at every tick would use up its noise.

@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from .geometry import Array
-from .stretch import Note, Stretch
+from .stretch import Stretch, StretchNote
 
 Hook = Callable[[], None]
 
@@ -46,7 +46,7 @@ class Glance:
     """
 
     until: Callable[[], int]
-    note: Note | None = None
+    note: StretchNote | None = None
     quiet: Callable[[Stretch, int, int], int] | None = None
     passed: Callable[[Stretch, int], None] | None = None
 
@@ -63,7 +63,7 @@ class Foresight:
         self._glances: dict[Hook, Glance] = {}
         self._quiet: list[Callable[[Stretch, int, int], int]] = []
         self._passed: list[Callable[[Stretch, int], None]] = []
-        self.notes: list[Note] = []
+        self.notes: list[StretchNote] = []
 
     def drives(self, hook: Hook, plan: InputPlan) -> None:
         """In a stretch, this plan stands for `hook`, which is called before each tick."""

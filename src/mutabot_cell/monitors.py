@@ -10,7 +10,7 @@ from .foresight import Glance
 from .simulation import Simulation
 from .stretch import LONGEST
 
-Values = Callable[[], Mapping[str, object]]
+MonitoredValues = Callable[[], Mapping[str, object]]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -19,13 +19,13 @@ class Condition:
 
     name: str
     holds: Callable[[], object]
-    values: Values
+    values: MonitoredValues
 
 
 class Monitors:
     """Watches conditions; remembers what broke, so that a swallowed exception still fails the test."""
 
-    def __init__(self, simulation: Simulation, values: Values) -> None:
+    def __init__(self, simulation: Simulation, values: MonitoredValues) -> None:
         self._simulation = simulation
         self._values = values
         self._watched: list[Condition] = []
@@ -33,7 +33,9 @@ class Monitors:
         simulation.after_tick.append(self._check)
         simulation.foresight.checks(self._check, Glance(lambda: 1 if self._watched else LONGEST))
 
-    def always(self, condition: Callable[[], object], name: str, values: Values | None = None) -> Condition:
+    def always(
+        self, condition: Callable[[], object], name: str, values: MonitoredValues | None = None
+    ) -> Condition:
         """Watch `condition` from now on, at every tick. See `Cell.always`."""
         watched = Condition(name, condition, values or self._values)
         self._watched.append(watched)

@@ -15,7 +15,7 @@ from typing import Any
 
 _code_of = attrgetter("__code__")
 _CONSTANT = (int, float, str, bytes, tuple, frozenset)
-_Names = Mapping[str, Any]
+_NamedValues = Mapping[str, Any]
 
 
 class Originals:
@@ -27,7 +27,7 @@ class Originals:
     """
 
     def __init__(self, modules: Iterable[str], libraries: Iterable[ModuleType]) -> None:
-        self._names: list[tuple[_Names, itemgetter[Any], tuple[Any, ...]]] = []
+        self._names: list[tuple[_NamedValues, itemgetter[Any], tuple[Any, ...]]] = []
         self._functions: list[FunctionType] = []
         self._codes: list[CodeType] = []
         self._methods: set[str] = set()
@@ -56,7 +56,7 @@ class Originals:
         except KeyError:  # something was taken away
             return False
 
-    def _note(self, found: _Names, names: _Names | None = None) -> None:
+    def _note(self, found: _NamedValues, names: _NamedValues | None = None) -> None:
         kept = {name: value for name, value in found.items() if _counts(name, value)}
         if not kept:
             return

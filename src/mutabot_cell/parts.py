@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-Triple = tuple[float, float, float]
+Vector3 = tuple[float, float, float]
 
 BOX_EDGE = 0.05
 RED_RGBA = (0.78, 0.13, 0.12, 1.0)
@@ -37,30 +37,30 @@ class Part(ABC):
     """
 
     name: str = "box"
-    position: Triple = (0.55, 0.2, 1.0)
-    angles: Triple = (0.0, 0.0, 0.0)
+    position: Vector3 = (0.55, 0.2, 1.0)
+    angles: Vector3 = (0.0, 0.0, 0.0)
     colour: str | None = None
     rgba: tuple[float, float, float, float] | None = None
     mass: float = 0.1
-    centre_of_mass: Triple | None = None
+    centre_of_mass: Vector3 | None = None
     friction: float | None = None
     jitter: float = 0.0005
 
     @property
     @abstractmethod
-    def extent(self) -> Triple:
+    def extent(self) -> Vector3:
         """Edges of the smallest upright box around the part before it is turned, m."""
 
     @abstractmethod
-    def reach(self, direction: Triple) -> float:
+    def reach(self, direction: Vector3) -> float:
         """How far the part reaches from its middle along a direction of length 1 in its own frame, m."""
 
     @abstractmethod
-    def points(self) -> tuple[Triple, ...]:
+    def points(self) -> tuple[Vector3, ...]:
         """Points within the part, near its surface, and its middle: what a camera looks for; m, own frame."""
 
     @property
-    def foot(self) -> Triple:
+    def foot(self) -> Vector3:
         """From the middle to the point below it on which the part rests at first, in its own frame, m."""
         (x, y, z), height = self.up, self.middle_height
         return (-height * x, -height * y, -height * z)
@@ -71,7 +71,7 @@ class Part(ABC):
         return self.reach(self.up)
 
     @property
-    def up(self) -> Triple:
+    def up(self) -> Vector3:
         """The world's up in the part's own frame as it is placed."""
         (sx, cx), (sy, cy) = ((math.sin(math.radians(a)), math.cos(math.radians(a))) for a in self.angles[:2])
         return (-sy, cy * sx, cy * cx)
@@ -86,18 +86,18 @@ class Part(ABC):
 class Box(Part):
     """A block with three edges, m."""
 
-    size: Triple = (BOX_EDGE, BOX_EDGE, BOX_EDGE)
+    size: Vector3 = (BOX_EDGE, BOX_EDGE, BOX_EDGE)
 
     @property
-    def extent(self) -> Triple:
+    def extent(self) -> Vector3:
         """Its edges, m."""
         return self.size
 
-    def reach(self, direction: Triple) -> float:
+    def reach(self, direction: Vector3) -> float:
         """Half of the edges along it, m."""
         return sum(abs(part) * edge / 2 for part, edge in zip(direction, self.size, strict=True))
 
-    def points(self) -> tuple[Triple, ...]:
+    def points(self) -> tuple[Vector3, ...]:
         """Its middle and its corners, nearly."""
         return _corners(self.size)
 
@@ -110,16 +110,16 @@ class Cylinder(Part):
     height: float = 0.05
 
     @property
-    def extent(self) -> Triple:
+    def extent(self) -> Vector3:
         """Diameter, diameter and height, m."""
         return (self.diameter, self.diameter, self.height)
 
-    def reach(self, direction: Triple) -> float:
+    def reach(self, direction: Vector3) -> float:
         """To the farthest point of the upper or lower rim, m."""
         x, y, z = direction
         return math.hypot(x, y) * self.diameter / 2 + abs(z) * self.height / 2
 
-    def points(self) -> tuple[Triple, ...]:
+    def points(self) -> tuple[Vector3, ...]:
         """Its middle and four points near each rim."""
         edge = self.diameter / math.sqrt(2)
         return _corners((edge, edge, self.height))
@@ -133,41 +133,41 @@ class Mesh(Part):
         vertices: at least four that do not lie in one plane, m.
     """
 
-    vertices: tuple[Triple, ...]
+    vertices: tuple[Vector3, ...]
 
     @property
-    def extent(self) -> Triple:
+    def extent(self) -> Vector3:
         """Edges of the bounding box, m."""
         low, high = self._bounds()
         return (high[0] - low[0], high[1] - low[1], high[2] - low[2])
 
-    def centred(self) -> tuple[Triple, ...]:
+    def centred(self) -> tuple[Vector3, ...]:
         """The points from the middle of the bounding box, m."""
         low, high = self._bounds()
         middle = [(one + other) / 2 for one, other in zip(low, high, strict=True)]
         return tuple((x - middle[0], y - middle[1], z - middle[2]) for x, y, z in self.vertices)
 
-    def reach(self, direction: Triple) -> float:
+    def reach(self, direction: Vector3) -> float:
         """To the point that lies farthest along it, m."""
         return max(_along(point, direction) for point in self.centred())
 
-    def points(self) -> tuple[Triple, ...]:
+    def points(self) -> tuple[Vector3, ...]:
         """Its middle and its farthest points along the diagonals, nearly."""
         points = self.centred()
         far = [max(points, key=partial(_along, way)) for way in _corners((1.0, 1.0, 1.0))[1:]]
         return ((0.0, 0.0, 0.0), *((x * _SEEN, y * _SEEN, z * _SEEN) for x, y, z in far))
 
-    def _bounds(self) -> tuple[Triple, Triple]:
+    def _bounds(self) -> tuple[Vector3, Vector3]:
         columns: Any = list(zip(*self.vertices, strict=True))
         return tuple(map(min, columns)), tuple(map(max, columns))
 
 
-def _along(one: Triple, other: Triple) -> float:
+def _along(one: Vector3, other: Vector3) -> float:
     return one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
 
 
-def _corners(edges: Triple) -> tuple[Triple, ...]:
-    halves: Iterable[Triple] = (
+def _corners(edges: Vector3) -> tuple[Vector3, ...]:
+    halves: Iterable[Vector3] = (
         (x * edges[0] / 2 * _SEEN, y * edges[1] / 2 * _SEEN, z * edges[2] / 2 * _SEEN)
         for x in (-1, 1)
         for y in (-1, 1)

@@ -8,21 +8,21 @@ import mujoco
 import numpy as np
 
 from mutabot_cell.models.sleeping import awake
-from mutabot_cell.parts import Triple
+from mutabot_cell.parts import Vector3
 
 from .errors import BadArgument
 from .geometry import Array, quaternion_from_euler
 from .simulation import Simulation
 
-Place = tuple[Array, Array]
+Placement = tuple[Array, Array]
 """A position, shape (3,), m, and a unit quaternion, shape (4,)."""
 
 
 def move_fixture(
     simulation: Simulation,
     name: str,
-    centre: Triple,
-    angles: Triple = (0.0, 0.0, 0.0),
+    centre: Vector3,
+    angles: Vector3 = (0.0, 0.0, 0.0),
     *,
     carried: Iterable[str] = (),
 ) -> None:
@@ -50,7 +50,7 @@ def move_fixture(
         mujoco.mj_forward(model, data)
 
 
-def _carried(before: Place, after: Place, pose: Place) -> Place:
+def _carried(before: Placement, after: Placement, pose: Placement) -> Placement:
     """The pose that relates to `after` as `pose` did to `before`."""
     back, place, turned = (np.zeros(3), np.zeros(4)), np.zeros(3), np.zeros(4)
     mujoco.mju_negPose(*back, *before)

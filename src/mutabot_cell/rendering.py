@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from .cell import Cell
-from .parts import Triple
+from .parts import Vector3
 from .shown.camera import Camera, Pixels, View
 
 _USUAL = View()
@@ -25,8 +25,8 @@ def render(
     azimuth: float = _USUAL.azimuth,
     elevation: float = _USUAL.elevation,
     distance: float = _USUAL.distance,
-    look_at: Triple = _USUAL.look_at,
-    trace: Sequence[Triple] = (),
+    look_at: Vector3 = _USUAL.look_at,
+    trace: Sequence[Vector3] = (),
 ) -> Path:
     """Write a PNG picture of the cell as it is now, and return its path.
 

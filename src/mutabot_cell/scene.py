@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from os import PathLike
 
-from .parts import Box, Part, Triple
+from .parts import Box, Part, Vector3
 
 BASE_POSITION = (0.0, 0.0, 0.9)
 """Where the robot's base stands in the world, m."""
@@ -60,7 +60,7 @@ class Fixture:
     centre: tuple[float, float, float]
     rgba: tuple[float, float, float, float] = (0.6, 0.6, 0.62, 1.0)
     friction: float = FRICTION_ON_STEEL
-    angles: Triple = (0.0, 0.0, 0.0)
+    angles: Vector3 = (0.0, 0.0, 0.0)
     belt: Belt | None = None
 
 
@@ -84,8 +84,8 @@ class LightBarrier:
     """
 
     name: str
-    start: Triple
-    end: Triple
+    start: Vector3
+    end: Vector3
     rate: float = 100.0
 
 
@@ -110,7 +110,7 @@ class Scene:
     marks: tuple[Mark, ...] = (RED_TARGET,)
     parts: tuple[Part, ...] = field(default_factory=lambda: (Box(),))
     light_barriers: tuple[LightBarrier, ...] = ()
-    camera: Triple = CAMERA
+    camera: Vector3 = CAMERA
 
     @classmethod
     def from_mjcf(

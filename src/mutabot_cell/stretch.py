@@ -16,7 +16,7 @@ LONGEST = 50
 """Control ticks in a stretch at most."""
 
 
-Note = Callable[["Stretch", int], None]
+StretchNote = Callable[["Stretch", int], None]
 """Called after a tick of a stretch, with its number."""
 
 
@@ -44,7 +44,7 @@ class Stretch:
         self.places, self.speeds, self.constraints, self.motors, self.readings = columns
         self._reached = 0
 
-    def run(self, ticks: int, notes: Sequence[Note]) -> bool:
+    def run(self, ticks: int, notes: Sequence[StretchNote]) -> bool:
         """Step so many ticks from the present state; each of `notes` is called after each tick.
 
         Returns:

@@ -35,7 +35,7 @@ _TOLD, _PATIENCE = 5.0, 600.0
 
 
 @dataclass(slots=True)
-class _Trial:
+class _RunningTask:
     """A task on its way.
 
     Attributes:
@@ -70,8 +70,8 @@ class Dispatch:
     def __init__(self, connection: ClusterConnection, tasks: Iterator[Task]) -> None:
         self._connection, self._tasks = connection, tasks
         self._ground = connection.ground
-        self._again: deque[_Trial] = deque()
-        self._running: dict[int, tuple[str, _Trial]] = {}
+        self._again: deque[_RunningTask] = deque()
+        self._running: dict[int, tuple[str, _RunningTask]] = {}
         self._settled: deque[Answer] = deque()
         self._next = self._taken()
         self._lonely_since: float | None = None
@@ -91,9 +91,9 @@ class Dispatch:
         finally:
             self._connection.link.forget(*self._running)
 
-    def _taken(self) -> _Trial | None:
+    def _taken(self) -> _RunningTask | None:
         task = next(self._tasks, None)
-        return _Trial(task) if task is not None else None
+        return _RunningTask(task) if task is not None else None
 
     def _assign(self) -> None:
         busy = {worker for worker, _ in self._running.values()}
@@ -107,7 +107,7 @@ class Dispatch:
             number = self._connection.link.ask(worker, far.run_unit, trial.unit.data())
             self._running[number] = worker, trial
 
-    def _due(self, worker: str, fit: Collection[str]) -> _Trial | None:
+    def _due(self, worker: str, fit: Collection[str]) -> _RunningTask | None:
         """The next trial for a worker: one lost once comes first, one lost more often when all have begun.
 
         Losses come together, as where a cluster is taken away piece by piece: later tries are better later.
@@ -120,7 +120,7 @@ class Dispatch:
         trial, self._next = self._next, None if self._next is None else self._taken()
         return trial
 
-    def _may_run(self, trial: _Trial, worker: str, fit: Collection[str]) -> bool:
+    def _may_run(self, trial: _RunningTask, worker: str, fit: Collection[str]) -> bool:
         """Whether a lost trial may go to a worker: to one that it was lost at if there will be no other."""
         if worker not in trial.avoided:
             return True
@@ -172,13 +172,13 @@ class Dispatch:
         self._connection.done += 1
         self._settled.append(answer.found or Answer([], Result(trial.task, lost=answer.lost)))
 
-    def _misfit(self, trial: _Trial, worker: str, why: str) -> None:
+    def _misfit(self, trial: _RunningTask, worker: str, why: str) -> None:
         """Take no answer from a worker that gives wrong ones, and make nothing of this one."""
         self._connection.roster.refuse(worker, f"its answer does not fit: {why}")
         lost = f"the answer of its worker does not fit: {why} ({worker})"
         self._settled.append(Answer([], Result(trial.task, lost=lost)))
 
-    def _lost(self, trial: _Trial, worker: str, why: str) -> None:
+    def _lost(self, trial: _RunningTask, worker: str, why: str) -> None:
         trial.faults.append(f"{why} ({worker})")
         trial.avoided.add(worker)
         trial.lost_at = time.monotonic()

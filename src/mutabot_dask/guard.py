@@ -48,7 +48,7 @@ class Unreadable(Exception):  # noqa: N818  # it is a value
         return self.said or "an object that is not read"
 
 
-class _Reader(pickle.Unpickler):
+class _SafeUnpickler(pickle.Unpickler):
     """Imports nothing and calls nothing: classes and functions are stand-ins."""
 
     def find_class(self, module: str, name: str) -> Any:
@@ -86,7 +86,7 @@ def _loaded(data: Any, **given: Any) -> Any:
     try:
         if bytes(data) in _BYTES:
             return bytes
-        return _Reader(io.BytesIO(data), buffers=given.get("buffers") or ()).load()
+        return _SafeUnpickler(io.BytesIO(data), buffers=given.get("buffers") or ()).load()
     except Exception as error:
         return Unreadable(f"no readable data ({type(error).__name__})")
 

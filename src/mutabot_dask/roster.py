@@ -20,7 +20,7 @@ _SHOWN, _TOLD = 5, 10
 
 
 @dataclass(slots=True)
-class _Worker:
+class _ClusterWorker:
     """One worker.
 
     Attributes:
@@ -65,7 +65,7 @@ class Roster:
     tell: Callable[[str], None]
     bundle: Bundle | None = None
     told: dict[str, None] = field(default_factory=dict)
-    _workers: dict[str, _Worker] = field(default_factory=dict)
+    _workers: dict[str, _ClusterWorker] = field(default_factory=dict)
     _asked: dict[int, str] = field(default_factory=dict)
 
     @property
@@ -101,7 +101,7 @@ class Roster:
             for number in self._workers.pop(address).asked:
                 self._asked.pop(number, None)
         for address in there:
-            worker = self._workers.setdefault(address, _Worker())
+            worker = self._workers.setdefault(address, _ClusterWorker())
             is_due = not worker.is_known or (self.bundle is not None and not worker.is_fit)
             if is_due and not worker.asked and worker.refused is None:
                 self._introduce(address)
@@ -127,7 +127,7 @@ class Roster:
             self._has_answered(address, worker)
         return True
 
-    def _has_answered(self, address: str, worker: _Worker) -> None:
+    def _has_answered(self, address: str, worker: _ClusterWorker) -> None:
         """A worker has answered all that it was asked."""
         fault, worker.fault = worker.fault, None
         if fault is None:
@@ -190,7 +190,7 @@ class Roster:
         self._asked[number] = address
         self._workers[address].asked.add(number)
 
-    def _introduced(self, address: str, worker: _Worker, one: Introduction) -> None:
+    def _introduced(self, address: str, worker: _ClusterWorker, one: Introduction) -> None:
         differing = differences(self.versions, one.versions)
         if differing:
             more = f" and {len(differing) - _SHOWN} more" if len(differing) > _SHOWN else ""

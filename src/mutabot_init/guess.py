@@ -33,13 +33,13 @@ from .words import (
 )
 
 #: a quantity as a vocabulary writes it; kind, axis and mode of a motion
-Table = dict[str, Any]
-Motion = tuple[str, str | None, str | None]
+TomlTable = dict[str, Any]
+MotionMeaning = tuple[str, str | None, str | None]
 
 _AXIS = re.compile(r"(?P<delta>d|delta_?|offset_?)?(?P<axis>[xyz])\d?")
 _TURN = re.compile(r"(?:d|delta_?)?(?:theta|rot|rotation|angle|euler|r|w)_?(?P<axis>[xyz])")
 #: kind, axis and mode of what is only named
-_NAMED: Mapping[str, Motion] = {
+_NAMED: Mapping[str, MotionMeaning] = {
     "angle": ("rotation", None, None),
     "height": ("translation", "z", None),
     "length": ("translation", None, "by"),
@@ -82,7 +82,7 @@ class Guess:
         note: how it was told, where that was by the size of values.
     """
 
-    table: Table = field(default_factory=dict)
+    table: TomlTable = field(default_factory=dict)
     questions: list[str] = field(default_factory=list)
     note: str = ""
 
@@ -155,7 +155,7 @@ def guess_argument(name: str, setting: NameContext) -> Guess:
     return Guess()
 
 
-def _by_verb(noun: str, stem: str, setting: NameContext) -> Motion | None:
+def _by_verb(noun: str, stem: str, setting: NameContext) -> MotionMeaning | None:
     """Kind, axis and mode where the callable's verb decides, whatever its only number is called."""
     verb, subject = first(VERBS, setting.words), noun_of(setting.words)
     is_axis = _AXIS.fullmatch(stem) is not None
@@ -173,7 +173,7 @@ def _by_verb(noun: str, stem: str, setting: NameContext) -> Motion | None:
     return ("translation", axis, "by" if noun == "length" else None) if is_told else None
 
 
-def _by_name(noun: str, stem: str) -> Motion | None:
+def _by_name(noun: str, stem: str) -> MotionMeaning | None:
     """Kind, axis and mode where the name alone shows a motion."""
     if match := _AXIS.fullmatch(stem):
         return "translation", match["axis"], "by" if match["delta"] else None
@@ -193,7 +193,7 @@ def _moved(
     kind: str, axis: str | None, mode: str | None, unit: str | None, name: str, setting: NameContext
 ) -> Guess:
     """A commanded motion, or what a setter sets."""
-    table: Table = {"kind": kind, **({"axis": axis} if axis else {})}
+    table: TomlTable = {"kind": kind, **({"axis": axis} if axis else {})}
     if kind not in ("translation", "rotation"):
         return measured(table, kind, unit, name, setting)
     guess = measured(table, "angle" if kind == "rotation" else "length", unit, name, setting)
@@ -218,7 +218,7 @@ def _mode(setting: NameContext) -> str | None:
     return {"relative": "by", "absolute": "to"}[said.pop()] if len(said) == 1 else None
 
 
-def measured(table: Table, dimension: str, unit: str | None, name: str, setting: NameContext) -> Guess:
+def measured(table: TomlTable, dimension: str, unit: str | None, name: str, setting: NameContext) -> Guess:
     """A quantity with a unit: as its name or a docstring says, else as its values show."""
     fitting = UNITS[dimension]
     if unit in fitting:
@@ -293,7 +293,7 @@ def _opening(unit: str | None, name: str, setting: NameContext) -> Guess:
     if limits in ([0.0, 1.0], [0.0, 100.0]) and not said:
         unit = "fraction" if limits[1] == 1.0 else "percent"
         return Guess({"kind": "opening", "unit": unit, "range": limits})
-    table: Table = {"kind": "opening", **({"unit": said[0]} if said else {}), "range": ["…", "…"]}
+    table: TomlTable = {"kind": "opening", **({"unit": said[0]} if said else {}), "range": ["…", "…"]}
     asked = "what is fully closed, what is fully open?"
     return Guess(table, [asked if said else f"{asked} in which unit (fraction, percent, mm, m)?"])
 

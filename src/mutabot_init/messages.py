@@ -12,7 +12,7 @@ from typing import Any
 
 from mutabot.api.values import Form
 
-from .guess import Guess, NameContext, Table, guess_argument, guess_elements, guess_reading
+from .guess import Guess, NameContext, TomlTable, guess_argument, guess_elements, guess_reading
 from .watched import Use, Values, WatchedPart
 from .words import GRIPPER, READERS, VERBS, words_of
 
@@ -221,7 +221,7 @@ def _by_type(part: WatchedPart, field_: tuple[str, str], place: MessagePlace) ->
             return _motion("rotation" if turns else "translation", name, place)
         return Guess(_framed({"kind": "speed", "axis": name, "unit": "rad/s" if turns else "m/s"}, place))
     if field_ == _GRIPPER and place.is_written:
-        table: Table = {"kind": "opening", "unit": "m", "range": ["…", "…"]}
+        table: TomlTable = {"kind": "opening", "unit": "m", "range": ["…", "…"]}
         return Guess(table, ["how far is it fully closed, and fully open?"])
     return Guess({"kind": "distance", "unit": "m"}) if field_ in (_GRIPPER, _RANGE) else None
 
@@ -235,7 +235,7 @@ def _motion(kind: str, name: str, place: MessagePlace) -> Guess:
     return Guess({**table, "mode": "by" if place.is_by else "to"} if place.is_written else table)
 
 
-def _framed(table: Table, place: MessagePlace) -> Table:
+def _framed(table: TomlTable, place: MessagePlace) -> TomlTable:
     return {**table, "frame": place.frame} if place.frame else table
 
 
@@ -282,7 +282,7 @@ def by_name(part: WatchedPart, words: Sequence[str], *, is_written: bool) -> Mea
         return {path: _by_convention(guess, values) for path, guess in found.items()}
     if all(isinstance(value, bool) for value in values):
         kind = "opening" if any(one in word for word in words for one in GRIPPER) else "output"
-        table: Table = {"kind": kind, "values": [False, True]} if is_written else {"kind": "flag"}
+        table: TomlTable = {"kind": kind, "values": [False, True]} if is_written else {"kind": "flag"}
         return {part.path: Guess(table)}
     few = _LEAST_VALUES <= len(values) <= _MOST_VALUES
     if all(isinstance(value, str) for value in values):

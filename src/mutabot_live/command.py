@@ -45,7 +45,7 @@ class Live:
     def __init__(self, request: Request, port: int, tell: Callable[[str], None]) -> None:
         self._request, self._tell = request, tell
         self._feed = LiveFeed()
-        self._told = _Told(self._feed)
+        self._told = _FeedProgress(self._feed)
         pages = Pages(request.journal_path, request.root.resolve().name, lambda: self._told.steps)
         self._told.pages = pages
         commands = {"stop": _stop}
@@ -103,7 +103,7 @@ def _stop() -> None:
     signal.pthread_kill(main, signal.SIGTERM if is_ignored else signal.SIGINT)
 
 
-class _Told:
+class _FeedProgress:
     """A progress that also tells the feed.
 
     Attributes:

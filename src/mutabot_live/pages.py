@@ -43,7 +43,7 @@ class Page:
 
 
 @dataclass(frozen=True, slots=True)
-class _Snapshot:
+class _CampaignSnapshot:
     """The campaign as it was when the journal was last looked into.
 
     Attributes:
@@ -73,7 +73,7 @@ class Pages:
         self._journal, self._name, self._version = journal, name, version
         self._assets = dict(_assets())
         self._lock = threading.Lock()
-        self._snapshot = _Snapshot(0, None, Cleaner(None))
+        self._snapshot = _CampaignSnapshot(0, None, Cleaner(None))
         self._scripts: dict[str, bytes] = {}
         self._recorded: Recorded | None = None
         self._next = 0.0
@@ -99,12 +99,12 @@ class Pages:
         with self._lock:
             self._next = 0.0
 
-    def _look(self) -> _Snapshot:
+    def _look(self) -> _CampaignSnapshot:
         """The campaign, as new as may be: reading must not take the time of those who do the work."""
         version, now = self._version(), time.monotonic()
         if version == self._snapshot.version or now < self._next:
             return self._snapshot
-        self._snapshot = _Snapshot(version, *self._read())
+        self._snapshot = _CampaignSnapshot(version, *self._read())
         self._scripts.clear()
         took = time.monotonic() - now
         self.every = max(_LEAST, _TIMES * took)
@@ -120,7 +120,7 @@ class Pages:
             return None, Cleaner(None)  # it is still that of the campaign before
         return portable(stored), Cleaner(stored.meta.get("root"))
 
-    def _whole(self, path: str, snapshot: _Snapshot) -> bytes:
+    def _whole(self, path: str, snapshot: _CampaignSnapshot) -> bytes:
         campaign = snapshot.campaign
         if campaign is None:
             return b""
@@ -133,7 +133,7 @@ class Pages:
                 self._scripts[path] = script("sources", sources)
         return self._scripts[path]
 
-    def _mutant(self, number: int, snapshot: _Snapshot) -> bytes | None:
+    def _mutant(self, number: int, snapshot: _CampaignSnapshot) -> bytes | None:
         campaign = snapshot.campaign
         found = (one for one in campaign.mutants if one.mutant.number == number) if campaign else iter(())
         result = next(found, None)
@@ -148,7 +148,7 @@ class Pages:
             data = _recordings(recorded, result)
             return page + (script(f"recordings {number}", data) if any(data.values()) else b"")
 
-    def _original(self, number: int, snapshot: _Snapshot) -> bytes | None:
+    def _original(self, number: int, snapshot: _CampaignSnapshot) -> bytes | None:
         originals = [*self._recorded.originals.values()] if self._recorded is not None else []
         return script(f"original {number}", originals[number]) if number < len(originals) else None
 

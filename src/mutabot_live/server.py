@@ -143,7 +143,7 @@ _HEADERS = {
     "X-Content-Type-Options": "nosniff",
 }
 
-Commands = Mapping[str, Callable[[], None]]
+PageCommands = Mapping[str, Callable[[], None]]
 
 
 class Server:
@@ -157,7 +157,7 @@ class Server:
         address: where a browser finds it. Who knows it may see the report, and give commands.
     """
 
-    def __init__(self, pages: Pages, feed: LiveFeed, commands: Commands, port: int = 0) -> None:
+    def __init__(self, pages: Pages, feed: LiveFeed, commands: PageCommands, port: int = 0) -> None:
         token = secrets.token_urlsafe(24)
         try:
             self._server = _Server(port, token, pages, feed, commands)
@@ -185,10 +185,10 @@ class _Server(ThreadingHTTPServer):
     block_on_close = False  # a browser that does not read holds up nobody
     request_queue_size = MOST
 
-    def __init__(self, port: int, token: str, pages: Pages, feed: LiveFeed, commands: Commands) -> None:
+    def __init__(self, port: int, token: str, pages: Pages, feed: LiveFeed, commands: PageCommands) -> None:
         self.token, self.pages, self.feed, self.commands = token.encode(), pages, feed, commands
         self._places = threading.BoundedSemaphore(MOST)
-        super().__init__((HOST, port), _Handler)
+        super().__init__((HOST, port), _PageHandler)
 
     def get_request(self) -> tuple[socket.socket, Any]:
         """The next connection; if there can be none now, not at once again."""
@@ -220,7 +220,7 @@ class _Server(ThreadingHTTPServer):
         """A browser that has gone, or is too slow: nothing of it belongs on the terminal."""
 
 
-class _Request(io.RawIOBase):
+class _BoundedRequest(io.RawIOBase):
     """What a browser sends, as far as it comes in time and is not too much; then it ends."""
 
     def __init__(self, connection: socket.socket) -> None:
@@ -245,7 +245,7 @@ class _Request(io.RawIOBase):
         return count
 
 
-class _Handler(BaseHTTPRequestHandler):
+class _PageHandler(BaseHTTPRequestHandler):
     server: _Server
     timeout = _PATIENCE
     server_version, sys_version = "mutabot", ""
@@ -254,7 +254,7 @@ class _Handler(BaseHTTPRequestHandler):
         """Read no longer, and no more, than a request may take."""
         super().setup()
         self.rfile.close()
-        self.rfile = io.BufferedReader(_Request(self.connection))
+        self.rfile = io.BufferedReader(_BoundedRequest(self.connection))
 
     def do_GET(self) -> None:
         """A page, data, or the stream of events."""

@@ -131,7 +131,7 @@ def _one_of(tests: list[str], wanted: str) -> str:
     raise UsageError(f"--test {wanted}: {problem}")
 
 
-Test = Annotated[
+TestOption = Annotated[
     str | None,
     typer.Option("--test", metavar="TEST", help="Show this test: its node id, or a part that is unique."),
 ]
@@ -154,7 +154,7 @@ def motion(
     mutant: str,
     *,
     round: int | None = None,
-    test: Test = None,
+    test: TestOption = None,
     video: Video = None,
     rerun: Rerun = False,
     rrd: Rrd = None,

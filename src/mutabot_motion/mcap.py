@@ -28,10 +28,10 @@ def write(file: Path, shown: Shown) -> None:
     file.unlink(missing_ok=True)
     with foxglove.open_mcap(str(file), context=context) as writer:
         writer.write_metadata("mutabot", shown.about)
-        _Topics(shown, context).log()
+        _FileTopics(shown, context).log()
 
 
-class _Topics:
+class _FileTopics:
     """All topics of a file."""
 
     def __init__(self, shown: Shown, context: Any) -> None:

@@ -30,10 +30,10 @@ def hook(messages: Names) -> Callable[[], None]:
     """Let the messages of this process pass by; returns what takes the hooks away."""
     patches = Patches()
     rospy: Any = sys.modules[MODULE]
-    _Topics(messages).hook(patches, rospy)
-    _Services(messages).hook(patches, rospy)
-    _Parameters(messages).hook(patches, rospy)
-    _Times(messages).hook(patches, rospy)
+    _PublishersAndSubscribers(messages).hook(patches, rospy)
+    _ServiceProxies(messages).hook(patches, rospy)
+    _ParameterServerValues(messages).hook(patches, rospy)
+    _TimersAndRates(messages).hook(patches, rospy)
     for module in (rospy.client, rospy):
         patches.put(module, "init_node", functools.partial(_note, messages))
     node.clock.hook(patches, rospy)
@@ -52,7 +52,7 @@ def _note(messages: Names, original: Any, *args: Any, **kwargs: Any) -> Any:
     messages.note_node(node.name())
 
 
-class _Topics:
+class _PublishersAndSubscribers:
     """Publishers and subscribers."""
 
     def __init__(self, messages: Names) -> None:
@@ -147,7 +147,7 @@ class _Topics:
         return node.where().wait_for(handler, wait, _is_latched, time)
 
 
-class _Services:
+class _ServiceProxies:
     """Proxies of services."""
 
     def __init__(self, messages: Names) -> None:
@@ -193,7 +193,7 @@ class _Services:
         return handler(call, proxy, (made,), {}, node.where(lost=lost))
 
 
-class _Parameters:
+class _ParameterServerValues:
     """Values of the parameter server."""
 
     def __init__(self, messages: Names) -> None:
@@ -218,7 +218,7 @@ class _Parameters:
         return handler(get, None, (), defaults, node.where())
 
 
-class _Times:
+class _TimersAndRates:
     """Timers and rates. A timer is named after its callback, a rate after its node."""
 
     def __init__(self, messages: Names) -> None:

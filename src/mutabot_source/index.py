@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 #: first line (1-based), first column, last line, last column (0-based, in UTF-8 bytes)
 Extent = tuple[int, int, int, int]
-_Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
+_CallableNode = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
 Start = tuple[int, int]
 
 
@@ -87,7 +87,7 @@ class Index:
         if is_docstring(node):
             return
         self._note(node, scope)
-        if isinstance(node, _Function):
+        if isinstance(node, _CallableNode):
             self._walk_all(_outer_of_function(node), scope)
             name = "<lambda>" if isinstance(node, ast.Lambda) else node.name
             body = [node.body] if isinstance(node, ast.Lambda) else node.body
@@ -123,7 +123,7 @@ def is_docstring(node: ast.AST) -> bool:
     )
 
 
-def _outer_of_function(node: _Function) -> list[ast.AST]:
+def _outer_of_function(node: _CallableNode) -> list[ast.AST]:
     """What is evaluated where a function is defined."""
     defaults = [default for default in (*node.args.defaults, *node.args.kw_defaults) if default is not None]
     decorators = [] if isinstance(node, ast.Lambda) else node.decorator_list

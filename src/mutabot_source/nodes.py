@@ -11,9 +11,9 @@ from collections.abc import Callable
 from mutabot.api.faults import Alternative
 
 from .index import Extent, extent_of
-from .operator import Node, Parts, Surroundings
+from .operator import Surroundings, SyntaxNode, TextParts
 
-_Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
+_DefinitionNode = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
 
 
 class ModuleTree:
@@ -43,7 +43,7 @@ class ModuleTree:
         lines[0] = lines[0][start:]
         return b"\n".join(lines).decode()
 
-    def stands_there(self, node: Node) -> bool:
+    def stands_there(self, node: SyntaxNode) -> bool:
         """Whether a node stands where it says. Before Python 3.12 those within formatted texts may not."""
         if node not in self._formatted:
             return True
@@ -53,11 +53,11 @@ class ModuleTree:
             return False
         return ast.dump(there) == ast.dump(node)
 
-    def is_elif(self, node: Node) -> bool:
+    def is_elif(self, node: SyntaxNode) -> bool:
         """Whether a statement begins with ``elif``."""
         return isinstance(node, ast.If) and self._lines[node.lineno - 1][node.col_offset :].startswith(b"el")
 
-    def surroundings(self, node: Node) -> Surroundings:
+    def surroundings(self, node: SyntaxNode) -> Surroundings:
         """Where a node stands."""
         parent = self._parents[node]
         is_callee = _is_decorator(node, parent) or (isinstance(parent, ast.Call) and node is parent.func)
@@ -75,7 +75,7 @@ class ModuleTree:
             return self._is_argument(parent)
         return isinstance(parent, ast.Call) and node is not parent.func
 
-    def _is_condition(self, node: Node) -> bool:
+    def _is_condition(self, node: SyntaxNode) -> bool:
         """Whether only the truth of a value matters."""
         match self._parents[node]:
             case ast.If() | ast.While() | ast.IfExp() | ast.Assert() as parent:
@@ -91,16 +91,16 @@ class ModuleTree:
         return False
 
 
-def is_variable(node: Node, around: Surroundings) -> bool:
+def is_variable(node: SyntaxNode, around: Surroundings) -> bool:
     """Whether a node is a name that stands for a value, rather than for what is called."""
     return isinstance(node, ast.Name) and not around.is_callee
 
 
-def _is_decorator(node: Node, parent: ast.AST) -> bool:
-    return isinstance(parent, _Function) and node in parent.decorator_list
+def _is_decorator(node: SyntaxNode, parent: ast.AST) -> bool:
+    return isinstance(parent, _DefinitionNode) and node in parent.decorator_list
 
 
-def _is_looked_into(node: Node, parent: ast.AST) -> bool:
+def _is_looked_into(node: SyntaxNode, parent: ast.AST) -> bool:
     if isinstance(parent, ast.Attribute | ast.Subscript):
         return node is parent.value
     return isinstance(parent, ast.Expr)
@@ -112,12 +112,12 @@ TEXT_LIMIT = 60
 _ATOMS = ast.Name | ast.Attribute | ast.Subscript | ast.Call | ast.Constant
 
 
-def template(parts: Parts, number_of: Callable[[ast.expr], int]) -> str:
+def template(parts: TextParts, number_of: Callable[[ast.expr], int]) -> str:
     """The parts with a name for each node that is kept."""
     return _joined(parts, lambda node: Alternative.kept_name(number_of(node)))
 
 
-def shown(parts: Parts, text_of: Callable[[ast.expr], str]) -> str:
+def shown(parts: TextParts, text_of: Callable[[ast.expr], str]) -> str:
     """The parts as program text, with parentheses only where they are needed."""
     bare = _joined(parts, text_of)
     if len(parts) == 1 or all(isinstance(part, str | _ATOMS) for part in parts):
@@ -142,5 +142,5 @@ def shortened(text: str) -> str:
     return text if len(text) <= TEXT_LIMIT else text[: TEXT_LIMIT - 1] + "…"
 
 
-def _joined(parts: Parts, text_of: Callable[[ast.expr], str]) -> str:
+def _joined(parts: TextParts, text_of: Callable[[ast.expr], str]) -> str:
     return "".join(part if isinstance(part, str) else text_of(part) for part in parts)

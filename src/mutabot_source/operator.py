@@ -25,9 +25,9 @@ from .extension import CONVENTIONAL
 HELPER = "__mutabot__[0]"
 
 
-Node = ast.expr | ast.stmt
+SyntaxNode = ast.expr | ast.stmt
 #: a text in pieces: as it stands here, and expressions of the original
-Parts = tuple[str | ast.expr, ...]
+TextParts = tuple[str | ast.expr, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,9 +43,9 @@ class Draft:
     """
 
     variant: str
-    parts: Parts
+    parts: TextParts
     needs: str = ""
-    shown: Parts | None = None
+    shown: TextParts | None = None
     raises: bool = False
 
 
@@ -107,7 +107,7 @@ class ConventionalOperator(Rule):
     asks_variables: ClassVar[bool] = False
 
     @abstractmethod
-    def drafts(self, node: Node, around: Surroundings) -> Iterable[Draft]:
+    def drafts(self, node: SyntaxNode, around: Surroundings) -> Iterable[Draft]:
         """What could stand in this node's place; nothing for nodes that are none of its business."""
 
     def with_variables(self, names: Iterable[str]) -> Iterable[Alternative]:
@@ -115,7 +115,7 @@ class ConventionalOperator(Rule):
         return ()
 
 
-def is_scalar(node: Node, around: Surroundings) -> TypeGuard[ast.expr]:
+def is_scalar(node: SyntaxNode, around: Surroundings) -> TypeGuard[ast.expr]:
     """Whether a node may have a number or a truth value that the program goes on with."""
     kinds = ast.Name | ast.Attribute | ast.Subscript | ast.Call | ast.BinOp
     return isinstance(node, kinds) and around.is_value

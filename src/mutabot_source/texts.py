@@ -48,7 +48,7 @@ def find_places(
     """The places of one file that the rules have to do with, in the order of the text, and its index."""
     tree = ast.parse(source, file)
     index = Index.of(tree)
-    finder = _Finder(ModuleTree(decode_source(source), tree), list(rules), index)
+    finder = _TextFinder(ModuleTree(decode_source(source), tree), list(rules), index)
     counts: Counter[tuple[str, str, str]] = Counter()
     places: list[TextPlace] = []
     for number, seed in enumerate(sorted(finder.seeds(), key=_order), first):
@@ -94,7 +94,7 @@ def _order(seed: _Seed) -> tuple[int, int, int, int]:
     return (line, column, -end_line, -end_column)  # what is around something comes first
 
 
-class _Finder:
+class _TextFinder:
     def __init__(self, tree: ModuleTree, rules: list[ConventionalOperator], index: Index) -> None:
         self.tree = tree
         self._rules = rules

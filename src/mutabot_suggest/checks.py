@@ -14,7 +14,7 @@ from itertools import accumulate
 from typing import Any
 
 from .project import Addition, PlaceInTest, SuiteFiles, equal, function_of, text_of, within
-from .readings import ORACLE, Measured, Read, ReadExpression, is_number, known
+from .readings import ORACLE, Measured, ReadExpression, ValuesRead, is_number, known
 
 CONFIDENCE = 0.95
 #: digits of a value, down to its tolerance, above which it is no more than what the original happened to read
@@ -34,7 +34,7 @@ _RANKS = (
 )
 
 #: what mutants made tests read: per mutant id, by (round, node id)
-Mutants = Mapping[str, Mapping[tuple[int, str], Read]]
+MutantReadings = Mapping[str, Mapping[tuple[int, str], ValuesRead]]
 #: mutant ids, each with a round
 Trials = frozenset[tuple[str, int]]
 
@@ -190,7 +190,7 @@ def candidates(project: SuiteFiles, measured: Measured) -> tuple[list[ProposedCh
     return found, refused
 
 
-def _is_given(text: str, originals: Mapping[tuple[int, str], Read], mutants: Mutants) -> bool:
+def _is_given(text: str, originals: Mapping[tuple[int, str], ValuesRead], mutants: MutantReadings) -> bool:
     """Whether a reading belongs to the round and the test, and is nothing that a program did."""
     return all(
         read.get(text) == originals.get(key, {}).get(text)
@@ -214,8 +214,8 @@ class _ReadAtEnd:
     """
 
     place: PlaceInTest
-    runs: Sequence[Read]
-    mutants: Mutants
+    runs: Sequence[ValuesRead]
+    mutants: MutantReadings
     given: Sequence[ReadExpression]
     stated: Mapping[str, float]
     usual: float = 0.0
@@ -244,7 +244,7 @@ class _ReadAtEnd:
     def _near(self, reading: ReadExpression, other: ReadExpression | None) -> ProposedCheck | None:
         """The check that a number is near another reading, or near a value."""
 
-        def apart(read: Read) -> float:
+        def apart(read: ValuesRead) -> float:
             value, beside = read.get(reading.text), read.get(other.text) if other is not None else 0.0
             return value - beside if is_number(value) and is_number(beside) else math.nan
 
@@ -281,7 +281,7 @@ class _ReadAtEnd:
         """The check that something equals another reading, or a value; None if it does not always do so."""
         text, first = reading.text, self.runs[0][reading.text]
 
-        def expected(read: Read) -> Any:
+        def expected(read: ValuesRead) -> Any:
             return read.get(other.text) if other is not None else first
 
         if any(repr(read[text]) != repr(expected(read)) for read in self.runs):
@@ -290,7 +290,7 @@ class _ReadAtEnd:
         value = first if other is None else other
         return ProposedCheck(self.place, reading, value, len(self.runs), trials=_beyond(differing, 0.0))
 
-    def _furthest(self, away: Callable[[Read], float]) -> dict[tuple[str, int], float]:
+    def _furthest(self, away: Callable[[ValuesRead], float]) -> dict[tuple[str, int], float]:
         """By mutant and round, how far its readings are from what is expected at most."""
         found: dict[tuple[str, int], float] = {}
         for mutant, reads in self.mutants.items():
@@ -316,7 +316,7 @@ def _why_not(check: ProposedCheck, own: float) -> str | None:
     return None
 
 
-def _are_related(one: ReadExpression, other: ReadExpression, read: Read) -> bool:
+def _are_related(one: ReadExpression, other: ReadExpression, read: ValuesRead) -> bool:
     """Whether two readings are the same part of two things: of one name, or of lists that are all equal."""
     if _LAST.findall(one.text) != _LAST.findall(other.text):
         return False

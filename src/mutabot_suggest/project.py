@@ -27,8 +27,8 @@ from libcst.codemod.visitors import AddImportsVisitor
 from mutabot.api.processes import Request
 from mutabot.api.reports import UsageError
 
-Function = ast.FunctionDef | ast.AsyncFunctionDef
-Definition = ast.ClassDef | Function
+TestFunctionNode = ast.FunctionDef | ast.AsyncFunctionDef
+Definition = ast.ClassDef | TestFunctionNode
 _NO_END = "\\ No newline at end of file\n"
 
 
@@ -196,15 +196,15 @@ def place_of(project: SuiteFiles, test: str) -> PlaceInTest | None:
     return PlaceInTest(UNITTEST if is_case else PYTEST, file, node, _names(function))
 
 
-def function_of(module: ast.Module | None, place: PlaceInTest) -> Function | None:
+def function_of(module: ast.Module | None, place: PlaceInTest) -> TestFunctionNode | None:
     """The function of a place in its parsed file; None where it has none."""
     found: ast.Module | Definition | None = module
     for name in place.path:
         found = _defined(found, name) if found is not None else None
-    return found if isinstance(found, Function) else None
+    return found if isinstance(found, TestFunctionNode) else None
 
 
-def _is_scenario(function: Function) -> bool:
+def _is_scenario(function: TestFunctionNode) -> bool:
     """Whether it only stands for a scenario of pytest-bdd."""
     called = (ast.unparse(one).partition("(")[0] for one in function.decorator_list)
     return any(one.rpartition(".")[2] == "scenario" for one in called)
@@ -216,17 +216,17 @@ def _given_around(project: SuiteFiles, file: str) -> tuple[str, ...]:
         node
         for module in project.beside(file)
         for node in module.body
-        if isinstance(node, Function) and node.decorator_list
+        if isinstance(node, TestFunctionNode) and node.decorator_list
     ]
     return tuple(dict.fromkeys(name for one in functions for name in arguments_of(one)))
 
 
-def _has_end(function: Function) -> bool:
+def _has_end(function: TestFunctionNode) -> bool:
     """Whether statements can follow: not in a body on the line of its ``def``, nor if it ends by raising."""
     return function.body[0].lineno != function.lineno and not isinstance(function.body[-1], ast.Raise)
 
 
-def _names(function: Function) -> tuple[str, ...]:
+def _names(function: TestFunctionNode) -> tuple[str, ...]:
     """Arguments, and what is assigned on the way."""
     assigned = [
         one.id
@@ -252,7 +252,7 @@ def _defined(owner: ast.Module | Definition, name: str) -> Definition | None:
     )
 
 
-def arguments_of(function: Function) -> tuple[str, ...]:
+def arguments_of(function: TestFunctionNode) -> tuple[str, ...]:
     """The names of its arguments."""
     given = function.args
     return tuple(one.arg for one in (*given.posonlyargs, *given.args, *given.kwonlyargs))

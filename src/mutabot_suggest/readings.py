@@ -137,7 +137,7 @@ _NOTED = "mutabot_suggest.noted"
 _PROBE = f"{_NOTED}:values"
 
 #: what was read at the end of one test: expression to number, text or truth value
-Read = Mapping[str, Any]
+ValuesRead = Mapping[str, Any]
 
 
 @dataclass(slots=True)
@@ -151,8 +151,8 @@ class Measured:
         objects: readings of objects, each with its tolerance.
     """
 
-    originals: dict[PlaceInTest, dict[tuple[int, str], Read]] = field(default_factory=dict)
-    mutants: dict[PlaceInTest, dict[str, dict[tuple[int, str], Read]]] = field(default_factory=dict)
+    originals: dict[PlaceInTest, dict[tuple[int, str], ValuesRead]] = field(default_factory=dict)
+    mutants: dict[PlaceInTest, dict[str, dict[tuple[int, str], ValuesRead]]] = field(default_factory=dict)
     readings: dict[PlaceInTest, list[ReadExpression]] = field(default_factory=dict)
     objects: list[tuple[str, float]] = field(default_factory=list)
 
@@ -215,7 +215,9 @@ def _run_survivors(
                 measured.mutants.setdefault(place, {}).setdefault(mutant.id, {})[round, test] = read
 
 
-def _read_in(result: Result, places: Mapping[str, PlaceInTest]) -> Iterator[tuple[PlaceInTest, str, Read]]:
+def _read_in(
+    result: Result, places: Mapping[str, PlaceInTest]
+) -> Iterator[tuple[PlaceInTest, str, ValuesRead]]:
     """What passed tests read, each with its place and node id."""
     prefix = f"{_PROBE}."
     for end in result.ends:

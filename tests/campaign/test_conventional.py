@@ -324,7 +324,7 @@ def test_families_operators_and_ids_select(project: Path) -> None:
     assert chosen(only=(wild,)) == {wild}
     file = project / "chosen.txt"
     file.write_text(f"# some\n{wild}\n", encoding="utf-8")
-    assert chosen(selection=file) == {wild}
+    assert chosen(only=(f"@{file}",)) == {wild}
     file.unlink()
 
 

@@ -199,15 +199,6 @@ def test_without_options_a_run_does_what_the_configuration_says(fake: Campaign) 
     main(["run"])
     assert (fake.request.rounds, fake.request.seed) == (1, 7)
     assert fake.request.jobs == len(os.sched_getaffinity(0))
-    assert fake.request.selection is None
-
-
-def test_the_configured_selection_lies_in_the_project(fake: Campaign) -> None:
-    (fake.project / "chosen.txt").write_text("")
-    with (fake.project / "mutabot.toml").open("a") as file:
-        file.write('selection = "chosen.txt"\n')
-    main(["run"])
-    assert fake.request.selection == fake.project / "chosen.txt"
 
 
 def test_a_list_is_looked_for_here_and_in_the_project(

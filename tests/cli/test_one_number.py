@@ -50,9 +50,7 @@ def test_list_and_run_number_alike_with_and_without_a_selection(
     assert printed(capsys, "run") == whole
     shown = printed(capsys, "run", "--only", "@chosen.txt")
     assert {one: shown[one] for one in wanted} == wanted
-    with Path("mutabot.toml").open("a") as file:
-        file.write('selection = "chosen.txt"\n')
-    assert printed(capsys, "list") == printed(capsys, "list", "--only", "2,4") == wanted
+    assert printed(capsys, "list", "--only", "2,4") == wanted
 
 
 @pytest.mark.needs("source")

@@ -42,7 +42,6 @@ def test_what_is_not_said_has_a_default(project: Path) -> None:
         rounds=1,
         seed=1,
         jobs=None,
-        selection=None,
         timeout_factor=10,
         timeout_seconds=None,
         memory=4_000_000_000,
@@ -57,12 +56,11 @@ def test_what_is_not_said_has_a_default(project: Path) -> None:
 
 
 def test_everything_may_be_said_in_pyproject(project: Path) -> None:
-    (project / "ids.txt").write_text("")
     (project / "pyproject.toml").write_text(
         "[project]\nname = 'a'\n[tool.mutabot]\n"
         + GOOD
         + 'oracle = ["tests/sensors.py"]\ntests = ["tests/sensors.py::test_a", "-k", "not slow"]\n'
-        + 'rounds = 5\nseed = 7\njobs = 2\nselection = "ids.txt"\ntimeout_factor = 3\ntimeout_seconds = 2.5\n'
+        + "rounds = 5\nseed = 7\njobs = 2\ntimeout_factor = 3\ntimeout_seconds = 2.5\n"
         + 'memory = "1.5 GB"\nunstable_limit = 0\ntimeout_limit = 0.5\nerror_limit = 0.25\nmin_score = 80\n'
         + 'pytest_args = ["-q"]\n'
     )

@@ -201,7 +201,7 @@ def _compare(
                 if only and selection is None:
                     selection = Path(name) / "selection.txt"
                     selection.write_text("\n".join(chosen(wanted, only)) + "\n", encoding="utf-8")
-                results[engine] = campaign(replace(wanted, selection=selection))
+                results[engine] = campaign(replace(wanted, only=(f"@{selection}",)) if selection else wanted)
             except MutabotError as error:
                 found.failed.append(f"{folder.name} [{engine}] the campaign stops: {str(error)[:600]}")
     if "robot" not in only:

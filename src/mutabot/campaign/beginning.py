@@ -138,7 +138,7 @@ def selected(campaign: Campaign, plan: Plan) -> Plan:
     reached = {place for _, place in campaign.baseline.reaching}
     if not any(Place.of(one) in reached for one in plan.mutants):
         raise NothingToDoError(_why_no_mutants(request, plan, campaign.baseline))
-    mutants = select(plan.mutants, request.only, request.skip, request.selection, left_out=plan.left_out)
+    mutants = select(plan.mutants, request.only, request.skip, left_out=plan.left_out)
     if not mutants:
         raise NothingToDoError("the selection leaves no mutant to run")
     if request.sample is None:

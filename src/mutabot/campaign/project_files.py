@@ -83,7 +83,7 @@ def _named(configuration: Configuration) -> Iterator[str]:
     yield from (*configuration.program, *configuration.oracle)
     yield from (argument.partition("::")[0] for argument in configuration.tests)
     yield from (option.partition("=")[2] or option for option in configuration.pytest_args)
-    yield from (*configuration.vocabulary, configuration.file, configuration.selection or "")
+    yield from (*configuration.vocabulary, configuration.file)
 
 
 def _is_path(root: Path, name: str) -> bool:

@@ -93,7 +93,6 @@ class Request:
         vocabulary: the robot API.
         rounds, seed, jobs: as in the configuration, unless the command line says otherwise.
         only, skip: selections as in ``select``.
-        selection: file with the ids to run; None for all.
         engine: name of the engine; ``auto`` for the first that can judge a mutant.
         executor: what runs the tasks; None for worker processes on this machine.
         fresh: whether to run everything, also what an earlier campaign has found.
@@ -122,7 +121,6 @@ class Request:
     jobs: int
     only: tuple[str, ...] = ()
     skip: tuple[str, ...] = ()
-    selection: Path | None = None
     engine: str = "auto"
     executor: ExecutorChoice | None = None
     fresh: bool = False

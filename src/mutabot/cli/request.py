@@ -29,7 +29,6 @@ def request_of(
     executor: tuple[str, str] | None = None,
     evidence: bool = False,
     every_test: bool = False,
-    configured_selection: bool = True,
     **given: Unpack[Running],
 ) -> Request:
     """The request of a command: its options, else what the configuration says.
@@ -38,7 +37,6 @@ def request_of(
         executor: the name of an executor, and the value of its option; None for this machine.
         evidence: whether to record, unless the configuration has no room for it.
         every_test: as in ``Request``.
-        configured_selection: whether the selection that the configuration names holds.
         given: the options.
 
     Raises UsageError and ConfigurationError.
@@ -53,7 +51,6 @@ def request_of(
     families = families_of(given.get("family"))
     configuration = load_configuration(project, families, given.get("settings") or ())
     root, families = configuration.root, families or configuration.families
-    selection = configuration.selection if configured_selection else None
     moments = map(Moment.parse_any, configuration.when)
     chosen = None
     if executor is not None:
@@ -67,7 +64,6 @@ def request_of(
         jobs=given.get("jobs") or configuration.jobs or len(os.sched_getaffinity(0)),
         only=_listed(given.get("only"), root),
         skip=_listed(given.get("skip"), root),
-        selection=None if selection is None else root / selection,
         engine=engine,
         executor=chosen,
         fresh=given.get("fresh", False),
@@ -91,7 +87,7 @@ def request_again(root: Path, results: Results, jobs: int | None) -> Request:
     meta = results.meta
     request = request_of(
         root, rounds=results.rounds, seed=meta.get("seed"), jobs=jobs, family=meta.get("families"),
-        every_test=bool(meta.get("every_test")), configured_selection=False,
+        every_test=bool(meta.get("every_test")),
     )  # fmt: skip
     request = replace(request, ran_over=str(meta.get(RAN_OVER) or ""))
     name = meta.get("simulation")

@@ -137,11 +137,6 @@ class Settings(Table):
 
         jobs = 1
     """
-    selection: str | None = None
-    """File with the ids of the mutants to run, one per line.
-
-        selection = "published.txt"
-    """
     timeout_factor: Annotated[float, Field(gt=1, le=options.FACTOR)] = 10.0
     """How many times what a test takes on the original it may take with a mutant:
     [limits of time](verdicts.md#limits-of-time).
@@ -360,7 +355,7 @@ class _Paths:
         return tuple(sorted(found))
 
     def check(self, place: DocumentPlace, settings: Settings, *, has_tests: bool) -> None:
-        """Note what is wrong with the paths of the tests, the vocabulary and the selection."""
+        """Note what is wrong with the paths of the tests and the vocabulary."""
         for index, argument in enumerate(settings.tests):
             after_option = index > 0 and settings.tests[index - 1].startswith("-")
             name = argument.partition("::")[0]
@@ -373,8 +368,6 @@ class _Paths:
                 (place / "tests").error(text)
         for index, name in enumerate(settings.vocabulary):
             (place / "vocabulary" / index).attempt(self._inside, name)
-        if settings.selection is not None:
-            (place / "selection").attempt(self._existing, settings.selection)
 
     def check_patterns(self, place: DocumentPlace, names: tuple[str, ...]) -> None:
         """Note each path or pattern that fits nothing."""

@@ -18,29 +18,24 @@ def select(
     mutants: Sequence[Mutant],
     only: Iterable[str] = (),
     skip: Iterable[str] = (),
-    selection_file: Path | None = None,
     *,
     left_out: Iterable[LeftOut] = (),
 ) -> list[Mutant]:
-    """The mutants that a selection file, ``only`` and ``skip`` leave, in the order of their numbers.
+    """The mutants that ``only`` and ``skip`` leave, in the order of their numbers.
 
-    A selection file holds one id (or an id with ``*`` and ``?``) per line; what follows ``#`` at the
-    beginning of a line or after a space is a comment. Numbers are those of the plan, whatever is selected:
+    Numbers are those of the plan, whatever is selected:
     all commands call a mutant by the same. ``only`` and ``skip`` take ids (also with ``*`` and
     ``?``), numbers (``3``, ``16-20``, ``3,16-20``), names of operators, families or roles, files, file globs,
-    and lines (``mission.py:22``, ``mission.py:20-30``), and ``@FILE``, a file like a selection file.
+    and lines (``mission.py:22``, ``mission.py:20-30``), and ``@FILE``, a file with one id (or an id with
+    ``*`` and ``?``) per line; what follows ``#`` at the beginning of a line or after a space is a comment.
 
     Raises SelectionError for anything that fits no mutant, nor one that the plan leaves out.
     """
     set_aside = [item.id for item in left_out]
-    chosen = list(mutants)
-    if selection_file is not None:
-        wanted = _from_file(selection_file, chosen, set_aside)
-        chosen = [mutant for mutant in chosen if mutant.id in wanted]
     only = list(only)
-    wanted = _fitting(only, chosen, set_aside, "--only") if only else {mutant.id for mutant in chosen}
-    wanted -= _fitting(skip, chosen, set_aside, "--skip")
-    return [mutant for mutant in chosen if mutant.id in wanted]
+    wanted = _fitting(only, mutants, set_aside, "--only") if only else {mutant.id for mutant in mutants}
+    wanted -= _fitting(skip, mutants, set_aside, "--skip")
+    return [mutant for mutant in mutants if mutant.id in wanted]
 
 
 def _from_file(file: Path, mutants: Sequence[Mutant], set_aside: Sequence[str]) -> set[str]:

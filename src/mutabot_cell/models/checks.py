@@ -16,10 +16,10 @@ LONGEST, SHORTEST = 10.0, 0.05
 _LIGHTEST = 0.1
 """Of all links together, kg."""
 
-_Path = str | PathLike[str]
+FilePath = str | PathLike[str]
 
 
-def compiled(spec: mujoco.MjSpec, path: _Path) -> mujoco.MjModel:
+def compiled(spec: mujoco.MjSpec, path: FilePath) -> mujoco.MjModel:
     """The model. Raises BadModel if MuJoCo refuses it."""
     try:
         return compile_quietly(spec)
@@ -37,7 +37,7 @@ def compiled(spec: mujoco.MjSpec, path: _Path) -> mujoco.MjModel:
         raise BadModel(f"MuJoCo cannot build {path}: {words}{advice}") from error
 
 
-def check_chain(chain: Sequence[mujoco.MjsBody], path: _Path) -> list[mujoco.MjsJoint]:
+def check_chain(chain: Sequence[mujoco.MjsBody], path: FilePath) -> list[mujoco.MjsJoint]:
     """The joints of the chain from base to flange. Raises BadModel if they cannot be an arm's."""
     joints = []
     for body in chain:
@@ -65,7 +65,7 @@ def check_chain(chain: Sequence[mujoco.MjsBody], path: _Path) -> list[mujoco.Mjs
     return joints
 
 
-def check_masses(model: mujoco.MjModel, joints: Sequence[str], path: _Path) -> None:
+def check_masses(model: mujoco.MjModel, joints: Sequence[str], path: FilePath) -> None:
     """Raises BadModel if links weigh nothing."""
     bodies = [int(model.joint(name).bodyid[0]) for name in joints]
     total = float(sum(model.body_mass[body] for body in bodies))
@@ -76,7 +76,7 @@ def check_masses(model: mujoco.MjModel, joints: Sequence[str], path: _Path) -> N
         )
 
 
-def check_touch(model: mujoco.MjModel, chain: Sequence[mujoco.MjsBody], path: _Path) -> None:
+def check_touch(model: mujoco.MjModel, chain: Sequence[mujoco.MjsBody], path: FilePath) -> None:
     """Raises BadModel if the arm goes through everything."""
     bodies = {model.body(body.name).id for body in chain if body.name}
     for geom in range(model.ngeom):
@@ -90,7 +90,7 @@ def check_touch(model: mujoco.MjModel, chain: Sequence[mujoco.MjsBody], path: _P
 
 
 def check_size(
-    model: mujoco.MjModel, joints: Sequence[str], home: Sequence[float], site: str, path: _Path
+    model: mujoco.MjModel, joints: Sequence[str], home: Sequence[float], site: str, path: FilePath
 ) -> None:
     """Raises BadModel if lengths are not in m."""
     data = mujoco.MjData(model)

@@ -31,7 +31,7 @@ _SPEED_RANGE, _SPEED = (0.001, 0.2), 0.1
 
 
 @dataclass(frozen=True, slots=True)
-class _Measured:
+class _RestingFingers:
     """Fingers at rest: input and measure of the servo, the gap between the pads (m), their middle (m)."""
 
     control: float
@@ -149,7 +149,7 @@ def _check_names(
 
 def _moved(
     model: mujoco.MjModel, actuator: str, controls: Sequence[float], pads: tuple[str, ...]
-) -> list[_Measured]:
+) -> list[_RestingFingers]:
     """The fingers at rest with these inputs one after the other, without gravity."""
     model.opt.gravity[:] = 0
     model.opt.timestep = PHYSICS_STEP
@@ -162,7 +162,9 @@ def _moved(
             mujoco.mj_step(model, data)
         places = [data.geom_xpos[model.geom(pad).id] for pad in pads]
         gap = min(distance_between(model, data, pads[0], other) for other in _opposite(places, pads))
-        found.append(_Measured(control, float(data.actuator_length[number]), gap, np.mean(places, axis=0)))
+        found.append(
+            _RestingFingers(control, float(data.actuator_length[number]), gap, np.mean(places, axis=0))
+        )
     return found
 
 

@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 
 from mutabot_cell.geometry import quaternion_from_euler
-from mutabot_cell.parts import Box, Cylinder, Mesh, Part, Triple
+from mutabot_cell.parts import Box, Cylinder, Mesh, Part, Vector3
 from mutabot_cell.scene import FRICTION_ON_SILICONE, FRICTION_ON_STEEL
 
 from .effectors import SENSED_GAP, Fingers, SuctionCup
@@ -98,7 +98,7 @@ def add_grip(spec: mujoco.MjSpec, part: Part, prefix: str, effector: Fingers | S
         pair.adhesion = _LIP_ADHESION if is_cup else 0.0
 
 
-def read_mesh(path: str, scale: float = 1.0) -> tuple[Triple, ...]:
+def read_mesh(path: str, scale: float = 1.0) -> tuple[Vector3, ...]:
     """Points of a mesh file (STL, OBJ), for `Mesh(vertices=...)`.
 
     Args:
@@ -124,7 +124,7 @@ def _shape(spec: mujoco.MjSpec, geom: mujoco.MjsGeom, part: Part) -> None:
         geom.type, geom.meshname = mujoco.mjtGeom.mjGEOM_MESH, part.name
 
 
-def _move_mass(body: mujoco.MjsBody, part: Part, centre: Triple) -> None:
+def _move_mass(body: mujoco.MjsBody, part: Part, centre: Vector3) -> None:
     """Give the body the inertia of a uniform part, about another centre of mass.
 
     Such a body is not `simple` to MuJoCo, so that its centre of mass can be changed at run time too.

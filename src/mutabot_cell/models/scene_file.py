@@ -4,35 +4,33 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from os import PathLike
 from typing import NamedTuple
 
 import mujoco
 
 from mutabot_cell.errors import BadModel
 from mutabot_cell.geometry import Array, euler_from_rotation
-from mutabot_cell.parts import Box, Cylinder, Part, Triple
+from mutabot_cell.parts import Box, Cylinder, Part, Vector3
 
-from .checks import compiled
+from .checks import FilePath, compiled
 from .loading import names_of, read
 
 _BOX, _CYLINDER = mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_CYLINDER
-_Path = str | PathLike[str]
 
 
 class FixedBox(NamedTuple):
     """A box that never moves; its fields are the first of `Fixture`."""
 
     name: str
-    size: Triple
-    centre: Triple
+    size: Vector3
+    centre: Vector3
     rgba: tuple[float, float, float, float]
     friction: float
-    angles: Triple
+    angles: Vector3
 
 
 def read_scene(
-    path: _Path, parts: Sequence[str], fixtures: Sequence[str]
+    path: FilePath, parts: Sequence[str], fixtures: Sequence[str]
 ) -> tuple[tuple[Part, ...], tuple[FixedBox, ...]]:
     """Read parts, and boxes for fixtures, from a file in MuJoCo's format; see `Scene.from_mjcf`."""
     spec = read(path)
@@ -44,7 +42,7 @@ def read_scene(
     return tuple(_part(model, data, name, shapes[name], path) for name in parts), boxes
 
 
-def _shape_of(spec: mujoco.MjSpec, model: mujoco.MjModel, name: str, path: _Path) -> int:
+def _shape_of(spec: mujoco.MjSpec, model: mujoco.MjModel, name: str, path: FilePath) -> int:
     """The number of the one shape of a body, or of a shape, that collides."""
     if spec.body(name) is not None:
         body = model.body(name).id
@@ -63,7 +61,7 @@ def _touches(model: mujoco.MjModel, geom: int) -> bool:
     return bool(model.geom_contype[geom] or model.geom_conaffinity[geom])
 
 
-def _fixed_box(model: mujoco.MjModel, data: mujoco.MjData, name: str, geom: int, path: _Path) -> FixedBox:
+def _fixed_box(model: mujoco.MjModel, data: mujoco.MjData, name: str, geom: int, path: FilePath) -> FixedBox:
     if model.geom_type[geom] != _BOX:
         raise BadModel(f"fixture {name!r} of {path} is no box: give it a geom of type box")
     return FixedBox(
@@ -76,7 +74,7 @@ def _fixed_box(model: mujoco.MjModel, data: mujoco.MjData, name: str, geom: int,
     )
 
 
-def _part(model: mujoco.MjModel, data: mujoco.MjData, name: str, geom: int, path: _Path) -> Part:
+def _part(model: mujoco.MjModel, data: mujoco.MjData, name: str, geom: int, path: FilePath) -> Part:
     body = int(model.geom_bodyid[geom])
     mass, size = float(model.body_mass[body]), model.geom_size[geom]
     if body == 0 or mass <= 0.0:
@@ -96,6 +94,6 @@ def _part(model: mujoco.MjModel, data: mujoco.MjData, name: str, geom: int, path
     return replace(part, position=(x, y, z - part.middle_height), rgba=tuple(model.geom_rgba[geom].tolist()))
 
 
-def _triple(values: Array) -> Triple:
+def _triple(values: Array) -> Vector3:
     x, y, z = values.tolist()
     return x, y, z

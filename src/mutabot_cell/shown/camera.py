@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import mujoco
 import numpy as np
 
-from mutabot_cell.parts import Triple
+from mutabot_cell.parts import Vector3
 from mutabot_cell.simulation import Simulation
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ class Camera:
         self._camera.distance = view.distance
         self._camera.lookat[:] = view.look_at
 
-    def picture(self, traces: Sequence[Sequence[Triple]] = ()) -> Pixels:
+    def picture(self, traces: Sequence[Sequence[Vector3]] = ()) -> Pixels:
         """Red, green and blue of each pixel, shape (height, width, 3), in an array of its own.
 
         Args:
@@ -104,9 +104,9 @@ class TracingCamera(Camera):
         self, simulation: Simulation, height: int, width: int, view: View, *, is_quick: bool = False
     ) -> None:
         super().__init__(simulation, height, width, view, is_quick=is_quick)
-        self._paths: list[list[Triple]] = [[] for _ in simulation.robots]
+        self._paths: list[list[Vector3]] = [[] for _ in simulation.robots]
 
-    def picture(self, traces: Sequence[Sequence[Triple]] = ()) -> Pixels:
+    def picture(self, traces: Sequence[Sequence[Vector3]] = ()) -> Pixels:
         """See `Camera.picture`."""
         robots = self._simulation.robots.values()
         for path, robot in zip(self._paths, robots, strict=True):

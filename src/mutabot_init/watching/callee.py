@@ -245,7 +245,7 @@ def spell_signature(signature: inspect.Signature) -> str:
     return str(inspect.Signature(parameters))
 
 
-class _Unknown:
+class _UnknownDefault:
     """Prints itself as an ellipsis."""
 
     def __repr__(self) -> str:
@@ -258,5 +258,5 @@ def _spelt(default: Any) -> Any:
     try:
         ast.literal_eval(repr(default))
     except Exception:  # a default may be any object
-        return _Unknown()
-    return _Unknown() if default is ... else default
+        return _UnknownDefault()
+    return _UnknownDefault() if default is ... else default

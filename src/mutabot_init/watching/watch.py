@@ -320,10 +320,10 @@ def _command(seen: _Seen, instance: Any, values: Mapping[str, Any]) -> Command |
 
 
 #: what tells a command apart: its path and text, and the values beside it by their paths
-_Told = tuple[str, str, Mapping[str, Any]]
+_CallFacts = tuple[str, str, Mapping[str, Any]]
 
 
-def _told_by(call: WatchedCallable, instance: Any, values: Mapping[str, Any]) -> _Told:
+def _told_by(call: WatchedCallable, instance: Any, values: Mapping[str, Any]) -> _CallFacts:
     """What tells a command apart; an empty path if nothing does."""
     is_item = call.name == "__setitem__"
     if not (is_item or call.is_set or _TALKS.search(call.name)):

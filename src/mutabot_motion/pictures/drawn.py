@@ -26,7 +26,7 @@ _VIEWS = (("from above", 0, 1), ("from the side", 0, 2))
 
 
 @dataclass(frozen=True, slots=True)
-class _View:
+class _PixelView:
     """One view: what it shows goes to pixels."""
 
     right: int
@@ -98,20 +98,20 @@ def _room(recordings: Sequence[RecordedPaths]) -> list[tuple[float, float]]:
     return [(min(axis) - margin, max(axis) + margin) for axis in zip(*points, strict=True)]
 
 
-def _views(room: Sequence[tuple[float, float]]) -> list[_View]:
+def _views(room: Sequence[tuple[float, float]]) -> list[_PixelView]:
     """Both views in one scale."""
     spans = [most - least for least, most in room]
     wide, high = _WIDTH - 2 * _EDGE, _HEIGHT / 2 - _EDGE - _LABEL
     scale = min(wide / spans[0], high / spans[1], high / spans[2])
     middles = [(least + most) / 2 for least, most in room]
     return [
-        _View(right, up, scale, (middles[right], middles[up]), (_WIDTH / 2, _HEIGHT / 4 * (1 + 2 * row)))
+        _PixelView(right, up, scale, (middles[right], middles[up]), (_WIDTH / 2, _HEIGHT / 4 * (1 + 2 * row)))
         for row, (_, right, up) in enumerate(_VIEWS)
     ]
 
 
 def _draw_block(
-    draw: ImageDraw.ImageDraw, view: _View, centre: Sequence[float], size: Sequence[float]
+    draw: ImageDraw.ImageDraw, view: _PixelView, centre: Sequence[float], size: Sequence[float]
 ) -> None:
     low = view.pixel([c - s / 2 for c, s in zip(centre, size, strict=True)])
     high = view.pixel([c + s / 2 for c, s in zip(centre, size, strict=True)])
@@ -122,7 +122,11 @@ def _draw_block(
 
 
 def _draw_thing(
-    draw: ImageDraw.ImageDraw, view: _View, row: Sequence[float], size: Sequence[float] | None, colour: str
+    draw: ImageDraw.ImageDraw,
+    view: _PixelView,
+    row: Sequence[float],
+    size: Sequence[float] | None,
+    colour: str,
 ) -> None:
     """A box by its edges, as it is turned; anything else as a dot. ``row``: as in a track."""
     place, turn = row[:3], row[3:] or (1.0, 0.0, 0.0, 0.0)

@@ -20,14 +20,14 @@ from . import _clock
 _NAME, _NODE = "_mutabot_name", "_mutabot_node"
 
 
-class _Now(threading.local):
+class _ThreadState(threading.local):
     """What this thread is doing: making something of rclpy's own, or something of a node."""
 
     making = 0
     node: Any = None
 
 
-_now = _Now()
+_now = _ThreadState()
 
 
 def hook(patches: Patches, messages: Names) -> None:

@@ -14,14 +14,14 @@ from ._topics import as_called
 
 def hook(patches: Patches, messages: Names) -> None:
     """Stand around timers and rates."""
-    times = _Times(messages)
+    times = _NodeTimers(messages)
     node: Any = import_module("rclpy.node").Node
     patches.put(node, "create_timer", times.make_timer)
     patches.put(node, "create_rate", times.make_rate)
     patches.put(import_module("rclpy.timer").Rate, "sleep", times.sleep)
 
 
-class _Times:
+class _NodeTimers:
     def __init__(self, messages: Names) -> None:
         self._messages = messages
 

@@ -9,8 +9,8 @@ from typing import ClassVar
 from mutabot_source.operator import (
     ConventionalOperator,
     Draft,
-    Node,
     Surroundings,
+    SyntaxNode,
     TextExample,
     each,
     is_text,
@@ -19,7 +19,7 @@ from mutabot_source.operator import (
 _DISPLAYS = ast.List | ast.Tuple | ast.Dict | ast.Set | ast.ListComp | ast.SetComp | ast.DictComp
 
 #: variant and sign of each operator of a group
-_Signs = Mapping[type[ast.operator], tuple[str, str]]
+_OperatorSigns = Mapping[type[ast.operator], tuple[str, str]]
 
 
 class _BinaryOperator(ConventionalOperator):
@@ -31,11 +31,11 @@ class _BinaryOperator(ConventionalOperator):
         keeps_right: whether the right operand may stand for the operation as the left one may.
     """
 
-    signs: ClassVar[_Signs]
+    signs: ClassVar[_OperatorSigns]
     needs: ClassVar[str]
     keeps_right: ClassVar[bool] = True
 
-    def drafts(self, node: Node, around: Surroundings) -> Iterable[Draft]:
+    def drafts(self, node: SyntaxNode, around: Surroundings) -> Iterable[Draft]:
         if not isinstance(node, ast.BinOp) or type(node.op) not in self.signs:
             return
         if any(isinstance(operand, _DISPLAYS) or is_text(operand) for operand in (node.left, node.right)):
@@ -136,7 +136,7 @@ class AssignmentReplacement(ConventionalOperator):
         TextExample("x = y\n", note="a name may not have a value before its plain assignment"),
     )
 
-    def drafts(self, node: Node, around: Surroundings) -> Iterable[Draft]:
+    def drafts(self, node: SyntaxNode, around: Surroundings) -> Iterable[Draft]:
         if not isinstance(node, ast.AugAssign):
             return
         for group in (ArithmeticReplacement, LogicalReplacement, ShiftReplacement):

@@ -10,8 +10,8 @@ from mutabot_source.operator import (
     HELPER,
     ConventionalOperator,
     Draft,
-    Node,
     Surroundings,
+    SyntaxNode,
     TextExample,
     is_idle,
 )
@@ -37,7 +37,7 @@ class Bomb(ConventionalOperator):
         TextExample("def f():\n    global x\n    pass\n", note="nothing happens there"),
     )
 
-    def drafts(self, node: Node, around: Surroundings) -> Iterable[Draft]:
+    def drafts(self, node: SyntaxNode, around: Surroundings) -> Iterable[Draft]:
         if not isinstance(node, _STATEMENTS):
             return
         if isinstance(node, ast.AnnAssign) and node.value is None:

@@ -14,7 +14,7 @@ from random import Random
 from typing import ClassVar
 
 from mutabot_source.extension import TEXT
-from mutabot_source.operator import ConventionalOperator, Draft, Node, Surroundings, TextExample
+from mutabot_source.operator import ConventionalOperator, Draft, Surroundings, SyntaxNode, TextExample
 
 #: alternatives per text and operator
 LIMIT = 4
@@ -27,7 +27,7 @@ class _Characters(ConventionalOperator):
 
     family = TEXT
 
-    def drafts(self, node: Node, around: Surroundings) -> Iterable[Draft]:
+    def drafts(self, node: SyntaxNode, around: Surroundings) -> Iterable[Draft]:
         if not isinstance(node, ast.Constant) or not around.is_argument:
             return
         text = node.value

@@ -9,10 +9,10 @@ from typing import ClassVar
 from mutabot_source.operator import (
     ConventionalOperator,
     Draft,
-    Node,
-    Parts,
     Surroundings,
+    SyntaxNode,
     TextExample,
+    TextParts,
     each,
     is_named_constant,
 )
@@ -33,7 +33,7 @@ class ConditionalReplacement(ConventionalOperator):
         TextExample("z = x & y\n", note="bitwise operators are LOR's"),
     )
 
-    def drafts(self, node: Node, around: Surroundings) -> Iterable[Draft]:
+    def drafts(self, node: SyntaxNode, around: Surroundings) -> Iterable[Draft]:
         if not isinstance(node, ast.BoolOp):
             return
         values = node.values
@@ -57,15 +57,15 @@ class ConditionalReplacement(ConventionalOperator):
         yield Draft("trueOp", ("True",))
 
 
-def _joined(values: Sequence[ast.expr], words: Iterable[str]) -> Parts:
+def _joined(values: Sequence[ast.expr], words: Iterable[str]) -> TextParts:
     parts: list[str | ast.expr] = [values[0]]
     for word, value in zip(words, values[1:], strict=True):
         parts += [f" {word} ", value]
     return tuple(parts)
 
 
-_Signs = Mapping[type[ast.cmpop], tuple[str, str]]
-_ORDERS: _Signs = {
+_ComparisonSigns = Mapping[type[ast.cmpop], tuple[str, str]]
+_ORDERS: _ComparisonSigns = {
     ast.Lt: ("lt", "<"),
     ast.LtE: ("le", "<="),
     ast.Gt: ("gt", ">"),
@@ -73,12 +73,12 @@ _ORDERS: _Signs = {
     ast.Eq: ("eq", "=="),
     ast.NotEq: ("ne", "!="),
 }
-_EQUALITIES: _Signs = {kind: _ORDERS[kind] for kind in (ast.Eq, ast.NotEq)}
-_IDENTITIES: _Signs = {
+_EQUALITIES: _ComparisonSigns = {kind: _ORDERS[kind] for kind in (ast.Eq, ast.NotEq)}
+_IDENTITIES: _ComparisonSigns = {
     ast.Is: ("is", "is"),
     ast.IsNot: ("isNot", "is not"),
 }
-_MEMBERSHIPS: _Signs = {
+_MEMBERSHIPS: _ComparisonSigns = {
     ast.In: ("in", "in"),
     ast.NotIn: ("notIn", "not in"),
 }
@@ -107,7 +107,7 @@ class RelationalReplacement(ConventionalOperator):
         TextExample("if __name__ == '__main__': main()\n", note="what is not run by a test is no place"),
     )
 
-    def drafts(self, node: Node, around: Surroundings) -> Iterable[Draft]:
+    def drafts(self, node: SyntaxNode, around: Surroundings) -> Iterable[Draft]:
         if not isinstance(node, ast.Compare):
             return
         values = [node.left, *node.comparators]
@@ -123,7 +123,7 @@ class RelationalReplacement(ConventionalOperator):
         yield Draft("trueOp", ("True",))
 
 
-def _group(kind: type[ast.cmpop], operands: Iterable[ast.expr]) -> _Signs:
+def _group(kind: type[ast.cmpop], operands: Iterable[ast.expr]) -> _ComparisonSigns:
     for group in (_IDENTITIES, _MEMBERSHIPS):
         if kind in group:
             return group

@@ -10,8 +10,8 @@ from mutabot_source.operator import (
     HELPER,
     ConventionalOperator,
     Draft,
-    Node,
     Surroundings,
+    SyntaxNode,
     TextExample,
     is_scalar,
 )
@@ -36,7 +36,7 @@ class Absolute(ConventionalOperator):
         ),
     )
 
-    def drafts(self, node: Node, around: Surroundings) -> Iterable[Draft]:
+    def drafts(self, node: SyntaxNode, around: Surroundings) -> Iterable[Draft]:
         if not is_scalar(node, around) or around.is_condition:
             return
         absolute = f"{HELPER}.absolute("
@@ -69,7 +69,7 @@ class UnaryInsertion(ConventionalOperator):
         TextExample("y = 'red'\n", note="a text has no sign"),
     )
 
-    def drafts(self, node: Node, around: Surroundings) -> Iterable[Draft]:
+    def drafts(self, node: SyntaxNode, around: Surroundings) -> Iterable[Draft]:
         if around.is_operand_of_unary or not around.is_value:
             return
         if isinstance(node, _CONDITIONS):
@@ -102,6 +102,6 @@ class UnaryDeletion(ConventionalOperator):
         TextExample("z = x not in y\n", note="part of a comparison: ROR's"),
     )
 
-    def drafts(self, node: Node, around: Surroundings) -> Iterable[Draft]:
+    def drafts(self, node: SyntaxNode, around: Surroundings) -> Iterable[Draft]:
         if isinstance(node, ast.UnaryOp):
             yield Draft("", (node.operand,))

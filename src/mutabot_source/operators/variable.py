@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from typing import ClassVar
 
 from mutabot.api.faults import Alternative
-from mutabot_source.operator import ConventionalOperator, Draft, Node, Surroundings, TextExample
+from mutabot_source.operator import ConventionalOperator, Draft, Surroundings, SyntaxNode, TextExample
 
 
 class VariableReplacement(ConventionalOperator):
@@ -32,7 +32,7 @@ class VariableReplacement(ConventionalOperator):
         TextExample("x = 1\n", variables={"x": ("y",)}, note="only where a variable is read"),
     )
 
-    def drafts(self, node: Node, around: Surroundings) -> Iterable[Draft]:
+    def drafts(self, node: SyntaxNode, around: Surroundings) -> Iterable[Draft]:
         return ()
 
     def with_variables(self, names: Iterable[str]) -> Iterable[Alternative]:

@@ -10,8 +10,8 @@ from typing import Any
 
 from ros_in_process.middleware.records import RCLError
 
-Test = Callable[[Any], bool]
-Value = Callable[[Any], Any]
+RowTest = Callable[[Any], bool]
+RowValue = Callable[[Any], Any]
 
 _TOKEN = re.compile(
     r"\s*(%\d+|'[^']*'|[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?|<>|!=|<=|>=|[=<>()]|[A-Za-z_][\w.]*(?:\[\d+\])?)"
@@ -48,19 +48,19 @@ class ContentFilter:
             raise RCLError(f"failed to set content filter: {self.expression!r} ends too early")
         return self._words.pop(0)
 
-    def _either(self) -> Test:
+    def _either(self) -> RowTest:
         tests = [self._both()]
         while self._next_is("OR"):
             tests.append(self._both())
         return lambda message: any(test(message) for test in tests)
 
-    def _both(self) -> Test:
+    def _both(self) -> RowTest:
         tests = [self._one()]
         while self._next_is("AND"):
             tests.append(self._one())
         return lambda message: all(test(message) for test in tests)
 
-    def _one(self) -> Test:
+    def _one(self) -> RowTest:
         if self._next_is("NOT"):
             inner = self._one()
             return lambda message: not inner(message)
@@ -71,7 +71,7 @@ class ContentFilter:
             return inner
         return self._comparison()
 
-    def _comparison(self) -> Test:
+    def _comparison(self) -> RowTest:
         left = self._value()
         is_negated = self._next_is("NOT")
         if self._next_is("BETWEEN"):
@@ -86,7 +86,7 @@ class ContentFilter:
         right = self._value()
         return lambda message: compare(left(message), right(message)) is not is_negated
 
-    def _value(self) -> Value:
+    def _value(self) -> RowValue:
         word = self._word()
         if word.startswith("%"):
             word = self.parameters[int(word[1:])]

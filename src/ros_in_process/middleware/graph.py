@@ -259,17 +259,17 @@ class Endpoint(Waitable):
         return [*self.number.to_bytes(8, "big"), *self.node.context.number.to_bytes(8, "big")]
 
 
-Names = list[tuple[str, list[str]]]
+NamesAndTypes = list[tuple[str, list[str]]]
 
 
-def grouped(pairs: Iterable[tuple[str, str]]) -> Names:
+def grouped(pairs: Iterable[tuple[str, str]]) -> NamesAndTypes:
     found: dict[str, set[str]] = {}
     for name, kind in pairs:
         found.setdefault(name, set()).add(kind)
     return [(name, sorted(kinds)) for name, kinds in sorted(found.items())]
 
 
-def _actions(ends: Iterable[Endpoint]) -> Names:
+def _actions(ends: Iterable[Endpoint]) -> NamesAndTypes:
     suffix, of_type = "/_action/feedback", "_FeedbackMessage"
     return grouped(
         (end.name.removesuffix(suffix), end.type_name.removesuffix(of_type))

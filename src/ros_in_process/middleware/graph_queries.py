@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from ros_in_process.middleware.graph import WORLD, Endpoint, Names, Node, grouped
+from ros_in_process.middleware.graph import WORLD, Endpoint, NamesAndTypes, Node, grouped
 from ros_in_process.middleware.type_descriptions import hash_of
 
 #: kinds of ends, by their numbers in ROS
 PUBLISHER, SUBSCRIPTION = 1, 2
 
 
-def _named(ends: Iterable[Endpoint]) -> Names:
+def _named(ends: Iterable[Endpoint]) -> NamesAndTypes:
     return grouped((end.name, end.type_name) for end in ends)
 
 
@@ -31,7 +31,7 @@ def _dds_names(end: Endpoint) -> list[tuple[str, str]]:
     ]
 
 
-def rclpy_get_topic_names_and_types(node: Node, no_demangle: bool) -> Names:
+def rclpy_get_topic_names_and_types(node: Node, no_demangle: bool) -> NamesAndTypes:
     """All topics, by their names in ROS or those on the network."""
     if no_demangle:
         ends = [
@@ -44,35 +44,35 @@ def rclpy_get_topic_names_and_types(node: Node, no_demangle: bool) -> Names:
     return _named(WORLD.seen(node, "publisher") + WORLD.seen(node, "subscription"))
 
 
-def rclpy_get_service_names_and_types(node: Node) -> Names:
+def rclpy_get_service_names_and_types(node: Node) -> NamesAndTypes:
     """All services that somebody offers or wants."""
     return _named(WORLD.seen(node, "service") + WORLD.seen(node, "client"))
 
 
 def rclpy_get_publisher_names_and_types_by_node(
     node: Node, no_demangle: bool, name: str, namespace: str
-) -> Names:
+) -> NamesAndTypes:
     """The topics that a node publishes."""
     return _topics(WORLD.of_node(node, "publisher", name, namespace, "publisher"), no_demangle)
 
 
 def rclpy_get_subscriber_names_and_types_by_node(
     node: Node, no_demangle: bool, name: str, namespace: str
-) -> Names:
+) -> NamesAndTypes:
     """The topics that a node hears."""
     return _topics(WORLD.of_node(node, "subscription", name, namespace, "subscriber"), no_demangle)
 
 
-def _topics(ends: list[Endpoint], no_demangle: bool) -> Names:
+def _topics(ends: list[Endpoint], no_demangle: bool) -> NamesAndTypes:
     return grouped(pair for end in ends for pair in _dds_names(end)) if no_demangle else _named(ends)
 
 
-def rclpy_get_service_names_and_types_by_node(node: Node, name: str, namespace: str) -> Names:
+def rclpy_get_service_names_and_types_by_node(node: Node, name: str, namespace: str) -> NamesAndTypes:
     """The services that a node offers."""
     return _named(WORLD.of_node(node, "service", name, namespace, "service"))
 
 
-def rclpy_get_client_names_and_types_by_node(node: Node, name: str, namespace: str) -> Names:
+def rclpy_get_client_names_and_types_by_node(node: Node, name: str, namespace: str) -> NamesAndTypes:
     """The services that a node wants."""
     return _named(WORLD.of_node(node, "client", name, namespace, "client"))
 

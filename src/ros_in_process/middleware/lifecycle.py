@@ -29,10 +29,10 @@ TRANSITIONS = [
     (60, "transition_success", 15, 1), (61, "transition_failure", 15, 4), (62, "transition_error", 15, 4),
 ]  # fmt: skip
 
-Described = tuple[int, str, int, str, int, str]
+TransitionData = tuple[int, str, int, str, int, str]
 
 
-def _described(number: int, label: str, start: int, goal: int) -> Described:
+def _described(number: int, label: str, start: int, goal: int) -> TransitionData:
     return number, label, start, STATES[start], goal, STATES[goal]
 
 
@@ -100,11 +100,11 @@ class LifecycleStateMachine(Destroyable):
         return list(STATES.items())
 
     @property
-    def transition_graph(self) -> list[Described]:
+    def transition_graph(self) -> list[TransitionData]:
         return [_described(*transition) for transition in TRANSITIONS]
 
     @property
-    def available_transitions(self) -> list[Described]:
+    def available_transitions(self) -> list[TransitionData]:
         return [_described(*transition) for transition in TRANSITIONS if transition[2] == self._state]
 
     def _find(self, wanted: int | str) -> tuple[int, str, int, int] | None:

@@ -9,13 +9,13 @@ import string
 
 from ros_in_process.middleware.records import RCLError
 
-Problem = tuple[str, int] | None
+NameProblem = tuple[str, int] | None
 
 _WORD = frozenset(string.ascii_letters + string.digits + "_")
 _MAX_NODE, _MAX_NAMESPACE, _MAX_TOPIC = 255, 245, 247
 
 
-def rclpy_get_validation_error_for_node_name(name: str) -> Problem:
+def rclpy_get_validation_error_for_node_name(name: str) -> NameProblem:
     """What is wrong with a node's name, and where; None if nothing is."""
     if not name:
         return "node name must not be empty", 0
@@ -29,7 +29,7 @@ def rclpy_get_validation_error_for_node_name(name: str) -> Problem:
     return None
 
 
-def rclpy_get_validation_error_for_full_topic_name(name: str) -> Problem:
+def rclpy_get_validation_error_for_full_topic_name(name: str) -> NameProblem:
     """What is wrong with a name that is fully expanded."""
     problem = _path_problem(name, "topic name")
     if problem is None and len(name) > _MAX_TOPIC:
@@ -37,7 +37,7 @@ def rclpy_get_validation_error_for_full_topic_name(name: str) -> Problem:
     return problem
 
 
-def rclpy_get_validation_error_for_namespace(name: str) -> Problem:
+def rclpy_get_validation_error_for_namespace(name: str) -> NameProblem:
     """What is wrong with a namespace."""
     if name == "/":
         return None
@@ -47,7 +47,7 @@ def rclpy_get_validation_error_for_namespace(name: str) -> Problem:
     return problem
 
 
-def _path_problem(name: str, what: str) -> Problem:
+def _path_problem(name: str, what: str) -> NameProblem:
     if not name:
         return f"{what} must not be empty", 0
     if name[0] != "/":
@@ -66,7 +66,7 @@ def _path_problem(name: str, what: str) -> Problem:
     return None
 
 
-def rclpy_get_validation_error_for_topic_name(name: str) -> Problem:
+def rclpy_get_validation_error_for_topic_name(name: str) -> NameProblem:
     """What is wrong with a name that may be relative, private, or have substitutions."""
     if not name:
         return "topic name must not be empty string", 0
@@ -77,7 +77,7 @@ def rclpy_get_validation_error_for_topic_name(name: str) -> Problem:
     return _characters_problem(name) or _tokens_problem(name)
 
 
-def _characters_problem(name: str) -> Problem:
+def _characters_problem(name: str) -> NameProblem:
     opened = None
     unmatched = "topic name must not have unmatched (unbalanced) curly braces '{}'"
     for index, char in enumerate(name):
@@ -101,7 +101,7 @@ def _characters_problem(name: str) -> Problem:
     return None if opened is None else (unmatched, opened)
 
 
-def _tokens_problem(name: str) -> Problem:
+def _tokens_problem(name: str) -> NameProblem:
     for index in range(1, len(name) - 1):
         if name[index] == "/" and name[index + 1].isdigit():
             return "topic name token must not start with a number", index + 1

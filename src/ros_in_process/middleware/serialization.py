@@ -18,7 +18,7 @@ _HEADER = b"\x00\x01\x00\x00"
 _FORMATS = {**TYPE_CODES, "boolean": "?", "char": "B", "octet": "B"}
 
 
-class _Writer:
+class _CdrWriter:
     def __init__(self) -> None:
         self.data = bytearray()
 
@@ -32,7 +32,7 @@ class _Writer:
             self.data += bytes(-len(self.data) % struct.calcsize(code)) + raw
 
 
-class _Reader:
+class _CdrReader:
     def __init__(self, data: bytes) -> None:
         self.data, self.at = data, 0
 
@@ -58,17 +58,17 @@ class _Reader:
         return values
 
 
-Write = Callable[[_Writer, Any], None]
-Read = Callable[[_Reader], Any]
+Write = Callable[[_CdrWriter, Any], None]
+ReadFunction = Callable[[_CdrReader], Any]
 
 
 @cache
-def _codec(kind: type) -> list[tuple[str, Write, Read]]:
+def _codec(kind: type) -> list[tuple[str, Write, ReadFunction]]:
     return [(slot, _writing(of), _reading(of)) for slot, of in fields_of(kind)]
 
 
 def _write_message(kind: type) -> Write:
-    def write(writer: _Writer, message: Any) -> None:
+    def write(writer: _CdrWriter, message: Any) -> None:
         fields = _codec(kind)
         for slot, write_field, _ in fields:
             write_field(writer, getattr(message, slot))
@@ -78,8 +78,8 @@ def _write_message(kind: type) -> Write:
     return write
 
 
-def _read_message(kind: Any) -> Read:
-    def read(reader: _Reader) -> Any:
+def _read_message(kind: Any) -> ReadFunction:
+    def read(reader: _CdrReader) -> Any:
         message = kind.__new__(kind)
         message._check_fields = False
         fields = _codec(kind)
@@ -109,17 +109,17 @@ def _writing(of: Any) -> Write:
     if isinstance(inner, idl.BasicType) and inner.typename in TYPE_CODES:
         code = TYPE_CODES[inner.typename]
 
-        def write_items(writer: _Writer, values: Any) -> None:
+        def write_items(writer: _CdrWriter, values: Any) -> None:
             writer.numbers(code, values)
 
     else:
         write_one = _writing(inner)
 
-        def write_items(writer: _Writer, values: Any) -> None:
+        def write_items(writer: _CdrWriter, values: Any) -> None:
             for value in values:
                 write_one(writer, value)
 
-    def write(writer: _Writer, values: Any) -> None:
+    def write(writer: _CdrWriter, values: Any) -> None:
         if not is_fixed:
             writer.number("I", len(values))
         write_items(writer, values)
@@ -127,7 +127,7 @@ def _writing(of: Any) -> Write:
     return write
 
 
-def _reading(of: Any) -> Read:
+def _reading(of: Any) -> ReadFunction:
     if isinstance(of, idl.BasicType):
         if of.typename == "octet":
             return lambda reader: bytes([reader.number("B")])
@@ -150,13 +150,13 @@ def _reading(of: Any) -> Read:
     return lambda reader: [read_one(reader) for _ in range(reader.number("I") if size is None else size)]
 
 
-def _write_string(writer: _Writer, value: str) -> None:
+def _write_string(writer: _CdrWriter, value: str) -> None:
     raw = value.encode()
     writer.number("I", len(raw) + 1)
     writer.data += raw + b"\x00"
 
 
-def _write_wide(writer: _Writer, value: str) -> None:
+def _write_wide(writer: _CdrWriter, value: str) -> None:
     raw = value.encode("utf-32-le")
     writer.number("I", len(raw) // 4)
     writer.data += raw
@@ -164,7 +164,7 @@ def _write_wide(writer: _Writer, value: str) -> None:
 
 def rclpy_serialize(message: Any, kind: type) -> bytes:
     """A message as bytes."""
-    writer = _Writer()
+    writer = _CdrWriter()
     _write_message(kind)(writer, converted(message, kind))
     return _HEADER + bytes(writer.data)
 
@@ -172,6 +172,6 @@ def rclpy_serialize(message: Any, kind: type) -> bytes:
 def rclpy_deserialize(data: bytes, kind: type) -> Any:
     """The message that some bytes are. Raises RMWError if they are none."""
     try:
-        return _read_message(kind)(_Reader(data[4:]))
+        return _read_message(kind)(_CdrReader(data[4:]))
     except (struct.error, UnicodeDecodeError):
         raise RMWError(f"failed to deserialize ROS message: no {kind.__name__}") from None

@@ -110,7 +110,7 @@ def _imported_anew(function: Callable[..., object]) -> Callable[..., object]:
     return found  # type: ignore[no-any-return]
 
 
-class _Shared:
+class _SharedObject:
     """An object that simulated processes share."""
 
     def __deepcopy__(self, memo: object) -> Any:
@@ -124,10 +124,10 @@ def _queue_class(name: str) -> type:
         base.put(self, pickle.loads(pickle.dumps(item)), block, timeout)
 
     nothing = {key: (lambda self: None) for key in ("close", "join_thread", "cancel_join_thread")}
-    return type("Queue", (_Shared, base), {"put": put, **nothing})
+    return type("Queue", (_SharedObject, base), {"put": put, **nothing})
 
 
-class Connection(_Shared):
+class Connection(_SharedObject):
     """An end of a `multiprocessing.Pipe`."""
 
     def __init__(self, incoming: Any, outgoing: Any) -> None:
@@ -148,7 +148,7 @@ class Connection(_Shared):
         """Nothing is held."""
 
 
-class _Value(_Shared):
+class _SharedValue(_SharedObject):
     def __init__(self, kind: object, value: Any = 0, *, lock: object = True) -> None:
         self.value = value
         self._lock = stand_in("threading").RLock()
@@ -157,7 +157,7 @@ class _Value(_Shared):
         return self._lock
 
 
-class _Array(_Shared, list[Any]):
+class _SharedArray(_SharedObject, list[Any]):
     def __init__(self, kind: object, content: Any, *, lock: object = True) -> None:
         super().__init__([0] * content if isinstance(content, int) else content)
         self._lock = stand_in("threading").RLock()
@@ -185,11 +185,10 @@ def _multiprocessing() -> ModuleType:
 
     module = ModuleType("multiprocessing", real.__doc__)
     names = ("Event", "Barrier", "Condition", "Semaphore", "BoundedSemaphore")
-    shared = {name: type(name, (_Shared, getattr(threading, name)), {}) for name in names}
+    shared = {name: type(name, (_SharedObject, getattr(threading, name)), {}) for name in names}
     module.__dict__.update(
-        Process=ChildProcess, Queue=queue, JoinableQueue=queue, SimpleQueue=queue, Pipe=pipe, Value=_Value,
-        Array=_Array,
-        RawValue=_Value, RawArray=_Array, **shared,
+        Process=ChildProcess, Queue=queue, JoinableQueue=queue, SimpleQueue=queue, Pipe=pipe,
+        Value=_SharedValue, Array=_SharedArray, RawValue=_SharedValue, RawArray=_SharedArray, **shared,
         Lock=_lock_class(threading.Lock), RLock=_lock_class(threading.RLock),
         get_context=lambda method=None: module, set_start_method=lambda method, force=False: None,
         get_start_method=lambda allow_none=False: "spawn", freeze_support=lambda: None,
@@ -209,7 +208,7 @@ def _multiprocessing() -> ModuleType:
 
 
 def _lock_class(make: Callable[[], Any]) -> Callable[[], Any]:
-    class SharedLock(_Shared):
+    class SharedLock(_SharedObject):
         def __init__(self) -> None:
             self._inner = make()
 

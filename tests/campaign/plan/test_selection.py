@@ -68,15 +68,15 @@ def test_a_word_that_fits_nothing_names_the_nearest_that_does(option: str) -> No
 def test_a_selection_file_chooses_mutants_which_keep_their_numbers(tmp_path: Path) -> None:
     file = tmp_path / "published.txt"
     file.write_text(f"# the published ones\n\n{NEGATE.id}   # no. 1\nmission.py:*:skip\n{NEGATE.id}\n")
-    assert select(MUTANTS, selection_file=file) == [SKIP, NEGATE]
-    assert select(MUTANTS, [str(SKIP.number)], selection_file=file) == [SKIP]
+    assert select(MUTANTS, [f"@{file}"]) == [SKIP, NEGATE]
+    assert select(MUTANTS, [f"@{file}"], [str(SKIP.number)]) == [NEGATE]
 
 
 def test_a_selection_file_with_an_unknown_id_names_the_nearest(tmp_path: Path) -> None:
     file = tmp_path / "published.txt"
     file.write_text(f"{REVERSE.id}\n{SKIP.id}x\nnowhere.py:f\n")
     with pytest.raises(SelectionError) as error:
-        select(MUTANTS, selection_file=file)
+        select(MUTANTS, [f"@{file}"])
     assert "'nowhere.py:f'" in str(error.value)
     assert repr(SKIP.id) in str(error.value)
     assert str(file) in str(error.value)
@@ -85,7 +85,7 @@ def test_a_selection_file_with_an_unknown_id_names_the_nearest(tmp_path: Path) -
 def test_a_selection_file_may_name_what_the_plan_leaves_out(tmp_path: Path) -> None:
     file = tmp_path / "published.txt"
     file.write_text(f"{LEFT_OUT[0].id}\n{SKIP.id}\n")
-    assert [one.id for one in select(MUTANTS, selection_file=file, left_out=LEFT_OUT)] == [SKIP.id]
+    assert [one.id for one in select(MUTANTS, [f"@{file}"], left_out=LEFT_OUT)] == [SKIP.id]
 
 
 @pytest.mark.parametrize("content", [None, b"\xff\xfe"])
@@ -94,7 +94,7 @@ def test_a_selection_file_that_cannot_be_read_is_a_usage_error(tmp_path: Path, c
     if content is not None:
         file.write_bytes(content)
     with pytest.raises(SelectionError, match="cannot read the selection file"):
-        select(MUTANTS, selection_file=file)
+        select(MUTANTS, [f"@{file}"])
 
 
 def test_brackets_in_ids_are_just_brackets() -> None:

@@ -504,7 +504,6 @@ CONFIGURATIONS: dict[str, tuple[str, list[str]]] = {
     "error_limit_in_percent": (GOOD + "error_limit = 25", [":4", "error_limit", "at most 1"]),
     "limit_in_percent": (GOOD + "unstable_limit = 10", [":4", "at most 1"]),
     "score_over_100": (GOOD + "min_score = 101", [":4", "at most 100"]),
-    "no_such_selection": (GOOD + 'selection = "paper.txt"', [":4", "'paper.txt'"]),
     "date": (GOOD + "seed = 1979-05-27", [":4", "whole number", "date 1979-05-27"]),
 }
 

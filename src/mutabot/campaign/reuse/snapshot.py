@@ -71,8 +71,8 @@ def is_note(name: str) -> bool:
 def own_files(request: Request) -> set[str]:
     """The files that the configuration consists of; they count by what they say."""
     configuration = request.configuration
-    named = (configuration.selection or "", *configuration.vocabulary)
-    own = {configuration.file, "pyproject.toml", *(PurePosixPath(name).as_posix() for name in named)}
+    vocabulary = (PurePosixPath(name).as_posix() for name in configuration.vocabulary)
+    own = {configuration.file, "pyproject.toml", *vocabulary}
     others = [word[1:] for word in (*request.only, *request.skip) if word.startswith("@")]
     if request.other_journal is not None:
         others += [f"{request.other_journal}{end}" for end in ("", "-wal", "-shm", ".lock")]

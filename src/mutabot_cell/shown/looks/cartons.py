@@ -8,7 +8,7 @@ from itertools import product
 import mujoco
 import numpy as np
 
-from mutabot_cell.parts import Box, Part, Triple
+from mutabot_cell.parts import Box, Part, Vector3
 
 from .style import BOX, LOOKS, hide, named, show
 
@@ -37,7 +37,7 @@ def dress_part(spec: mujoco.MjSpec, part: Part) -> None:
     _print_mark(body, part.size)
 
 
-def _broken(size: Triple, cut: float) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+def _broken(size: Vector3, cut: float) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
     """Corners of a box whose edges are cut off at 45 degrees, shape (24, 3), m."""
     halves = np.array(size) / 2
     corners = []
@@ -49,7 +49,7 @@ def _broken(size: Triple, cut: float) -> np.ndarray[tuple[int, ...], np.dtype[np
     return np.array(corners)
 
 
-def _print_label(body: mujoco.MjsBody, size: Triple) -> None:
+def _print_label(body: mujoco.MjsBody, size: Vector3) -> None:
     width, depth, top = 0.62 * size[0], 0.40 * size[1], size[2] / 2
     middle = -0.16 * size[1]
     show(body, BOX, (width / 2, depth / 2, _SKIN), (0, middle, top), material="paper")
@@ -61,7 +61,7 @@ def _print_label(body: mujoco.MjsBody, size: Triple) -> None:
         show(body, BOX, text, ((0.05 + half) * width, middle + line * depth, top), material="ink")
 
 
-def _print_mark(body: mujoco.MjsBody, size: Triple) -> None:
+def _print_mark(body: mujoco.MjsBody, size: Vector3) -> None:
     """The zigzag of a path on the two sides that look along y."""
     edge = min(size[0], size[2])
     for side in (-1, 1):

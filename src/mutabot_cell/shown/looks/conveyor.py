@@ -53,7 +53,7 @@ def dress_belt(spec: mujoco.MjSpec, fixture: Fixture) -> Seam:
     hide(spec.geom(fixture.name))
     along_x = abs(fixture.belt.direction[0]) > abs(fixture.belt.direction[1])
     length, width = (fixture.size[0], fixture.size[1]) if along_x else (fixture.size[1], fixture.size[0])
-    draw = _Along(body, along_x)
+    draw = _ConveyorAxes(body, along_x)
     radius = fixture.size[2] / 2
     inside, end = width / 2 - _RAIL, length / 2 - radius
     draw.box((end, inside, radius), (0, 0, 0), "belt")
@@ -74,7 +74,7 @@ def dress_belt(spec: mujoco.MjSpec, fixture: Fixture) -> Seam:
     return Seam(fixture.name, axis, math.copysign(1.0, fixture.belt.direction[axis]), end, radius)
 
 
-class _Along:
+class _ConveyorAxes:
     """Draws in a conveyor's own axes: along it, across it, up."""
 
     def __init__(self, body: mujoco.MjsBody, along_x: bool) -> None:

@@ -15,7 +15,7 @@ import numpy as np
 from .packages import folder_of, show_mesh
 from .style import hide, named
 
-Point = np.ndarray[tuple[int, ...], np.dtype[np.float64]]
+PadPoint = np.ndarray[tuple[int, ...], np.dtype[np.float64]]
 
 #: joints of the linkage at the open gripper, across and forward in the base's frame, m (file 2f85.xml):
 #: of the driver and of the coupler on it, of the spring link, of the follower on that, of coupler on follower
@@ -84,7 +84,7 @@ def dress_2f85(spec: mujoco.MjSpec, prefix: str) -> Linkage | None:
     return Linkage(prefix)
 
 
-def _solved(half: float) -> tuple[float, float, float, Point]:
+def _solved(half: float) -> tuple[float, float, float, PadPoint]:
     """Angles of spring link, driver and coupler, and the pad's place, for pads `half` from the middle."""
     arm = _FOLLOWER_JOINT - _SPRING
     across = half - (_PAD + _FACE)[0] + arm[0]
@@ -98,29 +98,29 @@ def _solved(half: float) -> tuple[float, float, float, Point]:
     return angle, _between(crank, joint - _DRIVER), _between(_COUPLER_ARM, follower - joint), _PAD + moved
 
 
-def _meeting(one: Point, far: float, other: Point, away: float) -> Point:
+def _meeting(one: PadPoint, far: float, other: PadPoint, away: float) -> PadPoint:
     """The outer one of the points that are `far` from one point and `away` from the other."""
     line = other - one
     distance = float(np.hypot(*line))
     along = (far**2 - away**2 + distance**2) / (2 * distance)
     aside = math.sqrt(max(0.0, far**2 - along**2))
     unit = line / distance
-    found: Point = one + along * unit + aside * np.array([unit[1], -unit[0]])
+    found: PadPoint = one + along * unit + aside * np.array([unit[1], -unit[0]])
     return found
 
 
-def _turned(vector: Point, angle: float) -> Point:
+def _turned(vector: PadPoint, angle: float) -> PadPoint:
     sine, cosine = math.sin(angle), math.cos(angle)
     return np.array([cosine * vector[0] - sine * vector[1], sine * vector[0] + cosine * vector[1]])
 
 
-def _on(pivot: Point, point: Point, angle: float) -> Point:
+def _on(pivot: PadPoint, point: PadPoint, angle: float) -> PadPoint:
     """Where a point of a link that turns about `pivot` has gone."""
-    found: Point = pivot + _turned(point - pivot, angle)
+    found: PadPoint = pivot + _turned(point - pivot, angle)
     return found
 
 
-def _between(one: Point, other: Point) -> float:
+def _between(one: PadPoint, other: PadPoint) -> float:
     """The angle from one vector to another."""
     return math.atan2(one[0] * other[1] - one[1] * other[0], float(one @ other))
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import mujoco
 
-from mutabot_cell.parts import Triple
+from mutabot_cell.parts import Vector3
 
 from .style import LOOKS, named
 
@@ -22,7 +22,7 @@ def folder_of(package: str, inside: str) -> Path | None:
 
 
 def show_mesh(
-    spec: mujoco.MjSpec, body: mujoco.MjsBody, file: Path, material: str, *, scale: Triple = (1.0, 1.0, 1.0)
+    spec: mujoco.MjSpec, body: mujoco.MjsBody, file: Path, material: str, *, scale: Vector3 = (1.0, 1.0, 1.0)
 ) -> mujoco.MjsGeom:
     """Draw a mesh file in a body's frame; it is loaded once for all bodies that show it.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import mujoco
 
-from mutabot_cell.parts import Triple
+from mutabot_cell.parts import Vector3
 
 #: groups of shapes: those that are drawn instead of simulated ones, and the simulated ones they stand for
 LOOKS, HIDDEN = 2, 3
@@ -61,8 +61,8 @@ def add_materials(spec: mujoco.MjSpec) -> None:
 def show(
     body: mujoco.MjsBody,
     kind: mujoco.mjtGeom,
-    size: Triple,
-    pos: Triple = (0.0, 0.0, 0.0),
+    size: Vector3,
+    pos: Vector3 = (0.0, 0.0, 0.0),
     *,
     material: str = "",
     rgba: tuple[float, ...] | None = None,

@@ -8,7 +8,7 @@ from itertools import pairwise
 import mujoco
 import numpy as np
 
-from mutabot_cell.parts import Triple
+from mutabot_cell.parts import Vector3
 
 _COLOUR = np.array((0.96, 0.42, 0.10, 1.0), dtype=np.float32)
 _RADIUS = 0.0035
@@ -16,7 +16,7 @@ _SHORTEST = 0.004
 """A piece of the line that is shorter waits for more of it, m."""
 
 
-def draw_trace(scene: mujoco.MjvScene, points: Sequence[Triple]) -> None:
+def draw_trace(scene: mujoco.MjvScene, points: Sequence[Vector3]) -> None:
     """Draw a line through points, world frame, m; as much of its end as the scene has room for."""
     kept = list(points[:1])
     for point in points[1:]:
