@@ -458,7 +458,7 @@ def test_an_interrupted_campaign_goes_on(project: Project, monkeypatch: pytest.M
     assert project.state() == ("complete", len(ran) + 3)
 
 
-@pytest.mark.parametrize("phase", ["begin", "make_plan"])
+@pytest.mark.parametrize("phase", ["begin", "whole_plan"])
 def test_a_campaign_that_ends_before_its_first_mutant_loses_nothing(
     project: Project, script: Script, monkeypatch: pytest.MonkeyPatch, phase: str
 ) -> None:
