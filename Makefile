@@ -99,9 +99,9 @@ bench: $(READY)
 	$(RUN) benchmarks/paper_seeds.py
 	$(RUN) benchmarks/suggested_checks.py --seeds 50 paper
 	$(RUN) benchmarks/engines.py --page docs/engines.md
-	$(RUN) benchmarks/pick_and_place_seeds.py 100
-	$(RUN) benchmarks/tracking_seeds.py 30
-	$(RUN) benchmarks/palletising_seeds.py 5
+	$(RUN) benchmarks/example_seeds.py pick_and_place 100
+	$(RUN) benchmarks/example_seeds.py tracking 30
+	$(RUN) benchmarks/example_seeds.py palletising 5
 	$(RUN) benchmarks/html_report.py
 
 ## slow: kill the controller at 30 random moments and finish by resuming; both engines on every mutant of the

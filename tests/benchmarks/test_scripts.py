@@ -24,6 +24,7 @@ SHORT: dict[str, list[str]] = {
     "controller": ["--mutants", "1000", "--sample", "2"],
     "differential": ["--examples", "scales", "--sample", "2"],
     "engines": ["--examples", "scales", "--sample", "2"],
+    "example_seeds": ["tracking", "1"],
     "flaky_campaigns": ["--count", "1", "--chance", "10"],
     "html_report": ["--mutants", "20", "--rounds", "1", "--repeats", "1"],
     "instrumentation": [],
@@ -32,7 +33,6 @@ SHORT: dict[str, list[str]] = {
     "kill_and_resume": ["--kills", "1"],
     "paper_scores": ["."],
     "paper_seeds": ["1"],
-    "pick_and_place_seeds": ["1"],
     "processes_in_a_row": ["--count", "1", "--examples", "scales"],
     "published_campaign": [MUTABOT, "1"],
     "same_results": [str(SCRIPTS / "witness_records")] * 2,
@@ -41,7 +41,6 @@ SHORT: dict[str, list[str]] = {
     "suggested_checks": ["--seeds", "1", "scales"],
     "suite_length": ["--lengths", "50"],
     "ten_thousand": ["--mutants", "4000"],
-    "tracking_seeds": ["1"],
     "witness": ["witness", "fluent_api"],
 }
 #: scripts that measure speed or count draws: a short form says that they run, and its figures nothing
@@ -49,7 +48,6 @@ LOOSE = {"controller", "html_report", "suite_length", "ten_thousand"}
 #: what a short form cannot bring
 ELSEWHERE = {
     "foreign_programs": "installs simulators: `make foreign`",
-    "palletising_seeds": "is `pick_and_place_seeds` on another example, and takes a minute",
     "random_edits": "is a module of `since_edits`",
 }
 

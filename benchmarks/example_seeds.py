@@ -1,6 +1,6 @@
-"""Does the unmutated program of `examples/pick_and_place` pass its own tests, whatever the seed?
+"""Does the unmutated program of an example pass its own tests, whatever the seed?
 
-    python benchmarks/pick_and_place_seeds.py [seeds [first seed]]
+    python benchmarks/example_seeds.py EXAMPLE SEEDS [FIRST SEED]
 
 Runs the example's suite in this process, every test once per seed, and prints how many passed per test.
 """
@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-EXAMPLE = Path(__file__).resolve().parent.parent / "examples" / "pick_and_place"
+EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
 
 
 class EverySeed:
@@ -55,13 +55,7 @@ def _message(report: pytest.TestReport) -> str:
     return " ".join(crash.message.split()) if crash is not None else str(report.longrepr)
 
 
-def numbers_of(words: list[str], count: int) -> tuple[int, int]:
-    """How many seeds a command line asks for, and the first of them."""
-    given = [int(word) for word in words[1:3]]
-    return (given or [count])[0], (given[1:] or [0])[0]
-
-
-def main(count: int, first: int, example: Path = EXAMPLE) -> int:
+def main(example: Path, count: int, first: int = 0) -> int:
     """Run `count` seeds; the exit code is 0 if every test passes with every seed."""
     os.chdir(example)
     sys.dont_write_bytecode = True
@@ -78,4 +72,4 @@ def main(count: int, first: int, example: Path = EXAMPLE) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main(*numbers_of(sys.argv, 200)))
+    sys.exit(main(EXAMPLES / sys.argv[1], *map(int, sys.argv[2:4])))
