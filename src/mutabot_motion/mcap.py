@@ -14,7 +14,7 @@ from foxglove import channels, messages
 
 from mutabot.api.reports import RecordedPaths
 
-from .shown import BLOCK, COLOURS, Block, Shown, Triple, Weight, events, things_in, values_in
+from .shown import BLOCK, COLOURS, Coordinates, DrawnBlock, Shown, Weight, events, things_in, values_in
 
 READER = "Foxglove"
 _WORLD = "world"
@@ -110,7 +110,7 @@ def _topic(*parts: str) -> str:
     return "/" + "/".join(part.replace(" ", "_") for part in parts)
 
 
-def _block(block: Block) -> Any:
+def _block(block: DrawnBlock) -> Any:
     name, centre, size, wanted = block
     red, green, blue, *opacity = wanted or (*(part / 255 for part in BLOCK), 0.4)
     colour = messages.Color(r=red, g=green, b=blue, a=opacity[0] if opacity else 1.0)
@@ -118,7 +118,7 @@ def _block(block: Block) -> Any:
     return messages.SceneEntity(frame_id=_WORLD, id=name, cubes=[cube])
 
 
-def _shape(frame: str, size: Triple | None, colour: Any) -> Any:
+def _shape(frame: str, size: Coordinates | None, colour: Any) -> Any:
     """A box, or a small ball for what has no size."""
     about: dict[str, Any] = {"frame_id": frame, "id": frame, "frame_locked": True}
     pose = _pose((0.0, 0.0, 0.0))

@@ -18,7 +18,7 @@ from rerun import blueprint as layout
 
 from mutabot.api.reports import RecordedPaths, UsageError
 
-from .shown import BLOCK, COLOURS, Block, Shown, Weight, events, things_in, values_in
+from .shown import BLOCK, COLOURS, DrawnBlock, Shown, Weight, events, things_in, values_in
 from .sights import has_screen
 
 READER = "Rerun"
@@ -108,7 +108,7 @@ class _Side:
         return str(rerun.new_entity_path([self._name, *parts]))
 
 
-def _log_block(stream: rerun.RecordingStream, block: Block) -> None:
+def _log_block(stream: rerun.RecordingStream, block: DrawnBlock) -> None:
     name, centre, size, wanted = block
     colour = tuple(round(255 * part) for part in wanted) if wanted is not None else (*BLOCK, 90)
     box = rerun.Boxes3D(

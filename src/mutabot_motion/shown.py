@@ -9,9 +9,9 @@ from typing import Any
 
 from mutabot.api.reports import RecordedPaths
 
-Triple = tuple[float, float, float]
+Coordinates = tuple[float, float, float]
 #: name, centre, size (m) and colour of a box that never moves, see docs/motion.md
-Block = tuple[str, Triple, Triple, tuple[float, ...] | None]
+DrawnBlock = tuple[str, Coordinates, Coordinates, tuple[float, ...] | None]
 #: of both sides: red, green and blue that people with any kind of sight tell apart
 COLOURS = {"original": (86, 180, 233), "mutant": (230, 159, 0)}
 #: of blocks without a wish
@@ -70,7 +70,7 @@ class Shown:
         return tuple((name, found) for name, found in both if found is not None)
 
     @property
-    def blocks(self) -> list[Block]:
+    def blocks(self) -> list[DrawnBlock]:
         """What stands around on either side, each once."""
         return list(dict.fromkeys(block for _, found in self.sides for block in found.recording.blocks))
 

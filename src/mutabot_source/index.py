@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 #: first line (1-based), first column, last line, last column (0-based, in UTF-8 bytes)
-Extent = tuple[int, int, int, int]
+TextExtent = tuple[int, int, int, int]
 _CallableNode = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
 Start = tuple[int, int]
 
@@ -62,7 +62,7 @@ class Index:
         declared: names declared ``global`` or ``nonlocal``, by function.
     """
 
-    expressions: dict[Extent, ScopedNode | None] = field(default_factory=dict)
+    expressions: dict[TextExtent, ScopedNode | None] = field(default_factory=dict)
     statements: dict[Start, ScopedNode] = field(default_factory=dict)
     declared: dict[str, tuple[str, ...]] = field(default_factory=dict)
 
@@ -109,7 +109,7 @@ class Index:
             self.expressions[extent] = None if extent in self.expressions else ScopedNode(node, scope)
 
 
-def extent_of(node: ast.expr | ast.stmt) -> Extent:
+def extent_of(node: ast.expr | ast.stmt) -> TextExtent:
     """Where a node stands."""
     return (node.lineno, node.col_offset, node.end_lineno or node.lineno, node.end_col_offset or 0)
 

@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 from mutabot.api.faults import Alternative
 
-from .index import Extent, extent_of
+from .index import TextExtent, extent_of
 from .operator import Surroundings, SyntaxNode, TextParts
 
 _DefinitionNode = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
@@ -35,7 +35,7 @@ class ModuleTree:
                 if is_formatted:
                     self._formatted.add(child)
 
-    def segment(self, extent: Extent) -> str:
+    def segment(self, extent: TextExtent) -> str:
         """The program text at an extent; columns count bytes of UTF-8."""
         first, start, last, end = extent
         lines = self._lines[first - 1 : last]

@@ -14,7 +14,7 @@ from mutabot.api.faults import Alternative, ProgramText, Site, TextPlace
 
 from . import registry
 from .extension import CONVENTIONAL
-from .index import Extent, Index, ScopedNode, extent_of
+from .index import Index, ScopedNode, TextExtent, extent_of
 from .nodes import ModuleTree, is_variable, shortened, shown, template
 from .operator import ConventionalOperator, Draft
 
@@ -64,9 +64,9 @@ class _Seed:
     """A place in the making."""
 
     found: ScopedNode
-    extent: Extent
+    extent: TextExtent
     variable: bool
-    kept: list[Extent] = field(default_factory=list)
+    kept: list[TextExtent] = field(default_factory=list)
     alternatives: list[Alternative] = field(default_factory=list)
 
     def place(self, number: int, file: str, tree: ModuleTree) -> TextPlace:
