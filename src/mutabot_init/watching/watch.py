@@ -226,8 +226,9 @@ class Watch(Observer):
     def _arguments(
         self, seen: _Seen, args: tuple[Any, ...], kwargs: dict[str, Any], instance: Any
     ) -> dict[str, Any]:
-        """Look at the arguments of a call, and return those whose names are known."""
+        """Look at the arguments of a call, and return those that it is given under a known name."""
         values, signature, call = dict(kwargs), seen.callee.signature, seen.call
+        given = {*kwargs}
         if signature is None:
             for index, value in enumerate(args):
                 look(call.positional, value, f"#{index}")
@@ -236,6 +237,7 @@ class Watch(Observer):
                 bound = signature.bind(*args, **kwargs)
             except TypeError:
                 return {}
+            given.update(bound.arguments)
             bound.apply_defaults()
             values = dict(bound.arguments)
             for name, parameter in signature.parameters.items():
@@ -248,7 +250,7 @@ class Watch(Observer):
             for part in known.parts.values():
                 if part.length is not None and limits is not None and len(limits) == part.length:
                     part.limits = limits
-        return values
+        return {name: value for name, value in values.items() if name in given}
 
     def _answer(self, seen: _Seen, result: Any, command: Command | None = None) -> None:
         with suppress(Exception):
@@ -333,13 +335,17 @@ def _told_by(call: WatchedCallable, instance: Any, values: Mapping[str, Any]) ->
         if is_item:
             return (name, str(value), beside) if _is_address(value) else ("", "", {})
         is_plain = isinstance(value, str | int) and not isinstance(value, bool)
-        if name.lower() in _TELLING and (is_plain or _prints_itself(value)):
+        if _tells(name.lower()) and (is_plain or _prints_itself(value)):
             return name, str(value), beside
         pair = _pair(name, value)
         if pair is not None:
             path, text, written = pair
             return f"{path}[0]", text, {f"{path}[1]": written}
     return ("self", str(instance), values) if _prints_itself(instance) else ("", "", {})
+
+
+def _tells(name: str) -> bool:
+    return name in _TELLING or name.endswith(("address", "register", "topic"))
 
 
 def _is_address(key: Any) -> bool:

@@ -231,6 +231,29 @@ def test_writes_to_tags_and_objects_are_messages_with_the_values_seen(fieldbus: 
     }
 
 
+def test_what_nobody_passes_is_no_part_of_a_message(tmp_path: Path) -> None:
+    files = {
+        "bus.py": """
+            def publish(topic, payload, retain=False): ...
+            def write_register(registeraddress, value, signed=False): ...
+        """,
+        "program.py": """
+            import bus
+            def run():
+                for speed in (0.3, 0.1):
+                    bus.publish("cell/speed", speed)
+                    bus.write_register(289, speed > 0.2, signed=True)
+        """,
+        "test_program.py": "import program\ndef test_it(): program.run()\n",
+    }
+    propose(write(tmp_path, files))
+    found = {name.partition(":")[2]: one for name, one in operations(tmp_path).items()}
+    assert {
+        name: [(pattern.text, [str(one.path) for one in pattern.arguments]) for pattern in one.patterns]
+        for name, one in found.items()
+    } == {"publish": [("cell/speed", ["payload"])], "write_register": [("289", ["value", "signed"])]}
+
+
 def test_assignments_to_properties_are_listed(fieldbus: Path) -> None:
     text = (fieldbus / "robot.toml").read_text()
     (speed,) = operations(fieldbus)["plc:Drive.speed_rpm"].arguments
