@@ -485,7 +485,7 @@ def test_text_whose_tests_fail_while_it_is_looked_at_is_named_and_not_mutated(
         MISSION,
         "import mission\nfrom robot import Arm\n\ndef test_right():\n    mission.right(Arm())\n",
     )
-    mutants, left_out, _ = plan_only(
+    mutants, left_out, *_ = plan_only(
         request_for(tmp_path, families=("robot", "conventional"), rounds=rounds), Quiet()
     )
     assert {mutant.family for mutant in mutants} == {"robot"}
