@@ -186,7 +186,8 @@ def candidates(project: SuiteFiles, measured: Measured) -> tuple[list[ProposedCh
                 common = (any(one.startswith(start) for one in beside) for start in starts)
                 found.append(replace(check, alike=sum(common)))
             else:
-                refused.update((mutant, why) for mutant, _ in check.trials)
+                for mutant, _ in check.trials:  # a clock is the reason only where there is no other
+                    refused[mutant] = refused.get(mutant, why) if is_clock(check.reading.text) else why
     return found, refused
 
 
@@ -307,13 +308,23 @@ def _beyond(sizes: Mapping[tuple[str, int], float], tolerance: float) -> Trials:
 def _why_not(check: ProposedCheck, own: float) -> str | None:
     """Why a person would not merge it, if the tests state the tolerance ``own`` for it; None if one may."""
     text = check.reading.text
-    if _CLOCK.search(_last(text)):
-        return f"only its time differs ({text}): add a deadline if the task has one"
+    if is_clock(text):
+        return clock_text(text)
     if check.tolerance is not None and check.tolerance < own:
         return f"{text} differs by less than the tests allow: {own!r}"
     if check.is_exact:
         return f"only an exact value would notice it: {check.statement}"
     return None
+
+
+def is_clock(text: str) -> bool:
+    """Whether a reading is a time, by its name: where it differs, the same may only have happened later."""
+    return _CLOCK.search(_last(text)) is not None
+
+
+def clock_text(text: str) -> str:
+    """What is said of a survivor of which nothing differs but a time."""
+    return f"at the ends of its tests only the clock differs ({text}): add a deadline if the task has one"
 
 
 def _are_related(one: ReadExpression, other: ReadExpression, read: ValuesRead) -> bool:

@@ -19,7 +19,7 @@ from mutabot.api.reports import (
     Verdict,
 )
 
-from .checks import ProposedCheck, Trials, candidates, unseen
+from .checks import ProposedCheck, Trials, candidates, clock_text, is_clock, unseen
 from .found import Dropped, NothingToSuggestError, ProvenCheck, Suggestions, Unsolved
 from .project import OTHER, PlaceInTest, SuiteFiles, copy_of, edited, place_of
 from .readings import Measured, is_number, known, measure
@@ -88,7 +88,8 @@ def _differences(mutant: str, measured: Measured) -> list[tuple[float, str]]:
                     own = f"its tolerance is {_short(tolerance)}"
                 apart = abs(value - before)
                 words = f"{text} differs by {_short(apart)}, {own}"
-                found.append((apart / max(spread, tolerance), words))
+                deviation = apart / max(spread, tolerance)
+                found.append((0.0, clock_text(text)) if is_clock(text) else (deviation, words))
     return found
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from math import inf
+from itertools import pairwise
+from math import hypot, inf
 from typing import TYPE_CHECKING
 
 from mutabot.evidence.paths import RecordedPaths
@@ -18,6 +19,10 @@ if TYPE_CHECKING:
 ContactSpan = tuple[float, float]
 #: names of what no simulator calls a robot
 _GROUND = frozenset({"floor", "ground", "plane", "world"})
+#: s: moments that lie closer together belong to two worlds
+STEP = 0.02
+#: s in which a support carries a thing that no robot touches, and how fast the thing moves then, m/s
+_CARRIED, _CARRYING = 0.2, 0.005
 #: s: a contact that is lost for less goes on
 _FLICKER = 0.25
 
@@ -82,6 +87,30 @@ class RecordedContacts:
             return frozenset(recording.robots)
         others = {*self.seen.paths, *(block.name for block in recording.blocks)} | _GROUND
         return frozenset({name for pair in self.intervals for name in pair} - others)
+
+    @cached_property
+    def carriers(self) -> frozenset[str]:
+        """What moves the things that lie on it while no robot touches them, as a conveyor does."""
+        found = set()
+        for thing in self.things:
+            held = [(begin - _CARRIED, end + _CARRIED) for begin, end in self.holds(thing)]
+            for other, spans in self.supports(thing).items():
+                lies = [(begin + _CARRIED, end) for begin, end in spans if end - begin > _CARRIED]
+                if other not in found and lies and self._moves(thing, lies, held):
+                    found.add(other)
+        return frozenset(found)
+
+    def _moves(self, thing: str, lies: list[ContactSpan], held: list[ContactSpan]) -> bool:
+        """Whether a thing moves over the ground while it lies on something and is not held."""
+        path = self.seen.paths[thing]
+        for (before, one), (after, other) in pairwise(zip(path.when, path.points, strict=True)):
+            way = hypot(other[0] - one[0], other[1] - one[1])
+            if after - before <= STEP or way <= _CARRYING * (after - before):
+                continue
+            is_held = is_within(before, held) or is_within(after, held)
+            if is_within(before, lies) and is_within(after, lies) and not is_held:
+                return True
+        return False
 
     def holds(self, thing: str) -> list[ContactSpan]:
         """When any robot touches a thing."""

@@ -163,7 +163,7 @@ class TrackPath:
         return max(0, bisect_right(self.when, time + _SAME) - 1)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class RecordedPaths:
     """What was recorded of one test, and the paths of what was tracked, which are worked out once."""
 

@@ -7,11 +7,12 @@ which a thing was let go.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
 from itertools import pairwise
 from math import dist, hypot, inf, sqrt
 from typing import TYPE_CHECKING, NamedTuple
 
-from mutabot.evidence.contacts import ContactSpan, RecordedContacts, is_within
+from mutabot.evidence.contacts import STEP, ContactSpan, RecordedContacts, is_within
 
 if TYPE_CHECKING:
     from mutabot.evidence.paths import RecordedPaths, Row, TrackPath
@@ -24,10 +25,8 @@ COLLISION, SPEED, DURATION, MARGIN = "collision speed", "greatest speed", "durat
 _MARGIN = "margin"
 #: m/s²
 _GRAVITY = 9.81
-#: s: moments that lie closer together belong to two worlds; what falls longer is not followed
-_STEP, _FALL = 0.02, 3.0
-#: s in which a support carries a thing that no robot touches, and how fast the thing moves then, m/s
-_CARRIED, _CARRYING = 0.2, 0.005
+#: s: what falls longer is not followed
+_FALL = 3.0
 
 
 class Fact(NamedTuple):
@@ -50,6 +49,7 @@ class Fact(NamedTuple):
     unit: str = "m"
 
 
+@lru_cache(64)
 def facts_of(seen: RecordedPaths) -> dict[tuple[str, str], Fact]:
     """Return the largest of each kind, by name and thing."""
     contacts = RecordedContacts(seen)
@@ -87,7 +87,7 @@ def _facts(contacts: RecordedContacts) -> Iterator[Fact]:
 def _speeds(path: TrackPath) -> Iterator[tuple[float, float]]:
     """When a thing had which speed, m/s."""
     for (before, one), (after, other) in pairwise(zip(path.when, path.points, strict=True)):
-        if after - before > _STEP:
+        if after - before > STEP:
             yield after, dist(one, other) / (after - before)
 
 
@@ -131,7 +131,7 @@ def _impact(contacts: RecordedContacts, release: Fact) -> float:
     if release.value <= 0.0 or last == 0:
         return 0.0
     step = path.when[last] - path.when[last - 1]
-    carried = dist(path.points[last - 1], path.points[last]) / step if step > _STEP else 0.0
+    carried = dist(path.points[last - 1], path.points[last]) / step if step > STEP else 0.0
     return sqrt(carried * carried + 2.0 * _GRAVITY * release.value)
 
 
@@ -190,31 +190,17 @@ def _drags(contacts: RecordedContacts, thing: str) -> Iterator[Fact]:
     """How far a robot moved a thing over what it stood on; what moves things by itself is left out."""
     path, holds = contacts.seen.paths[thing], contacts.holds(thing)
     for other, found in contacts.supports(thing).items():
-        if _carries(contacts, other):
+        together = [(begin, end) for begin, end in found if any(a < end and begin < b for a, b in holds)]
+        if not together or other in contacts.carriers:
             continue
         way, at = 0.0, None
         for (before, one), (after, next_one) in pairwise(zip(path.when, path.points, strict=True)):
-            both = all(is_within(time, holds) and is_within(time, found) for time in (before, after))
-            if both and after - before > _STEP:
+            both = all(is_within(time, holds) and is_within(time, together) for time in (before, after))
+            if both and after - before > STEP:
                 way += hypot(next_one[0] - one[0], next_one[1] - one[1])
                 at = before if at is None else at
         if at is not None:
             yield Fact(DRAG, thing, way, at, other)
-
-
-def _carries(contacts: RecordedContacts, support: str) -> bool:
-    """Whether something moves what lies on it, as a conveyor does."""
-    for thing in contacts.things:
-        path, held = contacts.seen.paths[thing], contacts.holds(thing)
-        found = contacts.supports(thing).get(support, [])
-        lies: list[ContactSpan] = [(begin + _CARRIED, end) for begin, end in found if end - begin > _CARRIED]
-        for (before, one), (after, other) in pairwise(zip(path.when, path.points, strict=True)):
-            alone = is_within(before, lies) and is_within(after, lies)
-            touched = any(begin - _CARRIED <= after and before <= end + _CARRIED for begin, end in held)
-            way = hypot(other[0] - one[0], other[1] - one[1])
-            if alone and not touched and after - before > _STEP and way > _CARRYING * (after - before):
-                return True
-    return False
 
 
 def _collisions(contacts: RecordedContacts) -> Iterator[Fact]:

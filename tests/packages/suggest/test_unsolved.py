@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from mutabot.model import Mutant, Role, Site, Span
-from mutabot_suggest.checks import candidates
+from mutabot_suggest.checks import candidates, clock_text
 from mutabot_suggest.project import PlaceInTest
 from mutabot_suggest.readings import ORACLE, PROBE, Measured, ReadExpression
 from mutabot_suggest.suggest import why_unsolved
@@ -40,6 +40,25 @@ def test_a_difference_within_the_spread_kills_nothing_and_is_told(
 ) -> None:
     found = measured([0.1, 0.105, 0.102, 0.104, 0.101, 0.103], mutant, tolerance)
     assert candidates(PROJECT, found) == ([], {})
+    assert why_unsolved(MUTANT.id, found, [], _Unproven(), {}).reason.startswith(said)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("place", "said"),
+    [
+        (0.1, "at the ends of its tests only the clock differs (picture_time()): "),
+        (0.103, "box.x differs by 0.003, its tolerance is 0.01"),
+    ],
+)
+def test_a_clock_is_named_as_one_and_only_where_nothing_else_differs(place: float, said: str) -> None:
+    usual = {"box.x": 0.1, "picture_time()": 5.0}
+    found = Measured(
+        originals={PLACE: {(round, PLACE.node): usual for round in range(6)}},
+        mutants={PLACE: {MUTANT.id: {(0, PLACE.node): {"box.x": place, "picture_time()": 5.04}}}},
+        readings={
+            PLACE: [ReadExpression("box.x", PROBE, 0.01), ReadExpression("picture_time()", PROBE, 0.001)]
+        },
+    )
     assert why_unsolved(MUTANT.id, found, [], _Unproven(), {}).reason.startswith(said)  # type: ignore[arg-type]
 
 
@@ -76,7 +95,7 @@ def test_a_time_of_a_run_is_no_check_not_even_beside_a_deadline(test: str) -> No
     project: Any = _Project(test)
     checks, refused = candidates(project, found)
     assert checks == []
-    assert refused == {MUTANT.id: "only its time differs (robot.time): add a deadline if the task has one"}
+    assert refused == {MUTANT.id: clock_text("robot.time")}
 
 
 def test_an_exact_value_is_no_check() -> None:
