@@ -55,8 +55,9 @@ def run_planned(
     until = None if request.budget is None else started + request.budget
     is_whole, rounds = False, range(request.rounds)
     with suppress(OutOfTimeError), limited(until, request.clock) if until is not None else nullcontext():
-        if any((one.id, round) not in found.done for one in alone for round in rounds):
-            record_more_seeds(campaign)
+        record_more_seeds(
+            campaign, [one for one in alone if any((one.id, round) not in found.done for round in rounds)]
+        )
         if until is None:
             runs = [(one, round) for round in rounds for one in alone if (one.id, round) not in found.done]
             run_trials(campaign, runs, writer)

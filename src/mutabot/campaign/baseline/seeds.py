@@ -13,28 +13,33 @@ from mutabot.execution.task import Task
 from mutabot.model.deadline import Limit
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from mutabot.campaign.campaign import Campaign
+    from mutabot.model import Mutant
 
 #: seeds with which the original is run at least, where a simulator tells where things are
 _SEEDS = 3
 
 
-def record_more_seeds(campaign: Campaign) -> None:
-    """Run the original with more seeds if there are few, and if recordings are made."""
+def record_more_seeds(campaign: Campaign, mutants: Iterable[Mutant]) -> None:
+    """Run the tests that reach these mutants as the original with more seeds.
+
+    Only if the rounds give few seeds, and if anything is recorded of the tests' world.
+    """
     evidence, request, baseline = campaign.evidence, campaign.request, campaign.baseline
     rounds = range(request.rounds, _SEEDS)
-    if evidence is None or not rounds or not evidence.has_tracks:
+    reaching = {test for one in mutants for test in baseline.tests_reaching(0, one)}
+    tests = tuple(test for test in baseline.suite(0) if test in reaching)
+    if evidence is None or not rounds or not tests or not evidence.has_tracks:
         return
     campaign.progress.stage("original with other seeds", len(rounds))
-    details = {"known": baseline.known, "moments": baseline.probe_intervals.get(0, {})}
+    details = {
+        "known": baseline.known, "moments": baseline.probe_intervals.get(0, {}),
+        "tests": tests, "aside": baseline.aside(0, tests),
+    }  # fmt: skip
     tasks = (
-        Task(
-            (round, 0),
-            request.job(round, record=True, **details),
-            startup=Limit(300.0),
-            may_share=baseline.may_share,
-        )
-        for round in rounds
+        Task((round, 0), request.job(round, record=True, **details), startup=Limit(300.0)) for round in rounds
     )
     sources = Sources(request.root)
     for result in campaign.executor.run(tasks):
