@@ -179,7 +179,7 @@ def test_a_file_that_no_test_imports_is_told_whatever_it_is_written_in(tmp_path:
     (folder / "old.py").write_text("print 'Python 2'\n", encoding="utf-8")
     toml = (folder / "mutabot.toml").read_text(encoding="utf-8")
     (folder / "mutabot.toml").write_text(toml.replace('"other.py"', '"other.py", "old.py"'), encoding="utf-8")
-    _, _, untested = plan_only(request_for(folder), Quiet())
+    _, _, untested, _ = plan_only(request_for(folder), Quiet())
     assert [call.place for call in untested.unreached_calls] == ["mission.py:6:5", "other.py:5:5"]
     assert untested.files == 3
     assert untested.unreached_files == ("old.py", "other.py")

@@ -29,8 +29,7 @@ def test_only_what_would_change_nothing_stands_under_that() -> None:
         "would change nothing": ["b", "d"], "no call raises in the baseline": ["a", "c"],
     }  # fmt: skip
     first, second = skipped(LEFT_OUT)
-    assert first.title == "2 mutants left out that would change nothing"
-    assert f"1 × {STILL}" in first.lines
+    assert (first.title, list(first.lines)) == ("2 mutants left out that would change nothing", [])
     assert (second.title, list(second.lines)) == ("2 mutants left out: no call raises in the baseline", [])
 
 
