@@ -269,3 +269,13 @@ def test_what_cannot_be_accepted_is_refused_and_nothing_is_written(
     assert run(project, "accept", *arguments) == ExitCode.USAGE
     assert words in capsys.readouterr().err
     assert not (project / FILE).exists()
+
+
+def test_a_file_with_a_mistake_is_not_added_to(
+    project: Path, script: Script, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run_campaign(request_for(project, only=(FIRST,)), Quiet())
+    accept(project, "[[accept")
+    assert run(project, "accept", FIRST, "--why", "x") == ExitCode.USAGE
+    assert capsys.readouterr().err.startswith(f"mutabot: {FILE}:1: is no valid TOML")
+    assert (project / FILE).read_text(encoding="utf-8") == "[[accept"

@@ -43,6 +43,7 @@ def accept(context: CommandContext, mutant: _Mutants = None, why: _Why = "", jso
     results = context.results(earlier=True)
     chosen = list({one.mutant.id: one for one in (results.mutant(name) for name in names)}.values())
     _refuse_others(chosen)
+    read_suppressions(root)  # a file with a mistake is not added to
     if chosen:
         entries = [(one.mutant.id, _line(results, one)) for one in chosen]
         add_acceptances(root, entries, why.strip(), datetime.date.today())

@@ -178,9 +178,9 @@ def _survivors(results: Results, place: PlaceName) -> Iterator[Section]:
         return
     same = sorted(result.mutant.number for result in survivors if result.indistinguishable)
     shown = [result for result in survivors if not result.indistinguishable]
+    order = ", largest deviation from the original first" if len(shown) > 1 else ""
     if not shown and len(same) <= _FEW:  # else nothing would say which faults these are
         shown, same = survivors, []
-    order = ", largest deviation from the original first" if len(shown) > 1 else ""
     rows = [
         (
             *mutant_cells(result.mutant, place),

@@ -130,7 +130,8 @@ def test_survivors_are_printed_as_they_are_found_and_once() -> None:
 def test_accepted_survivors_and_those_of_earlier_campaigns_are_only_counted() -> None:
     accepted = end(samples.SKIP, Verdict.SURVIVED, acceptance=Acceptance("why", "a.toml:1"))
     reused = end(samples.NEGATE, Verdict.SURVIVED, is_reused=True)
-    assert told(accepted, reused) == ["mutants 2/2: took 0:00 (survived 1, accepted 1)"]
+    again = end(samples.NEGATE, Verdict.SURVIVED, 1)
+    assert told(accepted, reused, again) == ["mutants 3/3: took 0:00 (survived 2, accepted 1)"]
 
 
 def test_a_survivor_that_a_second_look_takes_back_is_named_and_counted_anew() -> None:

@@ -94,9 +94,11 @@ class Tally:
         self._states[key] = state
         self._counts[state] += 1
         is_new = state in _TOLD and end.mutant.id not in self._told
-        if end.mutant.has_sizes or end.is_reused or not (is_new or before in _TOLD):
+        if end.mutant.has_sizes or not (is_new or before in _TOLD):
             return None
         self._told.add(end.mutant.id)
+        if end.is_reused:
+            return None
         mutant = end.mutant
         what = f"{mutant.number} {short_place(mutant.site.span)} {mutant.operator}: {mutant.description}"
         return f"{state}: {what} (round {end.outcome.round + 1})"
