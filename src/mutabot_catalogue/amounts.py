@@ -132,7 +132,7 @@ class DegreeForRadian(_OtherUnit):
 
 
 class MillisecondForSecond(_OtherUnit):
-    """A duration in seconds is taken for milliseconds, not the other way round: that only times out.
+    """A duration in seconds is taken for milliseconds (the reverse is omitted: it would only time out).
 
     Where: durations in s.
     """

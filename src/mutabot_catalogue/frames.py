@@ -152,7 +152,7 @@ def _mirrored(quantity: Quantity, value: Value) -> Value | None:
 
 
 class BaseForTool(ValueOperator):
-    """A relative move in the base's frame goes along the tool's axes, and the other way round.
+    """A relative move in the base's frame is executed along the tool's axes, or the reverse.
 
     Where: relative translations along x, y and z in a frame named base or tool, with a current that reads the
     three angles of the tool, about axes that stay, in the base's frame.

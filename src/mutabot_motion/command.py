@@ -163,7 +163,7 @@ def motion(
 ) -> None:
     """Show what one mutant of the last campaign did in one test, beside the original.
 
-    It is the test and the round that tell most, if --test and --round do not say which. --video runs both and
+    Without --test and --round, it is the test and the round with the largest deviation. --video runs both and
     films them. The others run nothing: they show the test as the campaign recorded it.
     """
     sights = list(sights_of(context.journal.parent, rerun=rerun, rrd=rrd, mcap=mcap))

@@ -63,8 +63,8 @@ def test_a_reader_sees_what_the_page_tells(folder: Path, capsys: pytest.CaptureF
         shown.append(printed)
     _, first, before, second, after = shown
     # told twice, so that nobody who brings the page up to date can lose its point
-    assert "13   packing.py:10   reverse" in first
-    assert "13   packing.py:10   reverse" not in second
+    assert "13  packing.py:10  reverse" in first
+    assert "13  packing.py:10  reverse" not in second
     assert "round 1: S survived" in before
     assert "round 1: C killed by a check" in after
 

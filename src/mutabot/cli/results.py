@@ -67,7 +67,7 @@ def thresholds(context: CommandContext, json: bool = False) -> None:
     """Show how large a fault must be before the tests notice it."""
     results = context.results()
     if not results.ladders:
-        none = "the campaign has no graded mutants; `mutabot run --family graded` plants them"
+        none = "the campaign has no graded mutants; `mutabot run --family graded` creates them"
         raise JournalError(f"{context.journal}: {none}")
     found = thresholds_of(results)
     context.print_json(found) if json else print_thresholds(make_console(), found)

@@ -121,7 +121,7 @@ def _disagreements(results: Results) -> tuple[str, ...]:
     found = results.verification
     if found is None or not found.disagreements:
         return ()
-    lines = [f"{len(found.disagreements)} of {found.checked} outcomes come out otherwise in a fresh process:"]
+    lines = [f"{len(found.disagreements)} of {found.checked} outcomes differ in a fresh process:"]
     for one in found.disagreements:
         lines.append(f"  mutant {one.number} ({one.mutant}), round {one.round + 1}:")
         lines += [f"    here    {one.first}", f"    afresh  {one.second}"]
