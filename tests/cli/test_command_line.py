@@ -14,7 +14,7 @@ import pytest
 import typer
 
 import mutabot
-from mutabot.campaign import run as campaign
+from mutabot.cli import campaign
 from mutabot.cli.app import app, main
 from mutabot.cli.request import request_of
 from mutabot.errors import BaselineError, ControlError, ExitCode, MutabotError, UnstableError
