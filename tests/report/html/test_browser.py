@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+import mutabot
 import schemas
 from report.html import reports
 from results import samples
@@ -268,3 +269,26 @@ def test_the_timeline_has_a_time_on_each_side_and_one_column_on_a_phone(visit: V
     assert mutant["y"] > original["y"]
     assert visit.page.evaluate("document.documentElement.scrollWidth") <= 400
     assert visit.wrong == []
+
+
+def test_an_accepted_survivor_is_a_state_of_its_own_on_each_page(browser: Any, tmp_path: Path) -> None:
+    accepted = {"mutants": {samples.SKIP.id: {"why": "it is open", "source": "a.toml:1", "date": ""}}}
+    journal = samples.write_journal(tmp_path / "journal.sqlite", accepted=accepted)
+    file = reports.write(tmp_path / "report", journal, mutabot.open(journal)).page
+    page = browser.new_page(viewport={"width": 1280, "height": 900})
+    try:
+        visit = Visit(page, file)
+        visit.open("#/")
+        text = page.inner_text("main")
+        assert "1 mutant: it survived, and that was accepted with a reason" in text
+        assert samples.SKIP.description not in text
+        visit.open("#/mutants?status=accepted")
+        assert page.locator("table.mutants tbody tr").count() == 1
+        assert "accepted: it is open" in page.inner_text("table.mutants")
+        visit.open("#/operators")
+        row = page.locator("table.operators tbody tr", has_text="skip").first
+        assert row.locator('[data-letter="A"]').inner_text() == "2"
+        assert row.locator('[data-letter="S"]').inner_text() == "·"
+        assert visit.wrong == []
+    finally:
+        page.close()

@@ -13,7 +13,10 @@
       if (!rows.has(key)) rows.set(key, { ...one, mutants: 0, letters: {} });
       const row = rows.get(key);
       row.mutants += 1;
-      for (const letter of one.ends) row.letters[letter] = (row.letters[letter] || 0) + 1;
+      for (const end of one.ends) {
+        const letter = one.status === "accepted" ? "A" : end; // in no score, whatever its rounds say
+        row.letters[letter] = (row.letters[letter] || 0) + 1;
+      }
     }
     const used = Object.keys(marks.LETTERS).filter((letter) => [...rows.values()].some((row) => row.letters[letter]));
     body.append(h("div", { class: "scroll", role: "region", tabindex: "0", "aria-label": "Operators and verdicts" }, h("table", { class: "operators" },
@@ -32,7 +35,7 @@
       used.map((letter) => {
         const found = row.letters[letter] || 0;
         const cell = h("td", { class: `n cell c-${marks.LETTERS[letter][0]}${found ? "" : " is-none"}`, "data-letter": letter }, found
-          ? h("a", { href: address(["mutants"], { operator: row.operator, role: row.role, end: letter }), "aria-label": `${found} ${marks.LETTERS[letter][1]}` }, found)
+          ? h("a", { href: address(["mutants"], { operator: row.operator, role: row.role, ...(letter === "A" ? { status: "accepted" } : { end: letter }) }), "aria-label": `${found} ${marks.LETTERS[letter][1]}` }, found)
           : h("span", { class: "none" }, "·"));
         if (found) cell.style.setProperty("--share", String(Math.round(100 * found / total)));
         return cell;
