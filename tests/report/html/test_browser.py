@@ -160,6 +160,82 @@ def test_a_mutant_s_page_tells_what_the_robot_did_and_who_looked(visit: Visit) -
     assert "A check that would catch it" not in text
 
 
+@pytest.mark.parametrize("width", [1280, 390])
+def test_what_the_robot_did_comes_before_the_source_and_what_the_mutant_is(
+    browser: Any, plain: Path, width: int
+) -> None:
+    page = browser.new_page(viewport={"width": width, "height": 900})
+    Visit(page, plain).open("#/mutant/2")
+    page.wait_for_selector("canvas.scene")
+    tops = {
+        one: page.locator(one).bounding_box()["y"] for one in ("canvas.scene", "#there", "#facts", "#events")
+    }
+    assert [*tops] == sorted(tops, key=tops.__getitem__)
+    assert tops["canvas.scene"] < 700
+    page.close()
+
+
+def test_the_survivors_beside_a_mutant_in_the_source_are_one_key_away(visit: Visit) -> None:
+    for number, beside in {1: ("2", "4"), 2: (None, "4"), 4: ("2", None), 5: ("4", None)}.items():
+        visit.open(f"#/mutant/{number}")
+        links = visit.page.get_by_role(
+            "navigation", name="Survivors beside this one in the source"
+        ).get_by_role("link")
+        assert [one.get_attribute("href") for one in links.all()] == [f"#/mutant/{to}" for to in beside if to]
+        for key, to in zip(("P", "N"), beside, strict=True):
+            if to is not None:
+                visit.open(f"#/mutant/{number}")
+                visit.page.keyboard.press(f"Shift+{key}")
+                visit.page.wait_for_url(f"**#/mutant/{to}")
+    assert visit.wrong == []
+
+
+#: notes what is written on canvases, with both ends of each text, px
+_NOTE_NAMES = """window.names = [];
+const write = CanvasRenderingContext2D.prototype.fillText;
+CanvasRenderingContext2D.prototype.fillText = function (text, x, y) {
+  const wide = this.measureText(text).width;
+  const begin = x - {left: 0, center: wide / 2, right: wide}[this.textAlign];
+  window.names.push([text, begin, begin + wide]);
+  return write.call(this, text, x, y);
+};"""
+#: how wide and high the mutant's path is, as shares of the canvas
+_REACH = """(canvas) => {
+  const wanted = mutabot.ink("mutant").match(/[0-9]+/g).map(Number);
+  const { width, height } = canvas, { data } = canvas.getContext("2d").getImageData(0, 0, width, height);
+  const xs = [], ys = [];
+  for (let at = 0; at < data.length; at += 4) {
+    if (wanted.some((value, axis) => Math.abs(data[at + axis] - value) > 12)) continue;
+    xs.push(at / 4 % width);
+    ys.push(at / 4 / width);
+  }
+  const end = (all, which) => all.reduce((one, other) => which(one, other));
+  const reach = (all, size) => (end(all, Math.max) - end(all, Math.min)) / size;
+  return [reach(xs, width), reach(ys, height)];
+}"""
+
+
+@pytest.mark.parametrize("width", [1280, 390])
+def test_the_paths_fill_the_view_and_names_stay_whole(browser: Any, plain: Path, width: int) -> None:
+    page = browser.new_page(viewport={"width": width, "height": 900})
+    page.add_init_script(_NOTE_NAMES)
+    visit = Visit(page, plain)
+    visit.open("#/mutant/2")
+    scene = page.locator("canvas.scene")
+    scene.wait_for()
+    visit.settled()
+    assert 0.6 < max(scene.evaluate(_REACH)) < 1
+    page.evaluate("window.names.length = 0")
+    page.get_by_role("button", name="Top", exact=True).click()
+    visit.settled()
+    assert 0.6 < max(scene.evaluate(_REACH)) < 1
+    names = page.evaluate("window.names")
+    wide = scene.bounding_box()["width"]
+    assert {"fault 5 s", "tool", "box, original"} <= {text for text, _, _ in names}
+    assert [text for text, begin, end in names if begin < 0 or end > wide] == []
+    page.close()
+
+
 def test_the_theme_is_chosen_and_kept(visit: Visit) -> None:
     visit.open("#/")
     colour = "getComputedStyle(document.body).backgroundColor"

@@ -1,4 +1,4 @@
-/* One mutant: what it is, what the robot did, who looked, and how each round ended. */
+/* One mutant: what the robot did first, then where and what it is, who looked, and how each round ended. */
 "use strict";
 (() => {
   const { h, address, amount, between, count, number, empty, marks } = mutabot;
@@ -15,10 +15,14 @@
     const order = mutabot.chosen(mutabot.lastAsked || {});
     const where = order.indexOf(one);
     const [before, after] = [where > 0 ? order[where - 1] : null, where >= 0 ? order[where + 1] : null];
-    const step = (to, text, key) => to ? h("a", { href: address(["mutant", String(to.number)]), "aria-keyshortcuts": key }, text) : h("span", { class: "off" }, text);
+    const [upper, lower] = survivorsBeside(one, campaign);
+    const step = (to, text, key) => !to && !text ? null : to ? h("a", { href: address(["mutant", String(to.number)]), "aria-keyshortcuts": key }, text) : h("span", { class: "off" }, text);
     body.append(
-      h("nav", { class: "steps", "aria-label": "Mutants beside this one" }, h("a", { href: address(["mutants"], mutabot.lastAsked) }, "All mutants"),
-        step(before, "← Previous", "p"), h("span", null, where >= 0 ? `${where + 1} of ${order.length}` : ""), step(after, "Next →", "n")),
+      h("div", { class: "beside" },
+        h("nav", { "aria-label": "Mutants beside this one" }, h("a", { href: address(["mutants"], mutabot.lastAsked) }, "All mutants"),
+          step(before, "← Previous", "p"), h("span", null, where >= 0 ? `${where + 1} of ${order.length}` : ""), step(after, "Next →", "n")),
+        upper || lower ? h("nav", { "aria-label": "Survivors beside this one in the source" }, h("span", null, "Survivors in the source:"),
+          step(upper, upper && `↑ ${upper.place}`, "Shift+P"), step(lower, lower && `↓ ${lower.place}`, "Shift+N")) : null),
       h("h1", { tabindex: "-1" }, h("span", { class: "number" }, `${one.number} `), one.description),
       h("p", { class: "under" }, marks.status(one.status), marks.ends(one.ends), h("span", { class: "place" }, one.place, " in ", one.function), h("span", null, `${one.operator} (${one.family}, ${one.role})`)),
       h("p", { class: "story big" }, mutabot.breakable(one.why)));
@@ -28,7 +32,7 @@
     let gone = false;
     const keys = (event) => {
       if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.target.closest("input:not([type=range]):not([type=checkbox]), select, dialog")) return;
-      const to = { n: after, p: before }[event.key];
+      const to = { n: after, p: before, N: lower, P: upper }[event.key];
       if (to) location.hash = address(["mutant", String(to.number)]);
     };
     addEventListener("keydown", keys);
@@ -37,6 +41,15 @@
       (error) => { holder.replaceChildren(empty("This mutant cannot be shown.", error.message)); });
     return () => { gone = true; stops.forEach((stop) => stop()); };
   });
+
+  /** The survivors before and after a mutant in the order of the source, the program's files first. */
+  function survivorsBeside(one, campaign) {
+    const rank = (each) => [campaign.files.indexOf(each.file), each.line, each.span.column, each.number];
+    const order = (a, b) => { const [x, y] = [rank(a), rank(b)]; const at = x.findIndex((each, index) => each !== y[index]); return at < 0 ? 0 : x[at] - y[at]; };
+    const found = campaign.mutants.filter((each) => each.survives && each.status !== "not covered" && each !== one).sort(order);
+    const next = found.findIndex((each) => order(each, one) > 0);
+    return next < 0 ? [found[found.length - 1] || null, null] : [found[next - 1] || null, found[next]];
+  }
 
   const NOTHING = { test: null, exception: null, message: null, place: null, away: {}, example: null, divergence: [], gaps: [], indistinguishable: null, repeats: 0, beside: null, kills: [], diverged: [], looked: [] };
   const ALIKE = { at: null, what: "", story: "", apart: [], measurements: [], fault: null, example: null };
@@ -48,9 +61,9 @@
   }
 
   function draw(holder, one, page, stops) {
-    holder.replaceChildren(
-      h("div", { class: "columns first" }, excerpt(one, page), facts(one, page)),
-      robot(one, page, stops), looked(one, page), suggestion(page), rounds(one, page));
+    const { seen, events } = robot(one, page, stops);
+    holder.replaceChildren(seen, suggestion(page), h("div", { class: "columns" }, excerpt(one, page), facts(one, page)),
+      events, looked(one, page), rounds(one, page));
   }
 
   /** How many characters stand before a column, which counts bytes of UTF-8 from 1. */
@@ -77,7 +90,7 @@
   }
 
   function facts(one, page) {
-    const rows = [["id", h("code", null, page.id)], ["place", `${one.place} in ${one.function}`],
+    const rows = [["id", h("code", null, page.id)],
       one.operation ? ["operation", one.operation + (page.pattern ? `, command ${page.pattern}` : "")] : null,
       one.operation ? ["quantity", one.quantity ? `${one.quantity}${page.meaning ? `: ${["kind", "axis", "unit", "frame"].map((name) => page.meaning[name]).filter(Boolean).join(", ")}` : ""}` : "the call as a whole"] : null,
       ["operator", h("span", null, `${one.operator}${one.variant ? ` (${one.variant})` : ""}`, mutabot.campaign.operators[one.operator] ? h("small", null, mutabot.campaign.operators[one.operator]) : null)],
@@ -89,11 +102,13 @@
 
   // What the robot did
 
+  /** The view of what the robot did, and what goes below the source: its commands, readings and contacts. */
   function robot(one, page, stops) {
+    const events = h("section", { "aria-labelledby": "events" });
     const section = h("section", { class: "robot", "aria-labelledby": "robot" }, h("h2", { id: "robot" }, "What the robot did"));
     if (!page.recordings.length) {
       section.append(nothingRecorded(one, page));
-      return section;
+      return { seen: section, events: "" };
     }
     const holder = h("div", null);
     const label = (found) => `round ${found.round + 1} · ${found.test}`;
@@ -112,11 +127,11 @@
       try {
         const usual = found.original === null ? null : mutabot.recordings.recording(await mutabot.load(`original ${found.original}`, `data/originals/${found.original}.js`));
         if (!section.isConnected) return;
-        pair(holder, one, page, found, usual, mutabot.recordings.recording(found), stop);
-      } catch (error) { holder.replaceChildren(empty("The recording cannot be shown.", error.message)); }
+        pair(holder, events, one, page, found, usual, mutabot.recordings.recording(found), stop);
+      } catch (error) { holder.replaceChildren(empty("The recording cannot be shown.", error.message)); events.replaceChildren(); }
     }
     show(0);
-    return section;
+    return { seen: section, events };
   }
 
   function nothingRecorded(one, page) {
@@ -128,7 +143,7 @@
       h("code", null, "mutabot.evidence.Feed"), ").");
   }
 
-  function pair(holder, one, page, found, usual, mutant, stop) {
+  function pair(holder, events, one, page, found, usual, mutant, stop) {
     const ends = [usual, mutant].map((each) => (each ? Math.max(each.end || 0, ...each.calls.map((call) => call.ended || 0), 0) : 0));
     const outcome = page.rounds[found.round];
     const diverged = outcome && outcome.diverged.find((each) => each.test === found.test);
@@ -148,9 +163,9 @@
       drawn.append(h("div", { class: "multiples" }, mutabot.charts(usual, mutant, clock, diverged ? diverged.apart : [])));
       holder.append(slider(clock, mutant, made.canvas, stop), drawn);
     }
-    holder.append(h("h3", null, "Commands, readings and contacts"), mutabot.timeline.lanes(usual, mutant, clock), mutabot.timeline.table(usual, mutant, clock, fault(one, diverged)), apart(diverged));
-    if (mutant.problems.length) holder.append(h("p", { class: "hint" }, `Not recorded: ${mutant.problems.join("; ")}`));
-    if (!mutant.simulated) holder.append(h("p", { class: "hint" }, "Times are of the wall clock: the vocabulary names no simulated clock."));
+    events.replaceChildren(h("h2", { id: "events" }, "Commands, readings and contacts"), mutabot.timeline.lanes(usual, mutant, clock), mutabot.timeline.table(usual, mutant, clock, fault(one, diverged)), apart(diverged));
+    if (mutant.problems.length) events.append(h("p", { class: "hint" }, `Not recorded: ${mutant.problems.join("; ")}`));
+    if (!mutant.simulated) events.append(h("p", { class: "hint" }, "Times are of the wall clock: the vocabulary names no simulated clock."));
   }
 
   /** What the fault sends or reads in place of the program's value, when it acts first in this test. */

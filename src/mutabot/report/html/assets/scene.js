@@ -19,6 +19,8 @@
     const bounds = boundsOf(things.flat(), blocks);
     const home = { yaw: -1.05, pitch: 0.42, distance: 1.15 * bounds.radius / FIELD, target: bounds.centre };
     const view = { ...home };
+    const points = things.flat().flatMap((one) => one.rows.filter((_, index) => index % Math.ceil(one.rows.length / 200) === 0));
+    let isFitted = true; // until the reader comes nearer or moves it, all paths fill the view
     const canvas = h("canvas", { class: "scene", tabindex: "0", role: "application", "aria-roledescription": "3D view",
       "aria-label": "Paths of original and mutant in 3D. Arrow keys turn it, plus and minus zoom, 0 shows it as at first, space plays." });
     let frame = 0;
@@ -34,20 +36,23 @@
       const colours = { ink: ink("ink"), muted: ink("muted"), line: ink("line-strong"), block: ink("block"), edge: ink("block-edge"), paper: ink("surface") };
       const unit = parseFloat(getComputedStyle(document.documentElement).fontSize) / 15; // as large as the other text
       Object.assign(colours, { unit, font: `600 ${11 * unit}px system-ui, sans-serif`, small: `500 ${11 * unit}px system-ui, sans-serif` });
+      if (isFitted) fit(view, points, width, height);
       const camera = cameraOf(view, width, height);
       drawBlocks(pen, camera, blocks, colours);
       worlds.forEach((world, index) => things[index].filter((one) => shown.has(one.name)).forEach((one) => path(pen, camera, one, world, blocks, clock.time, colours)));
       worlds.forEach((world, index) => things[index].filter((one) => shown.has(one.name)).forEach((one) => body(pen, camera, one, world, clock.time, colours, index)));
+      if (worlds.length > 1) things[1].filter((one) => shown.has(one.name)).forEach((one) => ghost(pen, camera, things[0].find((other) => other.name === one.name), one, worlds[0].ink(), clock.time, colours));
       fault(pen, camera, worlds, things, shown, colours);
       corner(pen, camera, height, colours);
     }
 
+    const zoom = (by) => { isFitted = false; view.distance *= by; };
     canvas.addEventListener("keydown", (event) => {
       const step = event.shiftKey ? 0.4 : 0.12;
       const does = {
         ArrowLeft: () => { view.yaw -= step; }, ArrowRight: () => { view.yaw += step; }, ArrowUp: () => { view.pitch = Math.min(1.55, view.pitch + step); },
-        ArrowDown: () => { view.pitch = Math.max(-1.55, view.pitch - step); }, "+": () => { view.distance /= 1.15; }, "=": () => { view.distance /= 1.15; }, "-": () => { view.distance *= 1.15; },
-        0: () => Object.assign(view, home),
+        ArrowDown: () => { view.pitch = Math.max(-1.55, view.pitch - step); }, "+": () => zoom(1 / 1.15), "=": () => zoom(1 / 1.15), "-": () => zoom(1.15),
+        0: () => { Object.assign(view, home); isFitted = true; },
       }[event.key];
       if (!does || event.ctrlKey || event.metaKey || event.altKey) return;
       event.preventDefault();
@@ -57,7 +62,7 @@
     canvas.addEventListener("wheel", (event) => {
       if (document.activeElement !== canvas && !event.ctrlKey) return; // the page goes on to scroll until the view is chosen
       event.preventDefault();
-      view.distance *= Math.exp(0.0015 * event.deltaY);
+      zoom(Math.exp(0.0015 * event.deltaY));
       draw();
     }, { passive: false });
     const fingers = new Map();
@@ -69,10 +74,11 @@
       if (fingers.size === 2) {
         const [other] = [...fingers.values()].filter((one) => one.pointerId !== event.pointerId);
         const apart = (one) => Math.hypot(one.clientX - other.clientX, one.clientY - other.clientY) || 1;
-        view.distance *= apart(before) / apart(event);
+        zoom(apart(before) / apart(event));
       } else if (event.shiftKey || event.buttons === 4 || event.buttons === 2) {
         const camera = cameraOf(view, canvas.clientWidth, canvas.clientHeight);
         const scale = view.distance * FIELD / canvas.clientHeight * 2;
+        isFitted = false;
         view.target = plus(view.target, plus(times(camera.right, -dx * scale), times(camera.up, dy * scale)));
       } else { view.yaw -= 0.008 * dx; view.pitch = Math.min(1.55, Math.max(-1.55, view.pitch + 0.008 * dy)); }
       fingers.set(event.pointerId, event);
@@ -87,12 +93,12 @@
     paper.addEventListener("change", paint); // at once: what is drawn later is not printed
     clock.on(draw);
 
-    const turn = (name, yaw, pitch) => h("button", { type: "button", onclick: () => { Object.assign(view, home, { yaw, pitch }); draw(); } }, name);
+    const turn = (name, yaw, pitch) => h("button", { type: "button", onclick: () => { Object.assign(view, home, { yaw, pitch }); isFitted = true; draw(); } }, name);
     const names = [...new Set(things.flat().map((one) => one.name))];
     const controls = h("div", { class: "scene-controls" },
       h("div", { role: "group", "aria-label": "View" }, turn("3D", home.yaw, home.pitch), turn("Top", -Math.PI / 2, 1.55), turn("Front", -Math.PI / 2, 0), turn("Side", 0, 0),
-        h("button", { type: "button", "aria-label": "Nearer", onclick: () => { view.distance /= 1.25; draw(); } }, "+"),
-        h("button", { type: "button", "aria-label": "Farther", onclick: () => { view.distance *= 1.25; draw(); } }, "−")),
+        h("button", { type: "button", "aria-label": "Nearer", onclick: () => { zoom(1 / 1.25); draw(); } }, "+"),
+        h("button", { type: "button", "aria-label": "Farther", onclick: () => { zoom(1.25); draw(); } }, "−")),
       names.length > 1 ? h("div", { role: "group", "aria-label": "Shown" }, names.map((name) => h("label", { class: "toggle" },
         h("input", { type: "checkbox", checked: true, onchange: (event) => { if (event.target.checked) shown.add(name); else shown.delete(name); draw(); } }), name))) : null);
     const stop = () => { watch.disconnect(); removeEventListener("theme", draw); paper.removeEventListener("change", paint); };
@@ -120,6 +126,18 @@
       return [width / 2 + scale * dot(from, right) / depth, height / 2 - scale * dot(from, up) / depth, depth];
     };
     return { eye, forward, right, up, project };
+  }
+
+  /** Bring a view so near that points fill it but for a margin for their names, and their middle to its own. */
+  function fit(view, points, width, height) {
+    if (!points.length) return;
+    for (let pass = 0; pass < 4; pass += 1) {
+      const camera = cameraOf(view, width, height);
+      const [xs, ys] = [0, 1].map((axis) => { const all = points.map((point) => camera.project(point)[axis]); return [Math.min(...all), Math.max(...all)]; });
+      const scale = view.distance * 2 * FIELD / Math.min(width, height);
+      view.target = plus(view.target, plus(times(camera.right, scale * ((xs[0] + xs[1]) / 2 - width / 2)), times(camera.up, scale * (height / 2 - (ys[0] + ys[1]) / 2))));
+      view.distance = Math.max(0.1, view.distance * Math.max((xs[1] - xs[0]) / (0.68 * width), (ys[1] - ys[0]) / (0.76 * height)));
+    }
   }
 
   /** The corners of one side of a box whose edges go along `frame`. */
@@ -152,6 +170,19 @@
   }
 
   const LONGEST = 28;
+  const APART = 24; // pixels from which on an original has a name of its own
+  /** A name on paper of its own at a point, moved as far as it must be to stay whole on the canvas. */
+  function write(pen, text, x, y, fill, colours) {
+    const { clientWidth: width, clientHeight: height } = pen.canvas;
+    const wide = pen.measureText(text).width, left = { left: 0, center: wide / 2, right: wide }[pen.textAlign], room = 4 * colours.unit;
+    const at = [Math.max(room + left, Math.min(width - room - wide + left, x)), Math.max(4 * room, Math.min(height - room, y))];
+    pen.lineWidth = 3;
+    pen.strokeStyle = colours.paper;
+    pen.strokeText(text, ...at);
+    pen.fillStyle = fill;
+    pen.fillText(text, ...at);
+  }
+
   const label = (name) => { const text = mutabot.legible(name); return text.length > LONGEST ? `${text.slice(0, LONGEST)}…` : text; };
 
   function drawBlocks(pen, camera, blocks, colours) {
@@ -159,10 +190,10 @@
     for (const one of sorted) box(pen, camera, one.centre, one.half, UPRIGHT, { fill: colours.block, alpha: 1, edge: colours.edge, edgeAlpha: 1, width: 1 });
     pen.font = colours.small;
     pen.textAlign = "center";
-    pen.fillStyle = colours.muted;
     for (const one of sorted) {
       const [x, y] = camera.project(plus(one.centre, [0, 0, one.half[2]]));
-      pen.fillText(label(one.name), x, y + 4);
+      const { clientWidth: width, clientHeight: height } = pen.canvas;
+      if (x > 0 && x < width && y > 0 && y < height) write(pen, label(one.name), x, y + 4, colours.muted, colours);
     }
   }
 
@@ -241,13 +272,25 @@
     const [x, y] = camera.project(row);
     pen.font = colours.font;
     pen.textAlign = "left";
-    pen.lineWidth = 3;
-    pen.strokeStyle = colours.paper;
     const twin = index === 0;
     if (twin) return; // the mutant's label stands for both where they meet
-    pen.strokeText(label(one.name), x + 9 * colours.unit, y - 7 * colours.unit);
-    pen.fillStyle = colour;
-    pen.fillText(label(one.name), x + 9 * colours.unit, y - 7 * colours.unit);
+    write(pen, label(one.name), x + 9 * colours.unit, y - 7 * colours.unit, colour, colours);
+  }
+
+  /** Where the original of a thing is now, named and joined to the mutant's where the two are apart on the view. */
+  function ghost(pen, camera, usual, one, colour, time, colours) {
+    const [there, here] = [usual && at(usual, time), at(one, time)];
+    if (!there || !here) return;
+    const [[x, y], [x2, y2]] = [camera.project(there), camera.project(here)];
+    if (Math.hypot(x2 - x, y2 - y) < APART * colours.unit) return;
+    pen.strokeStyle = colours.muted;
+    pen.lineWidth = 1;
+    pen.setLineDash([1, 3]);
+    pen.beginPath(); pen.moveTo(x, y); pen.lineTo(x2, y2); pen.stroke();
+    pen.setLineDash([]);
+    pen.font = colours.small;
+    pen.textAlign = "left";
+    write(pen, `${label(one.name)}, original`, x + 9 * colours.unit, y + 14 * colours.unit, colour, colours);
   }
 
   /** The moment of the fault, on the way of the first thing that is tracked. */
@@ -268,10 +311,9 @@
     pen.stroke();
     pen.fill();
     pen.font = colours.font;
-    pen.textAlign = "right";
-    pen.lineWidth = 3;
-    pen.strokeText(`fault ${number(when, 4)} s`, x - 10 * colours.unit, y + 4 * colours.unit);
-    pen.fillText(`fault ${number(when, 4)} s`, x - 10 * colours.unit, y + 4 * colours.unit);
+    const text = `fault ${number(when, 4)} s`, isBeside = x > pen.measureText(text).width + 14 * colours.unit;
+    pen.textAlign = isBeside ? "right" : "left";
+    write(pen, text, isBeside ? x - 10 * colours.unit : 0, y + (isBeside ? 4 : 20) * colours.unit, colours.ink, colours);
   }
 
   /** Which way x, y and z go, in the corner. */
