@@ -138,6 +138,13 @@ class CampaignEvidence:
         original, data = self._original(round, end.test), bytes_of(end.recording)
         return None if original is None else (original, RecordedPaths(from_bytes(data)), data)
 
+    def scattering(self, tests: Iterable[str]) -> set[str]:
+        """Those of the tests that have no stable end: the original ends far apart with different seeds."""
+        try:
+            return set() if self.is_lost else {test for test in tests if self._spread(test).scatters}
+        except (JournalError, *UNFIT):  # the recordings were spoiled: the next one that is taken says so
+            return set()
+
     def _spread_of(self, test: str) -> Spread:
         """How far the original's runs of a test with different seeds are apart."""
         runs = (self._original(round, test) for round in self._passed.get(test, ()))

@@ -373,14 +373,27 @@ def _collected_otherwise(run: Run) -> tuple[str, ...]:
     return tuple(told)
 
 
-def _with_tests(comparisons: Mapping[str, Difference]) -> list[Difference]:
+def _with_tests(comparisons: Mapping[str, Difference]) -> Mapping[str, Difference]:
     """What differs in each test; if that is several, each line names its test."""
     if sum(bool(one.divergence) for one in comparisons.values()) < 2:
-        return [*comparisons.values()]
-    return [
-        replace(one, divergence=tuple(f"{line} (in {test.rpartition('::')[2]})" for line in one.divergence))
+        return comparisons
+    return {
+        test: replace(
+            one, divergence=tuple(f"{line} (in {test.rpartition('::')[2]})" for line in one.divergence)
+        )
         for test, one in comparisons.items()
-    ]
+    }
+
+
+def stable_first(comparisons: Mapping[str, Difference], scattering: Collection[str]) -> Difference:
+    """One comparison of all tests; where the end of a test scatters in the original, others say more."""
+    whole = farthest([*comparisons.values()])
+    stable = farthest([one for test, one in comparisons.items() if test not in scattering])
+    if not scattering or not stable.divergence:
+        return whole
+    others = tuple(line for line in whole.divergence if line not in stable.divergence)
+    distance = whole.distance if stable.distance is None else stable.distance
+    return replace(whole, distance=distance, way=stable.way, divergence=(*stable.divergence, *others))
 
 
 def _compared(campaign: Campaign, outcome: Outcome, run: Run) -> Outcome:
@@ -404,7 +417,8 @@ def _compared(campaign: Campaign, outcome: Outcome, run: Run) -> Outcome:
             difference = compare(baseline.observations[key], found, *known, spread)
             # a test that has nothing to do with the mutant need not make what a probe reads
             comparisons[test] = difference if test in hit else replace(difference, gaps=())
-    worst = farthest(_with_tests(comparisons))
+    scattering = campaign.evidence.scattering(comparisons) if campaign.evidence is not None else set()
+    worst = stable_first(_with_tests(comparisons), scattering)
     # Without a probe, equal traces say only that the program did the same, not that the world ended so.
     is_claimed = worst.divergence or (worst.distance is not None and not worst.gaps)
     return replace(outcome, **shallow(worst if is_claimed else replace(worst, indistinguishable=None)))

@@ -8,7 +8,8 @@ import pytest
 
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.unfit import refuse_unfit
-from mutabot.campaign.comparison import Observation, ProbeSpread, TraceCall, compare
+from mutabot.campaign.comparison import Difference, Observation, ProbeSpread, TraceCall, compare
+from mutabot.campaign.verdict import stable_first
 from mutabot.errors import ConfigurationError
 from mutabot.model import Kind, Path, Probe, Quantity, Vocabulary
 from mutabot.model.events import TestEnd
@@ -116,3 +117,12 @@ def test_a_pattern_of_parts_may_stand_for_none() -> None:
     whole = Probe(TARGET, result=(part(".tool", Kind.EULER, unit="deg", order="xyz"),))
     with pytest.raises(ConfigurationError, match="never reads such a part"):
         refuse_unfit(baseline, Vocabulary(probes=(whole,)))
+
+
+def test_a_test_whose_end_scatters_comes_last() -> None:
+    lost = Difference(False, 400.0, ("box.x: lost",), way=9.0)
+    placed = Difference(False, 3.0, ("box.x: placed",), way=2.0)
+    both = {"lost": lost, "placed": placed}
+    assert stable_first(both, {"lost"}) == Difference(False, 3.0, ("box.x: placed", "box.x: lost"), way=2.0)
+    assert stable_first(both, set()).divergence[0] == "box.x: lost"
+    assert stable_first({"lost": lost}, {"lost"}) == lost
