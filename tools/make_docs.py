@@ -37,8 +37,8 @@ Family `robot`, the default, has all 13 published operators for robot programs.
 CATALOGUE_HEAD = """\
 ## The catalogue
 
-`--family catalogue` adds common faults of robot programs. Bugs on commands and readings of each class in
-studies of ROS and PX4/ArduPilot software: {studies}. Not covered: a lost blend radius.
+`--family catalogue` adds common faults of robot programs. Bug counts per class, of bugs in commands and
+readings, in published studies of ROS and PX4/ArduPilot software: {studies}. Not covered: a lost blend radius.
 """
 GRADED_HEAD = """\
 ## Graded faults

@@ -62,12 +62,12 @@ class _OtherUnit(ValueOperator):
 
 
 def _both_ways(units: Mapping[str, str]) -> dict[str, str]:
-    """The same units, and the other way round."""
+    """Return the units and their reverse."""
     return {**units, **{other: one for one, other in units.items()}}
 
 
 class CentimetreForMetre(_OtherUnit):
-    """A length or linear speed in metres is taken for, or given in, centimetres; and the other way round.
+    """A length or linear speed in metres is taken for, or given in, centimetres, or the reverse.
 
     Where: written and read quantities in m, cm, m/s or cm/s.
     """
@@ -83,7 +83,7 @@ class CentimetreForMetre(_OtherUnit):
 
 
 class MillimetreForMetre(_OtherUnit):
-    """A length or linear speed in metres is taken for, or given in, millimetres; and the other way round.
+    """A length or linear speed in metres is taken for, or given in, millimetres, or the reverse.
 
     Where: written and read quantities in m or mm, and their speeds and accelerations.
     """
@@ -99,7 +99,7 @@ class MillimetreForMetre(_OtherUnit):
 
 
 class InchForMillimetre(_OtherUnit):
-    """A length in millimetres is taken for, or given in, inches; and the other way round.
+    """A length in millimetres is taken for, or given in, inches, or the reverse.
 
     Where: written and read quantities in mm or inch.
     """
@@ -115,7 +115,7 @@ class InchForMillimetre(_OtherUnit):
 
 
 class DegreeForRadian(_OtherUnit):
-    """An angle or angular speed in radians is taken for, or given in, degrees; and the other way round.
+    """An angle or angular speed in radians is taken for, or given in, degrees, or the reverse.
 
     Where: written and read quantities in rad or deg, rotation vectors and Euler angles included, and their
     speeds and accelerations.

@@ -1,6 +1,6 @@
 """``mutabot motion``: one test of a mutant beside that of the original, as it was recorded, or filmed.
 
-It is the round and the test that tell most, if nobody says otherwise.
+Without --round and --test, the round and test with the largest deviation are shown.
 """
 
 from __future__ import annotations

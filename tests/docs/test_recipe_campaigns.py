@@ -1,4 +1,4 @@
-"""The recipes that need no robot library run: what init drafts, the campaign, and the check that the page adds."""
+"""Recipes that need no robot library run: the draft of init, the campaign, the check that the page adds."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A planar arm draws a line: the way is computed with a toolbox of kinematics, and its joints are sent to the arm."""
+"""A planar arm draws a line: a toolbox computes the joint angles, which are sent to the arm."""
 
 import numpy as np
 from planar import inverse, joint_path

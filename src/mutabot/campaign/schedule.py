@@ -1,6 +1,6 @@
 """Run the mutants of a plan: which come first, and until when.
 
-Under a budget, what is expected to tell most comes first, in batches: forks share the run of the original, so
+Under a budget, the most informative runs come first, in batches: forks share the run of the original, so
 a batch gives no outcome of a survivor until that run ends. A batch is as much as is expected to end in half
 of the time that is left. What is under way when the time is up is cut off, and nothing is said of it.
 """
@@ -138,7 +138,7 @@ def in_order(
     seed: int,
     before: Mapping[RunId, Verdict],
 ) -> list[MutantRun]:
-    """All that is not done, what is expected to tell most first, one round after the other.
+    """All runs that are not done, the most informative first, one round after the other.
 
     Among those that are expected to tell alike much, the order depends on the seed and the mutants' ids
     alone. ``before``: what outcomes were that do not hold any more.

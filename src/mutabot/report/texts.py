@@ -194,7 +194,7 @@ def effect_text(result: MutantResult) -> str:
 
 
 def telling(result: MutantResult) -> tuple[int, Diverged | None] | None:
-    """Return the 0-based round that tells most about a mutant, and the test in which the robot did otherwise.
+    """Return a mutant's most informative round, 0-based, and the test in which the robot acted differently.
 
     Of a survivor that is the round that let it through farthest from the original, which ``result.why`` is
     about too; else the first round with its state. None if it has not been run.

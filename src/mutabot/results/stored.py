@@ -111,7 +111,7 @@ class StoredCampaign(Results):
 
     @property
     def thresholds(self) -> Thresholds:
-        """The ladders of graded mutants, the loosest first."""
+        """The ladders of graded mutants, least sensitive first."""
         return thresholds_of(self)
 
     def __repr__(self) -> str:

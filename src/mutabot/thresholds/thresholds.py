@@ -129,7 +129,7 @@ class Thresholds:
     """The thresholds of a campaign.
 
     Attributes:
-        ladders: those of which something is known, the loosest first.
+        ladders: those of which something is known, least sensitive first.
         unjudged: the others.
         rounds: number of rounds.
         state: how the campaign ended, as in ``Results``.

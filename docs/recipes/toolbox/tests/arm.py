@@ -4,7 +4,7 @@ import numpy as np
 from planar import forward
 
 
-class JointLimit(Exception):
+class JointLimitError(Exception):
     """A joint would leave its range."""
 
 
@@ -21,7 +21,7 @@ class Arm:
     def servo(self, joints):
         """Move the joints to these angles, in radians."""
         if np.any(np.abs(joints) > 2.8):
-            raise JointLimit(f"{joints} rad")
+            raise JointLimitError(f"{joints} rad")
         self._joints = np.array(joints)
         if self.is_down:
             self.drawn.append(forward(self._joints))

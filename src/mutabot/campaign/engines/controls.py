@@ -1,4 +1,4 @@
-"""Controls: mutants of mutabot's own whose end is known.
+"""Controls: mutants of mutabot's own whose verdict is known.
 
 The identity changes nothing, so it must survive. The fatal mutant raises, so it must die, or make the suite
 wait for ever: turning a mutant on changes something.

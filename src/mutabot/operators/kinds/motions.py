@@ -108,7 +108,7 @@ class Reverse(ValueOperator):
 
 
 class ByTo(ValueOperator):
-    """A relative amount is taken for an absolute target, and the other way round.
+    """A relative amount is taken for an absolute target, or the reverse.
 
     Where: written translations and rotations whose operation has a current that tells them.
 

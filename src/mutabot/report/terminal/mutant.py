@@ -1,4 +1,4 @@
-"""One mutant on the terminal: one screen about what tells most, or everything; and its suggested check."""
+"""One mutant on the terminal: the main facts on one screen, or everything; and its suggested check."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def _quantity_text(name: str | None, quantity: Quantity | None) -> str:
 
 
 def _rounds(result: MutantResult, *, everything: bool) -> Section:
-    """Rounds that ended alike, with the details of the first of them; on one screen those that tell most."""
+    """Rounds that ended alike, with the details of the first; on one screen the most informative ones."""
     groups: dict[Any, list[int]] = {}
     for number, outcome in enumerate(result.rounds):
         groups.setdefault(outcome and (end_in_words(outcome), outcome.place), []).append(number)
@@ -144,7 +144,7 @@ def _details(outcome: Outcome) -> Iterator[str]:
 
 
 def _happened(result: MutantResult) -> Iterator[Section]:
-    """What the robot did in the round and test that tell most; nothing where nothing was recorded."""
+    """What the robot did in the most informative round and test; nothing where nothing was recorded."""
     number, diverged = telling(result) or (0, None)
     if diverged is None:
         return

@@ -23,7 +23,7 @@ _LEGEND = "· no round notices   ▒ some do   █ all do   × the robot refuses
 
 
 def print_thresholds(console: Console, thresholds: Thresholds) -> None:
-    """Print the thresholds of a campaign, the loosest first."""
+    """Print the thresholds of a campaign, least sensitive first."""
     size = f"{plural(len(thresholds.all), 'ladder')} × {plural(thresholds.rounds, 'round')}"
     columns = ("*fault", ">none up to", "magnitudes", ">all from", "*noticed by")
     rows = [_row(one) for one in thresholds.ladders]
