@@ -145,6 +145,41 @@ class Thresholds:
         """All ladders."""
         return (*self.ladders, *self.unjudged)
 
+    @property
+    def summary(self) -> str:
+        """``25 of 46 graded faults not noticed even at the largest size; 21 noticed in every round ...``."""
+        counts = Counter(map(_in_all_rounds, self.ladders))
+        counts["not judged"] = len(self.unjudged)
+        kinds = [kind for kind in (*_KINDS, "not judged") if counts[kind]]
+        total = f" of {plural(len(self.all), 'graded fault')}"
+        return "; ".join(
+            f"{counts[kind]}{'' if number else total} {kind}" for number, kind in enumerate(kinds)
+        )
+
+
+#: what a ladder shows over all rounds, what needs a look first
+_KINDS = (
+    "not noticed even at the largest size",
+    "not noticed at any size that the robot accepts",
+    "not noticed at any size that has an effect",
+    "noticed in some rounds only",
+    "noticed in every round from some size on",
+    "reached by no test",
+)
+
+
+def _in_all_rounds(ladder: Ladder) -> str:
+    """The kind of a ladder that can be judged."""
+    largest, accepted, effective, some, every, unreached = _KINDS
+    above = {one.above for one in ladder.counted}
+    if not any(one.is_reached for one in ladder.counted):
+        return unreached
+    if math.isfinite(ladder.all_from):
+        return every
+    if Above.NOTICED in above:
+        return some
+    return accepted if Above.REFUSED in above else effective if Above.NO_EFFECT in above else largest
+
 
 def thresholds_of(results: GradedResults) -> Thresholds:
     """The thresholds of a campaign."""

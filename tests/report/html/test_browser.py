@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +13,11 @@ import pytest
 
 import mutabot
 import schemas
+from mutabot.model import Mutant, Role
 from report.html import reports
 from results import samples
+from results.thresholds import journals
+from results.thresholds.journals import Rungs
 
 sync_api = pytest.importorskip("playwright.sync_api", reason="requirements-reports.lock is not installed")
 
@@ -233,6 +237,49 @@ def test_the_paths_fill_the_view_and_names_stay_whole(browser: Any, plain: Path,
     wide = scene.bounding_box()["width"]
     assert {"fault 5 s", "tool", "box, original"} <= {text for text, _, _ in names}
     assert [text for text, begin, end in names if begin < 0 or end > wide] == []
+    page.close()
+
+
+def test_files_are_a_tree_with_the_scores_of_the_overview(browser: Any, tmp_path: Path) -> None:
+    page = browser.new_page()
+    moved = "cell/arm/mission.py"
+    mutants = {one.id: _in_file(one, moved) for one in samples.MUTANTS}
+    outcomes = tuple(replace(one, mutant=mutants[one.mutant].id) for one in samples.OUTCOMES)
+    visit = Visit(page, reports.plain(tmp_path, mutants=tuple(mutants.values()), outcomes=outcomes))
+    visit.open("#/")
+    overview = {
+        row.locator("th").inner_text(): row.locator("td").first.inner_text().split(" %")[0]
+        for row in page.locator("table.scores tbody tr").all()
+    }
+    visit.open(f"#/source/{moved}")
+    tree = page.get_by_role("navigation", name="Files")
+    folders = [one.inner_text().lstrip("▾ ") for one in tree.locator("summary .name").all()]
+    assert folders == ["cell/arm/", "tests/"]
+    shown = [one.inner_text() for one in tree.locator("summary b").all()]
+    assert shown == [f"{float(overview[name]):.0f} %" for name in ("robot · program", "robot · oracle")]
+    assert tree.locator("a[aria-current=page]").inner_text().startswith("mission.py")
+    tree.locator("summary").first.click()
+    assert not tree.get_by_role("link", name="mission.py").is_visible()
+    assert visit.wrong == []
+    page.close()
+
+
+def _in_file(mutant: Mutant, file: str) -> Mutant:
+    """The same mutant, of the program in another file."""
+    if mutant.site.role is not Role.PROGRAM:
+        return mutant
+    return replace(mutant, site=replace(mutant.site, span=replace(mutant.site.span, file=file)))
+
+
+def test_a_sentence_sums_up_the_thresholds(browser: Any, tmp_path: Path) -> None:
+    ladders = Rungs(["SSSSSSS"] * 2), Rungs(["SSSSCCC"] * 2, direction="-")
+    journal = journals.write(tmp_path / "journal.sqlite", *ladders)
+    page = browser.new_page()
+    with_ladders = Visit(page, reports.write(tmp_path / "report", journal, mutabot.open(journal)).page)
+    with_ladders.open("#/")
+    text = page.locator("main").inner_text()
+    assert "1 of 2 graded faults not noticed even at the largest size; 1 noticed in every round" in text
+    assert with_ladders.wrong == []
     page.close()
 
 

@@ -68,6 +68,34 @@ def test_the_loosest_comes_first(thresholds: Thresholds) -> None:
     ]
 
 
+def test_a_sentence_sums_up_all_ladders(thresholds: Thresholds) -> None:
+    sentence = (
+        "1 of 6 graded faults not noticed at any size that the robot accepts; "
+        "4 noticed in every round from some size on; 1 not judged"
+    )
+    assert thresholds.summary == sentence
+    assert sentence in text_of(thresholds, width=300)
+
+
+@pytest.mark.parametrize(
+    ("rounds", "kind"),
+    [
+        (["SSSSSSS", "SSSSSSS"], "not noticed even at the largest size"),
+        (["SSCSSSS", "SSSSSSS"], "not noticed even at the largest size"),
+        (["SSSSSSS", "SSSSRRR"], "not noticed at any size that the robot accepts"),
+        (["SSSSSSS", "SSSSSSC"], "noticed in some rounds only"),
+        (["SSSSSSC", "CCCCCCC"], "noticed in every round from some size on"),
+        (["SSSSNNN", "SSSSSSS"], "not noticed at any size that has an effect"),
+        (["-------", "-------"], "reached by no test"),
+        (["NNNNNNN", "NNNNNNN"], "not judged"),
+        (["UUUUUUU", "UUUUUUU"], "not judged"),
+    ],
+)
+def test_each_ladder_is_of_one_kind(tmp_path: Path, rounds: list[str], kind: str) -> None:
+    found = thresholds_of(journals.results(tmp_path, Rungs(rounds)))
+    assert found.summary == f"1 of 1 graded fault {kind}"
+
+
 def test_what_the_lines_say_of_further_rounds_has_its_level(thresholds: Thresholds) -> None:
     text = text_of(thresholds, width=300)
     assert "With 94 % confidence the median threshold" in text

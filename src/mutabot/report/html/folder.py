@@ -60,6 +60,7 @@ def campaign_data(campaign: Results, name: str) -> dict[str, Any]:
     """
     tests = {test: number for number, test in enumerate(campaign.tests)}
     rows = [_row(one, tests) for one in campaign.mutants]
+    thresholds = thresholds_of(campaign)
     return {
         "name": name,
         **data_of.facts(
@@ -75,9 +76,10 @@ def campaign_data(campaign: Results, name: str) -> dict[str, Any]:
         "withoutEffect": [*campaign.needlessly_accepted, *campaign.accepting.unmatched],
         "unlooked": unlooked(campaign.mutants),
         "ladders": [
-            {**data_of.facts(one, _LADDER), "text": line_of(one)}
-            for one in thresholds_of(campaign).ladders[:_LADDERS]
+            {**data_of.facts(one, _LADDER), "text": line_of(one)} for one in thresholds.ladders[:_LADDERS]
         ],
+        "thresholds": thresholds.summary,
+        "furtherLadders": len(thresholds.ladders[_LADDERS:]),
     }
 
 

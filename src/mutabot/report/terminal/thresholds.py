@@ -28,6 +28,7 @@ def print_thresholds(console: Console, thresholds: Thresholds) -> None:
     columns = ("*fault", ">none up to", "magnitudes", ">all from", "*noticed by")
     rows = [_row(one) for one in thresholds.ladders]
     print_section(console, Section(f"{size}: {thresholds.state}", columns, rows, [_LEGEND]))
+    console.print(Text(thresholds.summary))
     for name, lines in _sections(thresholds).items():
         if lines:
             print_section(console, Section(name, lines=lines), _MOST)

@@ -138,10 +138,12 @@
     const kind = (one, size) => one.all_from !== null && size >= one.all_from ? "all" : one.refused_from !== null && size >= one.refused_from ? "refused" : size <= one.none_up_to ? "none" : "some";
     const words = { none: "no round notices", some: "some rounds notice", all: "all rounds notice", refused: "the robot refuses" };
     return h("section", { "aria-labelledby": "thresholds" }, h("h2", { id: "thresholds" }, "How large a fault must be before the tests notice, the least sensitive first"),
+      h("p", { class: "story" }, `${campaign.thresholds}.`),
       h("ul", { class: "legend" }, Object.entries(words).map(([name, text]) => h("li", null, h("span", { class: `step is-${name}`, "aria-hidden": "true" }), text))),
       h("ul", { class: "plain ladders" }, campaign.ladders.map((one) => h("li", null, h("a", { href: address(["source", one.file], { line: String(one.line) }) }, `${one.place} ${one.name}`),
         h("span", { class: "steps", role: "img", "aria-label": one.text }, one.magnitudes.map((size) => h("span", { class: `step is-${kind(one, size)}`, title: `${number(size)} ${one.unit || ""}: ${words[kind(one, size)]}` }))),
-        h("small", null, one.text)))));
+        h("small", null, one.text)))),
+      campaign.furtherLadders ? h("p", { class: "hint" }, `${count(campaign.furtherLadders, "further ladder")}, more sensitive than these: \`mutabot thresholds\` prints all.`) : null);
   }
 
   function finding(one) {

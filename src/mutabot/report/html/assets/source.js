@@ -1,7 +1,7 @@
 /* The program's text with its mutants in the margin, and survivors under their lines. */
 "use strict";
 (() => {
-  const { h, address, count, empty, marks } = mutabot;
+  const { h, address, empty, marks } = mutabot;
   const MARKS = 7;
   const LETTER = (one) => one.status === "killed" ? (one.ends.includes("C") ? "C" : "X") : marks.STATUS[one.status];
 
@@ -11,14 +11,7 @@
     body.append(h("h1", { tabindex: "-1" }, file ? file : "Source"));
     if (!file) { body.append(empty("There is no source to show.", "The campaign planned no mutant.")); return undefined; }
     const holder = h("div", null, h("p", { class: "wait" }, "The source is being read …"));
-    if (campaign.files.length > 1) {
-      body.append(h("nav", { class: "files", "aria-label": "Files" }, h("ul", null, [...campaign.files].sort().map((one) => {
-        const here = campaign.mutants.filter((mutant) => mutant.file === one);
-        const alive = here.filter((mutant) => mutant.survives).length;
-        return h("li", null, h("a", { href: address(["source", one]), "aria-current": one === file ? "page" : null }, one, h("small", null, `${count(here.length, "mutant")}, ${count(alive, "survivor")}`)));
-      }))));
-    }
-    body.append(holder);
+    body.append(mutabot.fileTree(campaign, file), holder);
     let gone = false;
     mutabot.load("sources", "data/sources.js").then((sources) => {
       if (gone) return;
