@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from mutabot.report.formats.jsonl import end_data, mutant_data
+from mutabot.report.mutant_data import end_data, mutant_data
 from mutabot.report.texts import one_line
 
 if TYPE_CHECKING:

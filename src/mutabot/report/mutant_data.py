@@ -1,0 +1,42 @@
+"""What formats of a line per mutant say of a mutant, and of a campaign in their last line."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING, Any
+
+from mutabot.report.texts import effect_text, one_line, state_of
+from mutabot.results.results import Encoder
+
+if TYPE_CHECKING:
+    from mutabot.results.results import MutantResult, Results
+
+_LINE = (
+    "number=mutant.number id=mutant.id file=mutant.site.span.file line=mutant.site.span.line "
+    "function=mutant.site.span.function operator=mutant.operator family=mutant.family role=mutant.site.role "
+    "description=mutant.description killed=kill_rate.killed valid=kill_rate.valid"
+)
+_GROUP = "family role score=scores.mean check_score=scores.mean_check accepted=scores.accepted"
+_DATA_OF = Encoder({})
+
+
+def mutant_data(result: MutantResult) -> dict[str, Any]:
+    """Return what is said of a mutant: its state, where and what it is, and why it has this state."""
+    deciding = next((one for one in result.outcomes if one.test is not None), None)
+    return {
+        "status": state_of(result),
+        **_DATA_OF.facts(result, _LINE),
+        "test": deciding.test if deciding is not None else None,
+        "why": one_line(effect_text(result)),
+        "accepted": result.acceptance.why if result.acceptance is not None and result.is_accepted else None,
+    }
+
+
+def end_data(results: Results) -> dict[str, Any]:
+    """Return what is said of a campaign."""
+    return {
+        "state": results.state,
+        "mutants": dict(Counter(map(state_of, results.mutants))),
+        "scores": [_DATA_OF.facts(group, _GROUP) for group in results.groups],
+        "untested": results.untested.text,
+    }
