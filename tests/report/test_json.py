@@ -107,7 +107,7 @@ def test_groups_and_rounds_carry_scores_and_counts(tmp_path: Path) -> None:
 
 def test_meta_says_with_what_and_how_it_ended(tmp_path: Path) -> None:
     found = data(tmp_path, finish="interrupted")
-    assert found["format"] == 1
+    assert found["format"] == 2
     assert (found["state"], found["finished"]) == ("interrupted", False)
     assert {"mutabot", "versions", "seed", "rounds", "engine"} <= set(found["meta"])
     assert "vocabulary" not in found["meta"]

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from mutabot.evidence.differences import Spread
 
 #: differences from which on each is worth telling: recordings have some ten moments a second
-_LEAST = {
+LEAST = {
     RELEASE: 0.01,
     IMPACT: 0.1,
     SLIP: 0.005,
@@ -55,7 +55,7 @@ def _measured(
         elif usual is None and fact.name not in (SLIP, DRAG):
             continue
         before = usual.value if usual is not None else None
-        more, least = fact.value - (before or 0.0), _LEAST[fact.name]
+        more, least = fact.value - (before or 0.0), LEAST[fact.name]
         if is_cut and (fact.name == DURATION or (more < 0.0 and fact.name != MARGIN)):
             continue
         if fact.name == MARGIN and fact.value > _NEARER * (before or 0.0):

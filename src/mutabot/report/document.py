@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from mutabot.results.suggested import Suggestion
 
 #: raised when a key changes its meaning or goes away; new keys do not raise it
-FORMAT = 1
+FORMAT = 2
 
 
 def dumps(data: Any) -> str:

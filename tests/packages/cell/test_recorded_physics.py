@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from mutabot.evidence import tape
+from mutabot.evidence.measurements import LEAST
 from mutabot.evidence.paths import RecordedPaths
 from mutabot.evidence.physics import IMPACT, MARGIN, RELEASE, SLIP, Fact, facts_of
 from mutabot_cell import Cell
@@ -39,14 +40,15 @@ def dropped(cell: Cell, height: float, running: tape.Tape) -> tuple[dict[tuple[s
     return facts_of(RecordedPaths(running.recording)), speeds
 
 
-@pytest.mark.parametrize("height", [0.1, 0.3])
+@pytest.mark.parametrize("height", [0.1, 0.15, 0.3])
 def test_a_box_hits_the_conveyor_as_fast_as_the_recording_says(
     cell: Cell, height: float, running: tape.Tape
 ) -> None:
     found, speeds = dropped(cell, height, running)
     assert found[RELEASE, "box"].value == pytest.approx(height, abs=0.01)
     assert found[RELEASE, "box"].other == "conveyor"
-    assert found[IMPACT, "box"].value == pytest.approx(max(speeds), rel=0.08)
+    # fingers that open hold back a little: the speed is right to the least difference that is told
+    assert found[IMPACT, "box"].value == pytest.approx(max(speeds), abs=LEAST[IMPACT])
     assert found[SLIP, "box"].value < 0.005
 
 
