@@ -137,7 +137,9 @@ TestOption = Annotated[
 ]
 Video = Annotated[
     Path | None,
-    typer.Option("--video", metavar="FILE", help="Film original and mutant beside each other: FILE.mp4."),
+    typer.Option(
+        "--video", metavar="FILE", help="Film original and mutant beside each other: FILE.mp4 or FILE.gif."
+    ),
 ]
 Rerun = Annotated[bool, typer.Option("--rerun", help="Show what was recorded in the viewer of Rerun.")]
 Rrd = Annotated[
@@ -169,7 +171,7 @@ def motion(
     sights = list(sights_of(context.journal.parent, rerun=rerun, rrd=rrd, mcap=mcap))
     if video is not None:
         module("pictures.video")
-        check(video, ".mp4")
+        check(video, ".mp4", ".gif")
     elif not sights:
         raise UsageError("say how to show it: --video, --rerun, --rrd or --mcap")
     results = context.results(earlier=True)

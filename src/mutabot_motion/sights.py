@@ -31,6 +31,7 @@ _FILES = {
     ".rrd": ("recording", 0, b"RRF2"),
     ".mcap": ("recording", 0, b"\x89MCAP0\r\n"),
     ".mp4": ("video", 4, b"ftyp"),
+    ".gif": ("video", 0, b"GIF8"),
 }
 
 #: one way to look at it: says what there is now, in words, and raises UsageError where it fails
@@ -72,12 +73,13 @@ def module(name: str) -> Any:
         raise UsageError(f"{needs} {library}, not installed here: {install}") from error
 
 
-def check(file: Path, suffix: str) -> None:
-    """Raise UsageError if a file of this kind cannot be written there; no other file is written over."""
-    what, at, magic = _FILES[suffix]
+def check(file: Path, *suffixes: str) -> None:
+    """Raise UsageError if a file of these kinds cannot be written there; no other file is written over."""
+    suffix = file.suffix.lower()
+    what, at, magic = _FILES[suffix if suffix in suffixes else suffixes[0]]
     cannot = f"the {what} {file} cannot be written"
-    if file.suffix.lower() != suffix:
-        raise UsageError(f"{cannot}: its name must end in {suffix}")
+    if suffix not in suffixes:
+        raise UsageError(f"{cannot}: its name must end in {' or '.join(suffixes)}")
     if file.is_dir():
         raise UsageError(f"{cannot}: it is a folder")
     if not file.parent.is_dir():

@@ -1,4 +1,6 @@
-"""Videos that browsers play: H.264 in MP4, filmed or drawn. Needs PyAV and Pillow: ``mutabot[video]``.
+"""Videos, filmed or drawn: H.264 in MP4, which browsers play, or GIF, which texts such as pull requests show.
+
+Needs PyAV and Pillow: ``mutabot[video]``.
 
 PyAV rather than a program beside Python: it encodes in this process, so nothing is left running, and it is
 a quarter of the size.
@@ -11,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import av
+from PIL import Image
 
 from mutabot.api.reports import UsageError
 from mutabot_motion.pictures.film import Film
@@ -24,6 +27,8 @@ from .frame import Filmed, Frames, Shots
 RATE = 25
 #: how long the last frame stays, s
 _HELD = 1.5
+#: of a GIF: pictures per second, the most it has, and how wide they are at most, pixels
+_GIF_RATE, _GIF_MOST, _GIF_WIDTH = 10, 200, 720
 
 
 def show(file: Path, shown: Shown, films: tuple[Film, Film], problems: Sequence[str]) -> list[str]:
@@ -42,9 +47,10 @@ def show(file: Path, shown: Shown, films: tuple[Film, Film], problems: Sequence[
         notes = [_why_no_pictures(problems)]
         sides = _drawn(shown, notes[0])
         notes[0] += "; the paths are drawn instead"
-    count = write_video(file, Frames(shown, sides))
+    write = write_gif if file.suffix.lower() == ".gif" else write_video
+    seconds = write(file, Frames(shown, sides))
     size = file.stat().st_size
-    return [*notes, f"{file}: {count / RATE:.1f} s, {size / 1e6:.1f} MB"]
+    return [*notes, f"{file}: {seconds:.1f} s, {size / 1e6:.1f} MB"]
 
 
 def _drawn(shown: Shown, why: str) -> tuple[Shots, Shots]:
@@ -68,8 +74,8 @@ def _why_no_pictures(problems: Sequence[str]) -> str:
     )
 
 
-def write_video(file: Path, frames: Frames) -> int:
-    """Write a video; of one that is not finished nothing is left. Returns how many frames it has."""
+def write_video(file: Path, frames: Frames) -> float:
+    """Write a video; of one that is not finished nothing is left. Returns how long it is, s."""
     count = 0
     frame: Any = av.VideoFrame
     with written_whole(file) as part, av.open(str(part), "w", options={"movflags": "+faststart"}) as video:
@@ -80,7 +86,30 @@ def write_video(file: Path, frames: Frames) -> int:
             video.mux(stream.encode(frame.from_image(frames.at(time))))
             count += 1
         video.mux(stream.encode(None))
-    return count
+    return count / RATE
+
+
+def write_gif(file: Path, frames: Frames) -> float:
+    """Write an animation that is repeated; of one that is not finished nothing is left.
+
+    A long one has fewer pictures per second. Returns how long it is, s.
+    """
+    seconds = frames.end / frames.speed
+    count = max(2, min(_GIF_MOST, int(seconds * _GIF_RATE) + 1))
+    pictures = [_indexed(frames.at(number * frames.end / (count - 1))) for number in range(count)]
+    each = round(100 * seconds / (count - 1)) * 10  # the format counts in hundredths of a second
+    lasting = [*[each] * (count - 1), round(1000 * _HELD)]
+    with written_whole(file) as part:
+        pictures[0].save(
+            part, "GIF", save_all=True, append_images=pictures[1:], duration=lasting, loop=0, optimize=False
+        )
+    return sum(lasting) / 1000
+
+
+def _indexed(frame: Image.Image) -> Image.Image:
+    """A frame as small as a GIF shows it, in colours of its own."""
+    frame.thumbnail((_GIF_WIDTH, _GIF_WIDTH))
+    return frame.quantize(128, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
 
 
 def _moments(end: float, speed: float) -> Iterator[float]:

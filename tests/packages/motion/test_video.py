@@ -14,7 +14,7 @@ from mutabot_motion.pictures.film import Film, FilmWriter
 from packages.motion.sample import recording, shown
 
 av = pytest.importorskip("av")
-pytest.importorskip("PIL")
+Image = pytest.importorskip("PIL.Image")
 
 from mutabot_motion.pictures import video  # noqa: E402
 from mutabot_motion.pictures.drawn import Drawn  # noqa: E402
@@ -64,6 +64,33 @@ def test_a_video_is_one_that_browsers_play_and_lasts_as_long_as_the_longer_side(
     assert all(side % 2 == 0 for side in frames[0].size)
     assert said == [f"{file}: {len(frames) / RATE:.1f} s, {file.stat().st_size / 1e6:.1f} MB"]
     assert [one.name for one in tmp_path.glob("*.mp4")] == ["a.mp4"]
+
+
+def test_a_gif_is_as_long_as_the_longer_side_and_is_repeated(tmp_path: Path) -> None:
+    file = tmp_path / "a.gif"
+    said = show(file, shown(), (film(tmp_path / "a", 16, 60), film(tmp_path / "b", 6, 160)), [])
+    with Image.open(file) as opened:
+        lasting, shades = [], []
+        for number in range(opened.n_frames):
+            opened.seek(number)
+            lasting.append(opened.info["duration"])
+            shades.append(opened.convert("RGB").getpixel((opened.width // 4, opened.height // 2))[0])
+        assert (opened.format, opened.info["loop"]) == ("GIF", 0)
+        assert opened.width <= 720
+    assert sum(lasting) == 3000 + 1500, "1.5 s are shown in 3 s, and the last picture stays"
+    assert (min(shades), max(shades)) == pytest.approx((60, 75), abs=3)
+    assert shades == sorted(shades)
+    assert said == [f"{file}: 4.5 s, {file.stat().st_size / 1e6:.1f} MB"]
+    assert [one.name for one in tmp_path.glob("*.gif")] == ["a.gif"]
+
+
+def test_a_long_gif_has_fewer_pictures_per_second(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(video, "_GIF_MOST", 7)
+    file = tmp_path / "a.gif"
+    show(file, shown(), (film(tmp_path / "a", 16, 60), film(tmp_path / "b", 6, 160)), [])
+    with Image.open(file) as opened:
+        assert opened.n_frames == 7
+        assert opened.info["duration"] == 500
 
 
 def test_the_original_is_on_the_left_and_the_moment_of_the_fault_is_marked(tmp_path: Path) -> None:
@@ -152,17 +179,19 @@ def test_a_drawing_shows_more_as_time_goes_on_and_both_sides_in_one_scale() -> N
 @pytest.mark.parametrize(
     ("name", "told"),
     [
-        ("a.avi", "must end in .mp4"),
+        ("a.avi", "must end in .mp4 or .gif"),
         ("folder.mp4", "it is a folder"),
         ("nowhere/a.mp4", "there is no folder"),
         ("text.mp4", "there is another file of that name, which is no video"),
+        ("text.gif", "there is another file of that name, which is no video"),
     ],
 )
 def test_a_file_that_cannot_be_a_video_is_refused_beforehand(name: str, told: str, tmp_path: Path) -> None:
     (tmp_path / "folder.mp4").mkdir()
-    (tmp_path / "text.mp4").write_text("my notes")
+    for kind in ("mp4", "gif"):
+        (tmp_path / f"text.{kind}").write_text("my notes")
     with pytest.raises(UsageError, match=told):
-        check(tmp_path / name, ".mp4")
+        check(tmp_path / name, ".mp4", ".gif")
     assert (tmp_path / "text.mp4").read_text() == "my notes"
 
 
