@@ -119,6 +119,16 @@ def test_the_list_is_searched_filtered_and_sorted_and_the_address_remembers(visi
     assert visit.wrong == []
 
 
+def test_what_the_list_is_sorted_by_takes_two_lines_of_a_telephone(browser: Any, plain: Path) -> None:
+    page = browser.new_page(viewport={"width": 390, "height": 800})
+    visit = Visit(page, plain)
+    visit.open("#/mutants")
+    heads = [one.bounding_box() for one in page.locator("table.mutants thead th:visible").all()]
+    assert len(heads) == 6
+    assert len({round(one["y"]) for one in heads}) <= 2
+    page.close()
+
+
 def test_all_of_it_can_be_used_by_keyboard(visit: Visit) -> None:
     visit.open("#/")
     keys = visit.page.keyboard
