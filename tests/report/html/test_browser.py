@@ -281,6 +281,23 @@ def _in_file(mutant: Mutant, file: str) -> Mutant:
     return replace(mutant, site=replace(mutant.site, span=replace(mutant.site.span, file=file)))
 
 
+@pytest.mark.parametrize("rounds", [2, 3])
+def test_only_a_whole_campaign_says_that_every_mutant_was_run(
+    browser: Any, tmp_path: Path, rounds: int
+) -> None:
+    outcomes = [one for one in samples.OUTCOMES if one.mutant == samples.SKIP.id]
+    journal = samples.write_journal(
+        tmp_path / "journal.sqlite", mutants=(samples.SKIP,), outcomes=tuple(outcomes), rounds=rounds
+    )
+    assert len(outcomes) == 2
+    page = browser.new_page()
+    Visit(page, reports.write(tmp_path / "report", journal, mutabot.open(journal)).page).open("#/")
+    text = page.locator("main").inner_text()
+    assert ("Every planned mutant was run" in text) is (rounds == 2)
+    assert ("so far" in text) is (rounds == 3)
+    page.close()
+
+
 def test_a_sentence_sums_up_the_thresholds(browser: Any, tmp_path: Path) -> None:
     ladders = Rungs(["SSSSSSS"] * 2), Rungs(["SSSSCCC"] * 2, direction="-")
     journal = journals.write(tmp_path / "journal.sqlite", *ladders)

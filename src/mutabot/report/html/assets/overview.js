@@ -178,7 +178,7 @@
     if (found.length) {
       section.append(h("ul", { class: "plain" }, found.map(([name, many]) => h("li", null,
         h("a", { href: address(["mutants"], { status: name }) }, marks.status(name)), ` ${count(many, "mutant")}: ${marks.MEANING[name]}`))));
-    } else section.append(h("p", { class: "hint" }, "Every planned mutant was run and is counted."));
+    } else section.append(h("p", { class: "hint" }, campaign.done >= campaign.planned ? "Every planned mutant was run and is counted." : "No mutant is left out of the score so far."));
     if (campaign.withoutEffect.length) section.append(h("h3", null, "Accepted or excluded without an effect"), h("ul", { class: "plain" }, campaign.withoutEffect.map((one) => h("li", null, one))));
     const nothing = "would change nothing";
     const headings = Map.groupBy(campaign.left_out, (one) => one.reason.startsWith(nothing) ? `Left out that ${nothing}` : `Left out: ${one.reason}`);
