@@ -156,10 +156,10 @@ class ExtensionPart:
         return found
 
     def load_function(self) -> Callable[..., Any]:
-        """The same for a function. Raises ExtensionError also if it is none."""
+        """Load the object as a function. Raises ExtensionError also if it is not one."""
         found = self.load()
         if not callable(found):
-            raise ExtensionError(f"{self.words} is no function")
+            raise ExtensionError(f"{self.words} is not a function")
         return found  # type: ignore[no-any-return]
 
     @property
@@ -175,7 +175,7 @@ class ExtensionPart:
         raise ExtensionError(f"{self.name!r} of package {self.owner!r}: there is no file {self.reference}")
 
     def load_class(self, base: type[T]) -> type[T]:
-        """The same for a class. Raises ExtensionError also if it is no subclass of ``base``."""
+        """Load the object as a class. Raises ExtensionError also if it is not a subclass of ``base``."""
         found = self.load()
         if not (isinstance(found, type) and issubclass(found, base)):
             raise ExtensionError(f"{self.words} is not a subclass of {base.__module__}.{base.__qualname__}")
@@ -195,12 +195,12 @@ class ExtensionPart:
 
     @property
     def words(self) -> str:
-        """It in a message."""
+        """Name the part as messages do."""
         return f"{self.name!r} of package {self.owner!r} ({self.reference})"
 
 
 class _Told:
-    """What the controller has told this process; None in the controller itself."""
+    """Settings that the controller has sent to this process; None in the controller itself."""
 
     parts: Mapping[str, Mapping[str, ExtensionPart]] | None = None
 

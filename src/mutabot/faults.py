@@ -283,7 +283,7 @@ def why_unknown(name: str) -> str | None:
 
 
 def asked_for(names: Iterable[str]) -> tuple[str, ...]:
-    """These families, each once, in the order of their mutants' numbers.
+    """Return the families, each once, in the order of their mutants' numbers.
 
     Raises UsageError for a name that is none.
     """

@@ -94,7 +94,7 @@ def idle_of(operation: Operation, pattern: Pattern | None, answers: RecordedAnsw
     if told is not None:
         return Idle((told,)).data()
     if not answers.first:
-        raise NoAnswerError(f"no recorded call returned, so nobody knows what it answers; {_HINT}")
+        raise NoAnswerError(f"no recorded call returned, so its answer is not known; {_HINT}")
     texts = {key: json.dumps(_kept(note)) for key, note in answers.first.items()}
     numbers = {text: number for number, text in enumerate(dict.fromkeys(texts.values()))}
     if sum(map(len, numbers)) > LIMIT:

@@ -35,7 +35,7 @@ def tracked(folder: Path, *names: str) -> list[str]:
 
 
 def unignored(folder: Path) -> list[str]:
-    """The files below a folder that git does not track, bar those that it is told to ignore.
+    """List the files below a folder that git neither tracks nor ignores.
 
     Raises GitError.
     """

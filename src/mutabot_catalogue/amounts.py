@@ -143,7 +143,7 @@ class MillisecondForSecond(_OtherUnit):
     of_read = False
     examples = (
         Example.changed(_WAIT, 0.8, 0.0008, "taken-ms"),
-        Example.unchanged(_WAIT, 0.0, "no time is no time", "taken-ms"),
+        Example.unchanged(_WAIT, 0.0, "zero is zero in both units", "taken-ms"),
     )
 
 
@@ -241,7 +241,7 @@ class WrongPayload(_Factor):
         Example.changed(_PAYLOAD, 1.2, 0.0, "none"),
         Example.changed(_PAYLOAD, 1.2, 2.4, "double"),
         Example.unchanged(_PAYLOAD, 4.0, "the robot takes 5 kg at most", "double"),
-        Example.unchanged(_PAYLOAD, 0.0, "there is none to forget", "none"),
+        Example.unchanged(_PAYLOAD, 0.0, "there is no payload to forget", "none"),
     )
 
 

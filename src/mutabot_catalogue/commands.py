@@ -62,7 +62,7 @@ class PreviousTarget(_Timing):
     fault = "the motion of the call before it again"
     examples = (
         Example.whole(MOVE_TO, {"x": 0.4, "y": 0.1}, {"x": 0.2, "y": 0.0}, previous={"x": 0.2, "y": 0.0}),
-        Example.whole(MOVE_TO, 0.4, away="there is none before it"),
+        Example.whole(MOVE_TO, 0.4, away="no call came before it"),
         Example.whole(MOVE_TO, 0.4, previous={"x": 0.4}, away="it went there before"),
     )
 
@@ -72,7 +72,7 @@ class PreviousTarget(_Timing):
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
         before = call.previous()
         if before is None:
-            raise Unchanged("there is none before it")
+            raise Unchanged("no call came before it")
         names = before.keys() & call.values.keys()
         moved = [one for one in context.subject.written if _is_motion(one) and one.name in names]
         if all(one.is_same(before[one.name], call.values[one.name]) for one in moved):
@@ -164,7 +164,7 @@ def _undone(subject: Subject, call: Call) -> Call:
             value = replace(subject, quantity=quantity).given(call.values, quantity.name)
             end = quantity.other_end(value)
             if end is None:
-                raise Unchanged("the value is neither of the two ends")
+                raise Unchanged(f"the value is at neither end of the range or values of {quantity.name}")
             return call.with_value(quantity, end)
     return call.opposite()
 

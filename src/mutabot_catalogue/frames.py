@@ -306,7 +306,7 @@ class _OtherNumbers(ValueOperator):
     def change(self, value: Value, context: Context) -> Value | None:
         quantity = context.quantity
         if quantity.orientation(value) is None:
-            raise Unchanged("its value is no orientation")
+            raise Unchanged("its value is not an orientation")
         numbers = self.numbers([float(part) for part in value], context)
         if quantity.orientation(numbers) is None or quantity.is_same(value, numbers):
             raise Unchanged("it would be the same orientation")
@@ -348,7 +348,7 @@ class QuaternionOrder(_OtherNumbers):
     examples = (
         Example.changed(_ORIENT, [0.8, 0.6, 0.0, 0.0], [0.0, 0.8, 0.6, 0.0]),
         Example.changed(_LOOK, [0.0, 0.0, 0.6, 0.8], [0.0, 0.6, 0.8, 0.0]),
-        Example.unchanged(_ORIENT, [0.5, 0.5, 0.5, 0.5], "all parts are the same, so their order is none"),
+        Example.unchanged(_ORIENT, [0.5, 0.5, 0.5, 0.5], "all parts are equal, so their order has no effect"),
     )
 
     def numbers(self, numbers: list[float], context: Context) -> list[float]:

@@ -1,4 +1,4 @@
-"""What befalls messages, requests and goals on their way, and nodes, services, actions and clocks."""
+"""Faults of messages, requests and goals on their way, and of nodes, services, actions and clocks."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ CallOrReply = TypeVar("CallOrReply", Call, Reply)
 _THIRD, _CHANCE = "every-3rd", "30%"
 _PROBABILITY = 0.3
 _FIRST, _PREVIOUS = "first", "previous"
-_NONE_BEFORE = "there is none before it"
+_NONE_BEFORE = "no call came before it"
 _EARLIER = frozenset({Need.MEMORY, Need.COPIES})
 #: forms that write a message
 _SENT = frozenset({Form.PUBLISH, Form.CALL, Form.GOAL})
@@ -189,7 +189,7 @@ class Reorder(MessageOperator):
 
 
 class _Mishap(MessageOperator):
-    """Makes a fault befall a call, wherever it can.
+    """Applies a fault to a call, wherever it can.
 
     Class attributes:
         call_fault: what befalls it.

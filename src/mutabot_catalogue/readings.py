@@ -76,7 +76,7 @@ class Dropout(CommandOperator):
             return reply.failing(quantity.missing or "")
         nothing = quantity.map_numbers(reply.values[quantity.name], lambda _: math.nan)
         if nothing is None:
-            return reply.as_is("its value is no number")
+            return reply.as_is("its value is not a number")
         return reply.with_value(quantity, nothing)
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
@@ -108,7 +108,7 @@ class OldReading(_ChangedReading):
     variants: ClassVar[Mapping[str, int]] = {"1": 1, "5": 5}
     examples = (
         Example.changed(_MEASURE, 0.2, 0.3, "1", earlier=(0.5, 0.3)),
-        Example.unchanged(_MEASURE, 0.2, "there is none so old yet", "5", earlier=(0.5,)),
+        Example.unchanged(_MEASURE, 0.2, "no reading is that old yet", "5", earlier=(0.5,)),
     )
 
     def least_calls(self, subject: Subject) -> int:
@@ -118,7 +118,7 @@ class OldReading(_ChangedReading):
         context.memory.append(_kept(value))
         old = context.memory.pop(0) if len(context.memory) > context.option else None
         if old is None:
-            raise Unchanged("there is none so old yet")
+            raise Unchanged("no reading is that old yet")
         return old
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
@@ -151,7 +151,7 @@ class StuckReading(_ChangedReading):
 
 
 def _kept(value: Value) -> Value:
-    """A value to be remembered: a copy, which nobody changes afterwards."""
+    """Return a copy of a value, which later changes of the value do not reach."""
     return copy.copy(value) if hasattr(value, "__len__") and not isinstance(value, str | bytes) else value
 
 
@@ -252,7 +252,7 @@ class WrongObject(ValueOperator):
     of_read = False
     examples = (
         Example.changed(_FIND, "washer", "nut", replied={"result": 0.3}),
-        Example.unchanged(_FIND, "screw", "it is not one of the known values"),
+        Example.unchanged(_FIND, "screw", "it is not one of the values that the vocabulary gives"),
     )
 
     def fits(self, quantity: Quantity, whole: Subject) -> bool:

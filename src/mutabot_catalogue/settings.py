@@ -51,8 +51,9 @@ class WrongFrame(_FreeValueOperator):
             return ""
         if context.subject.variant == _UNKNOWN:
             return f"{value}_unknown"
-        if value not in (context.quantity.values or ()):
-            raise Unchanged(f"{value!r} is none of the frames that the vocabulary gives")
+        frames = context.quantity.values or ()
+        if value not in frames:
+            raise Unchanged(f"frame {value!r} is not one of the vocabulary's: {', '.join(map(str, frames))}")
         return context.next_value(value)
 
 
@@ -139,7 +140,9 @@ class WrongName(_Setting):
     examples = (
         Example.changed(calls.SUBSCRIBE, "gap", "gap_misspelt", _MISSPELT, quantity="name"),
         Example.changed(calls.ADVERTISE, "target", "/target", _GLOBAL, quantity="name"),
-        Example.unchanged(calls.CLIENT, "/arm/follow", "its name is a global one", _GLOBAL, quantity="name"),
+        Example.unchanged(
+            calls.CLIENT, "/arm/follow", "its name is global already", _GLOBAL, quantity="name"
+        ),
         Example.unchanged(calls.SUBSCRIBE, "gap", "its node has no namespace", _GLOBAL, quantity="name"),
     )
 
@@ -147,7 +150,7 @@ class WrongName(_Setting):
         if context.subject.variant == _MISSPELT:
             return f"{value}_misspelt"
         if str(value).startswith("/"):
-            raise Unchanged("its name is a global one")
+            raise Unchanged("its name is global already")
         found = "/" + str(value).removeprefix("~").removeprefix("/")
         named = context.subject.operation.named
         if named is not None and named.name == found:
@@ -237,12 +240,12 @@ class WrongDeadline(_Setting):
     examples = (
         Example.changed(calls.SUBSCRIBE, 0.0, 0.001, _TIGHT, quantity="deadline"),
         Example.changed(calls.ADVERTISE, 0.1, 0.0, _NONE, quantity="deadline"),
-        Example.unchanged(calls.ADVERTISE, 0.0, "it has none", _NONE, quantity="deadline"),
+        Example.unchanged(calls.ADVERTISE, 0.0, "it has no deadline", _NONE, quantity="deadline"),
     )
 
     def change(self, value: Value, context: Context) -> Value | None:
         if not value and context.subject.variant == _NONE:
-            raise Unchanged("it has none")
+            raise Unchanged("it has no deadline")
         return context.option
 
 

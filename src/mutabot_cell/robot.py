@@ -116,7 +116,7 @@ class Robot:
         return self.finger_state_of(*self._sensed.tolist())
 
     def finger_state_of(self, length: float, speed: float, force: float) -> tuple[float, float, float]:
-        """The same from what the sensors of the servo read."""
+        """Return the fingers' state from what the sensors of the servo read."""
         return self._closed(length), speed * self._closed.slope(length), force
 
     def tool_pose(self) -> Pose:

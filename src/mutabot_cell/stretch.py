@@ -45,7 +45,7 @@ class Stretch:
         self._reached = 0
 
     def run(self, ticks: int, notes: Sequence[StretchNote]) -> bool:
-        """Step so many ticks from the present state; each of `notes` is called after each tick.
+        """Step this many ticks from the present state; each of `notes` is called after each tick.
 
         Returns:
             Whether all went well: MuJoCo begins anew where its numbers are beyond hope.
@@ -75,7 +75,7 @@ class Stretch:
             self._reached = number
 
     def go_back(self, ticks: int) -> None:
-        """Return to the state that the last run had after so many of its ticks."""
+        """Return to the state that the last run had after this many ticks."""
         mujoco.mj_copyData(self._data, self._model, self._start)
         for number in range(ticks):
             self._step(number)

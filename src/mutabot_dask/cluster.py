@@ -43,7 +43,7 @@ class Cluster(RemoteExecutor):
 
     @property
     def remarks(self) -> list[str]:
-        """What was told of workers that differ, or are of no use; see ``Executor``."""
+        """Messages about workers that differ or cannot be used; see ``Executor``."""
         return list(self._connection.roster.told)
 
     def answers(self, tasks: Iterator[Task]) -> Iterator[Answer | Task]:

@@ -96,7 +96,7 @@ class WorkerSession:
             self._close()
 
     def _close_later(self, seconds: float | None) -> None:
-        """Let what it keeps end after so many seconds; None: not any more."""
+        """End what it keeps after this many seconds; None cancels that."""
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None

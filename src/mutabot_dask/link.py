@@ -233,7 +233,7 @@ def _why_not(settings: ClusterSettings, address: str, error: Exception) -> str:
 
 
 def _be_quiet() -> None:
-    """What Dask would log is told in our own words."""
+    """Silence Dask's log: mutabot reports the same events itself."""
     for name in (
         "distributed",
         *(name for name in logging.root.manager.loggerDict if name.startswith(("distributed.", "tornado"))),

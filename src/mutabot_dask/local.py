@@ -69,7 +69,7 @@ class LocalCluster:
         self._workers: subprocess.Popen[bytes] | None = None
 
     def start(self) -> str:
-        """Start all anew; returns the scheduler's address. Raises UsageError."""
+        """Start scheduler and workers, and return the scheduler's address. Raises UsageError."""
         self.close()
         file = self._folder / "scheduler.json"
         file.unlink(missing_ok=True)
@@ -137,7 +137,7 @@ def address_in(file: Path) -> str:
         return str(json.loads(file.read_text(encoding="utf-8"))["address"])
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise UsageError(
-            f"{file} is no scheduler file: `dask scheduler --scheduler-file {file}` writes one"
+            f"{file} is not a scheduler file: `dask scheduler --scheduler-file {file}` writes one"
         ) from error
 
 

@@ -1,4 +1,4 @@
-"""What arguments and results mean, from their names, docstrings and values: told, or asked.
+"""The meaning of arguments and results, from names, docstrings and values: a line or a question.
 
 The verb of the callable decides first: the argument of ``set_speed(x)`` is a speed, that of ``move_up(x)``
 a distance along z. A guess with questions becomes a comment in the draft.

@@ -92,7 +92,7 @@ class MessageEntry:
 
     @property
     def has_meaning(self) -> bool:
-        """Whether anything is told of what passes."""
+        """Whether the draft gives a meaning to any part of the message."""
         return any(part.guess is not None for part in self.parts)
 
 

@@ -66,7 +66,7 @@ class Proposal:
 
     @property
     def target(self) -> str:
-        """As vocabularies name it."""
+        """Return the callable's name as vocabularies write it."""
         return self.call.target
 
     @property

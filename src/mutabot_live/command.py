@@ -151,7 +151,7 @@ class _FeedProgress:
         self._feed.note(legible(text))
 
     def end(self, how: str) -> None:
-        """It has ended."""
+        """Note that the campaign has ended."""
         self.ended = legible(how)
         self.steps += 1
         self.pages.look_at_once()

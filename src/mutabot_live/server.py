@@ -40,7 +40,7 @@ _MOST = 32
 
 @dataclass(frozen=True, slots=True)
 class LiveEvent:
-    """Something that browsers are told.
+    """An event that is sent to browsers.
 
     Attributes:
         number: later events have higher ones.
@@ -78,7 +78,7 @@ class LiveFeed:
             self._changed.notify_all()
 
     def close(self) -> None:
-        """Nothing more will come."""
+        """Close the feed: no further events are sent."""
         with self._changed:
             self._is_closed = True
             self._changed.notify_all()
@@ -172,7 +172,7 @@ class Server:
         self._thread.start()
 
     def close(self) -> None:
-        """No more requests; streams end with their feed."""
+        """Stop taking requests; streams end with their feed."""
         self._server.shutdown()
         self._thread.join()
         self._server.server_close()
@@ -349,7 +349,7 @@ class _PageHandler(BaseHTTPRequestHandler):
         return bool(poll.poll(0))
 
     def log_message(self, format: str, *args: Any) -> None:
-        """Nothing: the terminal belongs to the campaign, and the address to nobody else."""
+        """Log nothing, since the terminal belongs to the campaign and the address is secret."""
 
 
 def _bytes(event: LiveEvent) -> bytes:

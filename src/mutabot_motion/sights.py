@@ -87,7 +87,7 @@ def check(file: Path, *suffixes: str) -> None:
     if not os.access(file.parent, os.W_OK):
         raise UsageError(f"{cannot}: the folder {file.parent} is read-only")
     if file.exists() and not _begins(file, magic, at):
-        raise UsageError(f"{cannot}: there is another file of that name, which is no {what}")
+        raise UsageError(f"{cannot}: a file of that name exists and is not a {what}")
 
 
 def _begins(file: Path, magic: bytes, at: int) -> bool:

@@ -40,7 +40,7 @@ if os.getppid() == int(sys.argv[1]):
 
 
 class MasterError(MutabotError):
-    """No master came up."""
+    """Raised if no master could be started."""
 
 
 @dataclass(frozen=True, slots=True)

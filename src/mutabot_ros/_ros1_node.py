@@ -91,7 +91,7 @@ def where(
     lost: Callable[[], Awaitable[Any]] | None = None,
     cancel: Callable[[Any], Awaitable[None]] | None = None,
 ) -> Where:
-    """Where a call is, and what can befall it."""
+    """Return the site of a call and the faults that can act on it."""
     return Where(code, name(), MiddlewareControls(_sleep, _later, lost, cancel, clock.jump, _later))
 
 

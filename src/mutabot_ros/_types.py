@@ -155,7 +155,7 @@ class Types(ABC):
             if step.attribute is None:
                 item = self.array.fullmatch(kind or "")
                 if item is None:
-                    yield Finding(key, f"{kind} is no array, so it has no {step}")
+                    yield Finding(key, f"{kind} is not an array, so it has no {step}")
                     return
                 kind = kind if step.bounds is not None else item["item"]
             elif step.attribute in fields:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 _NO_MUTANTS = "no mutants of the text of {}"
-_NO_PYTHON = "it is no Python, the only language that has operators on its text"
+_NO_PYTHON = "it is not Python, the only language that has operators on its text"
 
 
 class SourceFaults(FaultProvider):

@@ -116,7 +116,7 @@ class Quiet:
         self.progress.advance(line)
 
     def note(self, text: str) -> None:
-        """Nothing is told: the campaign itself has told it."""
+        """Print nothing: the campaign itself has printed the note."""
 
 
 def suggest(

@@ -258,7 +258,7 @@ def test_the_file_is_applied_to_the_last_campaign_without_a_run(
         (["1"], "say why"),
         (["--why", "x"], "needs a mutant"),
         (["99", "--why", "x"], "there is no mutant 99"),
-        (["reverse", "--why", "x"], "is no survivor (killed)"),
+        (["reverse", "--why", "x"], "is not a survivor (killed)"),
     ],
 )
 def test_what_cannot_be_accepted_is_refused_and_nothing_is_written(
@@ -277,5 +277,5 @@ def test_a_file_with_a_mistake_is_not_added_to(
     run_campaign(request_for(project, only=(FIRST,)), Quiet())
     accept(project, "[[accept")
     assert run(project, "accept", FIRST, "--why", "x") == ExitCode.USAGE
-    assert capsys.readouterr().err.startswith(f"mutabot: {FILE}:1: is no valid TOML")
+    assert capsys.readouterr().err.startswith(f"mutabot: {FILE}:1: is not valid TOML")
     assert (project / FILE).read_text(encoding="utf-8") == "[[accept"

@@ -232,7 +232,7 @@ def test_a_key_of_the_configuration_can_be_set_for_one_command(fake: Campaign) -
         ("rounds", "-o rounds: write KEY=VALUE"),
         ("=3", "-o =3: write KEY=VALUE"),
         ("a.b.c=1", "write KEY=VALUE"),
-        ("when=onc", "'onc' is no moment"),
+        ("when=onc", "'onc' is not a moment"),
         pytest.param("cluster.cacert=x", "unknown key 'cacert'", marks=pytest.mark.needs("dask")),
         ("program=nowhere.py", "there is no 'nowhere.py'"),
         ("order=2", "the key 'order' is gone: a mutant is one fault"),
@@ -312,7 +312,7 @@ def test_survivors_end_a_run_with_1_if_that_is_asked_for(
     [
         (["--format", "xml"], "known: jsonl, lines"),
         (["--format", "lines", "--json"], "only one of them"),
-        (["--fail-on", "surv"], "none of survivors, untested"),
+        (["--fail-on", "surv"], "not one of survivors, untested"),
     ],
 )
 def test_a_wrong_format_or_limit_is_told_before_anything_is_run(

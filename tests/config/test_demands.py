@@ -49,7 +49,7 @@ def test_a_plain_number_has_no_unit(tmp_path: Path, notice: str) -> None:
         ('site = "a.py:1"', "the key 'notice' is missing"),
         ('notice = "5 mn"', "unknown unit 'mn'; did you mean 'm"),
         ('notice = "5 millimeters"', "did you mean 'mm'"),
-        ('notice = "five mm"', "'five mm' is no magnitude; write a number and a unit, like '5 mm'"),
+        ('notice = "five mm"', "'five mm' is not a magnitude; write a number and a unit, like '5 mm'"),
         ('notice = "-5 mm"', "a magnitude is more than 0; both directions are meant"),
         ('notice = "5 mm"\nquantitty = "y"', "unknown key 'quantitty'; did you mean 'quantity'?"),
         ('notice = "5 mm"\nkind = "translaton"', "unknown kind 'translaton'; did you mean 'translation'?"),

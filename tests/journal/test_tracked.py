@@ -247,5 +247,5 @@ def test_where_git_cannot_tell_a_journal_is_not_believed(
     (tmp_path / ".mutabot").mkdir()
     (tmp_path / ".mutabot" / "journal.sqlite").touch()
     monkeypatch.setenv("PATH", os.fspath(tmp_path / "nothing"))
-    with pytest.raises(JournalError, match=r"nobody can tell whether .* git cannot be started"):
+    with pytest.raises(JournalError, match=r"it is not known whether .* git cannot be started"):
         refuse_tracked(tmp_path / ".mutabot" / "journal.sqlite")

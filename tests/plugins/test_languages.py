@@ -166,4 +166,4 @@ def test_its_text_has_mutants_of_the_package(engine: str, project: Path, tmp_pat
 def test_that_python_has_no_mutants_of_its_text_is_told(project: Path, tmp_path: Path) -> None:
     site = write(tmp_path / "site", PACKAGE)
     done = mutabot(site, project, "list", "-o", "families=['conventional']")
-    assert "no mutants of the text of mission.STEPS: it is no Python" in done.stderr
+    assert "no mutants of the text of mission.STEPS: it is not Python" in done.stderr

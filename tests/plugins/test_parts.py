@@ -233,7 +233,7 @@ def test_help_tells_of_packages_and_imports_none_of_them(site: Path) -> None:
     ("old", "new", "told"),
     [
         ('"play"', '"show"', "'show' of package 'toy-package' has the name of one of 'mutabot' (commands)"),
-        ("parts:play", "parts:NOTHING", "'play' of package 'toy-package' (toy.parts:NOTHING) is no function"),
+        ("parts:play", "parts:NOTHING", "of package 'toy-package' (toy.parts:NOTHING) is not a function"),
         ("parts:play", "parts:ply", "'play' of package 'toy-package' (toy.parts:ply) cannot be loaded"),
         ("interface=2", "interface=3", "was written for version 3 of the extension interface"),
     ],
@@ -258,7 +258,7 @@ def test_a_package_that_does_not_fit_is_named(old: str, new: str, told: str, tmp
         ("parts:ToyTable", "parts:Choice", ["list"], "is not a subclass of mutabot.config.table.Table"),
         ('tables={"toy"', 'tables={"seed"', ["list"], "has the name of one of 'mutabot' (tables)"),
         ('"toys"', '"csv"', ["report", "--format", "pages"], "has the name of one of 'mutabot' (formats)"),
-        ("parts:toys", "parts:NOTHING", ["report", "--format", "toys"], "(toy.parts:NOTHING) is no function"),
+        ("parts:toys", "parts:NOTHING", ["report", "--format", "toys"], "NOTHING) is not a function"),
     ],
 )
 def test_a_part_that_is_not_what_it_should_be_is_named(

@@ -126,7 +126,7 @@ def test_patches_of_several_files_are_judged_and_the_users_files_stay(tmp_path: 
         "late": ("killed", "tests/test_move.py::test_slow"),
         "outside": ("error", "tests/test_move.py::test_slow"),
     }
-    assert "../elsewhere.py cannot be changed: it is no file of the project" in found["outside"]["message"]
+    assert "../elsewhere.py cannot be changed: it is not a file of the project" in found["outside"]["message"]
     assert {file: file.read_bytes() for file in before} == before
     assert not (tmp_path / "elsewhere.py").exists()
     assert "4 mutants that are active before any point at which they could be forked" in done.stderr

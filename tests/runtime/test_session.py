@@ -217,14 +217,14 @@ def test_simulated_time_is_read_or_counted_in_fixed_steps(make_stage: Make, cloc
 @pytest.mark.parametrize(
     ("clock", "words"),
     [
-        ('{ tick = "robot:Simulation.odd" }', ["what", "Simulation.odd returns gives None", "no number"]),
+        ('{ tick = "robot:Simulation.odd" }', ["what", "Simulation.odd returns gives None", "not a number"]),
         ('{ tick = "robot:Simulation.tick", time = ".time" }', ["float has no .time"]),
         ('{ tick = "robot:Simulation.tick", time = "self.tme" }', ["no .tme", "'.time'"]),
-        ('{ tick = "robot:Simulation.tick", time = "self" }', ["the path 'self' gives", "no number"]),
+        ('{ tick = "robot:Simulation.tick", time = "self" }', ["the path 'self' gives", "not a number"]),
         ('{ tick = "robot:Simulation.odd", time = "state.t" }', ["NoneType has no .t"]),
         ('{ tick = "robot:Simulation.odd", time = "stat.t" }', ["no argument 'stat'", "it has state"]),
-        ('{ tick = "robot:plain", time = "self.t" }', ["no method", "no self"]),
-        ('{ tick = "robot:nan" }', ["gives nan, which is no number"]),
+        ('{ tick = "robot:plain", time = "self.t" }', ["not a method", "no self"]),
+        ('{ tick = "robot:nan" }', ["gives nan, which is not a number"]),
     ],
 )
 def test_a_clock_that_gives_no_number_is_a_problem_and_leaves_the_program_alone(
@@ -263,7 +263,7 @@ def test_an_operator_that_fails_is_a_failure_of_the_tool_not_of_the_program(make
     ("name", "words"),
     [
         ("robot:Refusd", "Refusd"),
-        ("robot:move", "no exception class"),
+        ("robot:move", "not an exception class"),
         ("no_such_robot:Refused", "no_such_robot"),
     ],
 )

@@ -92,7 +92,7 @@ def test_what_is_left_out_under_a_name_is_about_the_operation_that_it_tells() ->
     nothing = {
         "id": f"{site}:deadline:wrong-deadline=none",
         "description": "advertise /wait: deadline 0 s → 0 s",
-        "reason": "would change nothing in the call: it has none",
+        "reason": "would change nothing in the call: it has no deadline",
     }
     for mutants in ([publish, advertise], [advertise, publish], [publish]):
         (found,) = left_out({"mutants": mutants, "left_out": [nothing]})

@@ -1,4 +1,4 @@
-"""A campaign under way: what is asked, what is known of the original, who runs tasks, and who is told.
+"""A campaign under way: the request, the baseline, the executor and the progress display.
 
 It is made once the baseline is taken, and all that give mutants their outcomes work on it.
 """
@@ -71,7 +71,7 @@ class Campaign:
 
     @property
     def whole(self) -> Campaign:
-        """The same, in which every mutant is run with the whole suite."""
+        """Return a copy of the campaign that runs every mutant with the whole suite."""
         return replace(self, is_short=False)
 
     def reaching(self, mutants: Iterable[Mutant], round: int) -> dict[str, tuple[int, ...]]:
@@ -134,7 +134,7 @@ class Campaign:
         return found
 
     def _limit(self, wall: float, processor: float) -> Limit:
-        """The limit of what took so many seconds on the original."""
+        """Return the time limit for a run that took this long on the original."""
         factor, least = self._factor, self.request.configuration.timeout_seconds
         if least is None:
             return Limit(max(WAITING, factor * wall), self._spare + factor * processor)

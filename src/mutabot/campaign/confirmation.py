@@ -104,7 +104,7 @@ def confirm(
 def _affordable(
     campaign: Campaign, mutants: Mapping[str, Mutant], left: Iterable[Outcome], seconds: float
 ) -> Iterator[Outcome]:
-    """The first of these that take so many seconds with the whole suite, and one at least."""
+    """Return the first mutants whose runs with the whole suite fit into the time; at least one."""
     baseline = campaign.baseline
     rounds: set[int] = set()
     for number, one in enumerate(left):

@@ -125,7 +125,7 @@ def is_folder_of_project(folder: Path) -> bool:
 
 
 def is_name_of_project(name: str) -> bool:
-    """The same by the name of the folder alone."""
+    """Whether a file or folder may be the project's, by its name alone."""
     return not (name.startswith(".") or name in _FOLDERS or name.endswith(UNREAD))
 
 

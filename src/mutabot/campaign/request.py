@@ -250,7 +250,7 @@ class Progress(Protocol):
     """Told what a campaign is doing."""
 
     def stage(self, text: str, total: int | None = None) -> None:
-        """A new stage begins, of so many steps if that is known."""
+        """Begin a new stage, with its number of steps if that is known."""
 
     def mutant_ended(self, end: MutantEnd) -> None:
         """A mutant has ended in a round, or an earlier campaign has found how. This is no step of a stage."""

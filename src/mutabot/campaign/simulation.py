@@ -81,7 +81,7 @@ def with_simulation(request: Request, name: str) -> Request:
 
 
 def _over(simulation: SimulatedMiddleware, request: Request) -> Request | None:
-    """The same request over a simulation; None if the project has no use for it."""
+    """Return the request over a simulation; None if the project does not use it."""
     configuration, vocabulary = request.configuration, request.vocabulary
     arguments = simulation.arguments(request.root, request.arguments, configuration.tables)
     if arguments is None:

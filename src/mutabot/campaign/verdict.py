@@ -307,7 +307,7 @@ def _ruling(run: Run, usual: int) -> Ruling:
 
 
 def _ruling_on_end(run: Run, refused: TestEnd | None, usual: int, *, acted: bool) -> Ruling:
-    """No test decided: what the end of the process says."""
+    """Return the verdict by the end of the process, if no test decided."""
     acted = acted or run.has_acted
     if run.death is not None:
         return _ruling_on_death(run.death, acted)
@@ -356,7 +356,7 @@ def _ruling_on_death(death: Death, acted: bool) -> Ruling:
 
 
 def _ruling_on_exit(code: int | None, usual: int, acted: bool) -> Ruling:
-    """No test failed, and yet the suite ended otherwise: its hooks saw to that."""
+    """Return the verdict if the suite's exit status differs though no test failed, as hooks can cause."""
     text = f"the suite ends with exit code {code} instead of {usual}"
     if code in _OF_NO_TEST:
         return Verdict.ERROR, None, f"{text} ({_OF_NO_TEST[code]})"

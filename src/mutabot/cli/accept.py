@@ -74,7 +74,7 @@ def _refuse_others(chosen: Sequence[MutantResult]) -> None:
         elif one.mutant.has_sizes:
             wrong.append(f"{name} is a magnitude of a graded fault, which is in no score: nothing to accept")
         elif not one.is_survivor:
-            wrong.append(f"{name} is no survivor ({state_of(one)}): only survivors can be accepted")
+            wrong.append(f"{name} is not a survivor ({state_of(one)}): only survivors can be accepted")
     if wrong:
         raise SelectionError("\n".join(wrong))
 

@@ -26,7 +26,7 @@ def _print_version(wanted: bool) -> None:
 
 def _number(value: float | None) -> float | None:
     if value is not None and math.isnan(value):
-        raise typer.BadParameter("nan is no number")
+        raise typer.BadParameter("nan is not a number")
     return value
 
 
@@ -83,7 +83,7 @@ _FAIL_ON = f"Exit with 1 if there is any: {', '.join(WANTED_NONE)}. Repeatable."
 def _known_names(values: list[str] | None) -> list[str] | None:
     for value in values or ():
         if value not in WANTED_NONE:
-            raise typer.BadParameter(f"{value!r} is none of {', '.join(WANTED_NONE)}")
+            raise typer.BadParameter(f"{value!r} is not one of {', '.join(WANTED_NONE)}")
     return values
 
 

@@ -48,7 +48,9 @@ def _amount(value: Any, *, least: int, example: str) -> Any:
         try:
             value = int(_BYTES.validate_python(value if value.strip(" .0123456789") else ""))
         except (pydantic.ValidationError, OverflowError):
-            raise ValueError(f"{shortened(value)!r} is no number of bytes; write it like {example}") from None
+            raise ValueError(
+                f"{shortened(value)!r} is not a number of bytes; write it like {example}"
+            ) from None
     if isinstance(value, int) and not isinstance(value, bool) and value < least:
         raise ValueError(f"{value} bytes are too little; write it like {example}")
     return value
@@ -378,15 +380,15 @@ class _Paths:
         """Return a path in the project. Raises ValueError for any other."""
         path = PurePosixPath(name)
         if not name.strip():
-            raise ValueError("is an empty path")
+            raise ValueError("is an empty path; name a file or folder of the project")
         if len(name) > _LONGEST_PATH or any(len(os.fsencode(part)) > _LONGEST_NAME for part in path.parts):
             raise ValueError(f"{shortened(name)!r} is too long for a path")
         if "\0" in name:
-            raise ValueError(f"{name!r} is no path")
+            raise ValueError(f"{name!r} is not a path: it holds a NUL character")
         if path.is_absolute() or name.startswith("~"):
             raise ValueError(f"{name!r} must be relative to the project's folder")
         if ".." in path.parts or not (self.root / path).resolve().is_relative_to(self.root):
-            raise ValueError(f"{name!r} leads out of the project's folder")
+            raise ValueError(f"{name!r} leads out of the project's folder; only what lies in it can be named")
         return name
 
     def _existing(self, name: str) -> str:
@@ -406,7 +408,7 @@ class _Paths:
         try:
             found = [match.relative_to(self.root) for match in self.root.glob(name)]
         except (ValueError, NotImplementedError) as error:
-            raise ValueError(f"{name!r} is no pattern of paths: {error}") from None
+            raise ValueError(f"{name!r} is not a pattern of paths: {error}") from None
         found = [path for path in found if not only_sources or _is_source(self.root, path)]
         if not found:
             raise ValueError(f"{name!r} matches {'no Python file or folder' if only_sources else 'nothing'}")

@@ -129,12 +129,12 @@ def _reason(error: Exception, text: str) -> tuple[str, int | None]:
 def _syntax(message: str, text: str) -> tuple[str, int]:
     match = _AT_LINE.search(message)
     if match is None:  # "(at end of document)"
-        return f"is no valid TOML: {message}", text.rstrip().count("\n") + 1
+        return f"is not valid TOML: {message}", text.rstrip().count("\n") + 1
     line, column = int(match[1]), int(match[2])
     hint = ""
     if message.startswith("Invalid initial character for a key") and column > len(text.split("\n")[line - 1]):
         hint = "; a table in braces { … } must stand on one line"
-    return f"is no valid TOML: {message[: match.start()]} at column {column}{hint}", line
+    return f"is not valid TOML: {message[: match.start()]} at column {column}{hint}", line
 
 
 def _child(node: Any, part: str | int) -> Any:

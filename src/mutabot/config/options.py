@@ -90,7 +90,7 @@ class Sample:
         if count is not None and int(plain) > 0:
             return cls(plain, count=int(plain))
         raise UsageError(
-            f"{shortened(text)!r} is no size of a sample; write a share of at most 100 %, such as 10%, or a "
+            f"{shortened(text)!r} is not a sample size; write a share of at most 100 %, such as 10%, or a "
             "number such as 50"
         )
 

@@ -1,4 +1,4 @@
-"""What the world did while a test ran: told by a simulator in a few lines, kept for reports.
+"""What the world did while a test ran: reported by a simulator, recorded for reports.
 
     from mutabot.api.processes import Feed
 

@@ -1,4 +1,4 @@
-"""The first call that a mutant's test makes otherwise than the original's, in words."""
+"""The first call in which a mutant's test differs from the original's."""
 
 from __future__ import annotations
 

@@ -135,7 +135,7 @@ class Feed:
             now = float(self._time())
             if isfinite(now):
                 return now
-            tape.problem(f"the simulated time cannot be read: {now} is no time")
+            tape.problem(f"the simulated time cannot be read: {now} is not a time")
         return None
 
     def _tick(self, tape: Tape) -> None:

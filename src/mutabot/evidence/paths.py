@@ -155,7 +155,7 @@ class TrackPath:
 
     @cached_property
     def outline(self) -> list[Point]:
-        """The same with fewer points, to half of the tolerance."""
+        """Return the path with fewer points, to half of the tolerance."""
         return simple(self.points, LENGTH / 2)
 
     def at(self, time: float) -> int:

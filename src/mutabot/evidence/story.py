@@ -195,7 +195,7 @@ class _ComparedRuns:
     def _release(
         self, thing: str, usual: RecordedContacts, contacts: RecordedContacts, measured: Sequence[Measurement]
     ) -> str:
-        """How a thing was let go, if that was otherwise than in the original; else empty."""
+        """Describe how a thing was released, if that differs from the original; else empty."""
         before, after = self.usual.get((RELEASE, thing)), self.facts.get((RELEASE, thing))
         if after is None:
             return self._not_landed(thing, usual, contacts)

@@ -203,7 +203,7 @@ def begin(film: PictureWriter | None = None) -> Tape:
 
 
 def stop() -> Tape | None:
-    """Nothing is recorded from now on. Returns what was."""
+    """Stop recording, and return the recording."""
     global _tape  # see above
     found, _tape = _tape, None
     return found

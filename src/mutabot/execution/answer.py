@@ -163,9 +163,9 @@ def _check_numbers(value: Any) -> None:
             if is_dataclass(one):
                 _check_numbers(one)
         if is_own and any(abs(number) > _MOST for number in _integers(item)):
-            raise ValueError(f"{name}: {item!r} is no count")
+            raise ValueError(f"{name}: {item!r} is not a count")
         if name in _MEASURED and not 0 <= item < math.inf:
-            raise ValueError(f"{name}: {item} is no time")
+            raise ValueError(f"{name}: {item} is not a time")
 
 
 def _integers(item: Any) -> Iterator[int]:
@@ -193,11 +193,11 @@ def check_fit(found: Iterable[Event], job: Job) -> None:
         for mutant in _mutants(event):
             is_test_control = isinstance(event, events.ForkTestEnd) and event.is_test_control
             if mutant not in mutants and not is_test_control:
-                raise ValueError(f"{mutant[:_SHOWN_NAME]!r} is no mutant of this task")
+                raise ValueError(f"{mutant[:_SHOWN_NAME]!r} is not a mutant of this task")
         makes_tests = job.mutant is not None or isinstance(event, events.ForkTestEnd | events.ForkDied)
         for test in _tests(event):
             if job.tests is not None and test not in job.tests and not makes_tests:
-                raise ValueError(f"{test[:_SHOWN_NAME]!r} is no test of this task")
+                raise ValueError(f"{test[:_SHOWN_NAME]!r} is not a test of this task")
         for seen in _sites(event):
             _check_file(seen.span.file)
         if isinstance(event, events.SiteSeen):
@@ -242,26 +242,26 @@ def _sites(event: Event) -> Iterator[events.SiteSeen]:
 def _check_file(name: str) -> None:
     """Files of the project are read to name the places in them."""
     if PurePosixPath(name).is_absolute() or ".." in PurePosixPath(name).parts or "\0" in name:
-        raise ValueError(f"{name[:_SHOWN_NAME]!r} is no file of the project")
+        raise ValueError(f"{name[:_SHOWN_NAME]!r} is not a file of the project")
 
 
 def _check_end(end: events.TestEnd, sites: set[int]) -> None:
     """What a test ended like, as far as its fields are of no fixed type."""
     if end.outcome not in _OUTCOMES:
-        raise ValueError(f"{end.outcome[:_SHOWN_NAME]!r} is no outcome of a test")
+        raise ValueError(f"{end.outcome[:_SHOWN_NAME]!r} is not an outcome of a test")
     if end.example is not None and len(end.example) != 2:
         raise ValueError("an example is a pair")
     if not 0 <= end.prepared <= len(end.returned):
         raise ValueError("more was prepared than was returned")
     for row in end.trace:
         if not isinstance(row, list) or len(row) != 4 or type(row[0]) is not int or row[0] not in sites:
-            raise ValueError("a call in a trace is none that was seen")
+            raise ValueError("a call in a trace was never seen")
     for row in end.moments:
         if not (isinstance(row, list) and len(row) == 3 and type(row[0]) is int and isinstance(row[1], dict)):
-            raise ValueError("a moment is none of a test")
+            raise ValueError("a moment belongs to no test")
     for row in end.returned:
         if not (isinstance(row, list) and len(row) == 2 and isinstance(row[0], str) and _is_returned(row[1])):
-            raise ValueError("what a function returned is no value")
+            raise ValueError("a returned value is not a value of the protocol")
     if end.recording is not None:
         _check_recording(end.recording)
 

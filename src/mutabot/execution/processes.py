@@ -295,7 +295,7 @@ class Copy:
         return self._server.wait_for(self.pid)
 
     def release(self) -> None:
-        """Nothing is held of it."""
+        """Do nothing: no resource is held."""
 
 
 class ForkServerProcess:

@@ -174,7 +174,7 @@ def _tracked_at(path: Path, journal: Path) -> list[str]:
     try:
         return tracked(folder, *names)
     except GitError as error:
-        why = f"nobody can tell whether {journal} came with the repository; then it is not used: {error}"
+        why = f"it is not known whether {journal} came with the repository; then it is not used: {error}"
         raise JournalError(why) from error
 
 

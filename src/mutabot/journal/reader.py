@@ -166,7 +166,7 @@ class JournalReader:
         return self._kept_in("kept", "1")
 
     def found(self) -> dict[tuple[str, int], Kept]:
-        """The same, with those that the last campaign itself found or knew."""
+        """Return the kept outcomes and those that the last campaign itself found or knew."""
         return self.kept() | self._kept_in("outcome", f"rowid IN ({LAST})")
 
     def row(self, mutant: str, round: int) -> Kept | None:

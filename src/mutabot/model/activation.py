@@ -75,7 +75,7 @@ class Activation:
 
     @staticmethod
     def at_time(seconds: float) -> Key:
-        """Return the key of the first tick in a test by which so many simulated seconds have passed.
+        """Return the key of the first tick of a test at or after this simulated time, in seconds.
 
         The tick is one of the vocabulary's clock; a test's time begins with its first one.
         """

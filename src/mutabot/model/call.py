@@ -47,8 +47,8 @@ def _nobody(why: str) -> Callable[..., Any]:
 _NO_READING = _nobody("no reading tells where the robot is now")
 _NO_CLOCK = _nobody("nothing tells the time of the simulation")
 _NO_WAIT = _nobody("nothing lets the program's time pass")
-_NO_PREVIOUS = _nobody("nobody knows what the call before this one was told")
-NO_DEFER = _nobody("nobody makes calls later")
+_NO_PREVIOUS = _nobody("the arguments of the call before this one are not known")
+NO_DEFER = _nobody("nothing here can make a call later")
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +77,7 @@ class Reply:
     error: str = ""
 
     def with_value(self, quantity: Quantity, value: Value) -> Reply:
-        """The same reply with another value for one quantity."""
+        """Return a copy of the reply with another value for one quantity."""
         return replace(self, values={**self.values, quantity.name: value})
 
     def as_is(self, why: str) -> Reply:
@@ -85,19 +85,19 @@ class Reply:
         return replace(self, away=why)
 
     def later(self, seconds: float) -> Reply:
-        """The same reply, so much later."""
+        """Return a copy of the reply that comes later by this time."""
         return replace(self, late=self.late + seconds)
 
     def never(self) -> Reply:
-        """The same reply, of which the program never hears."""
+        """Return a copy of the reply that never reaches the program."""
         return replace(self, lost=True)
 
     def failing(self, error: str) -> Reply:
-        """The same reply, in whose stead the program gets this exception (``module:Name``)."""
+        """Return a copy of the reply that raises this exception in the program (``module:Name``)."""
         return replace(self, error=error)
 
     def followed_by(self, *others: Reply) -> Reply:
-        """The same reply, and then these."""
+        """Return a copy of the reply that is followed by these."""
         return replace(self, more=(*self.more, *others))
 
     @property
@@ -166,11 +166,11 @@ class Call:
     def idle_reply(self) -> Reply:
         """What the command answers while the robot does nothing. Raises LookupError if that is not known."""
         if self.idle is None:
-            raise LookupError(f"nobody knows what {self.operation.name} answers to doing nothing")
+            raise LookupError(f"no answer is known for leaving out {self.operation.name}; give one by `idle`")
         return self.idle
 
     def with_value(self, quantity: Quantity, value: Value) -> Call:
-        """The same call with another value for one quantity."""
+        """Return a copy of the call with another value for one quantity."""
         return replace(self, values={**self.values, quantity.name: value})
 
     def with_call_fault(self, call_fault: CallFault, seconds: float = 0.0) -> Call:
@@ -178,7 +178,7 @@ class Call:
         return replace(self, call_faults={**self.call_faults, call_fault: seconds})
 
     def as_is(self, why: str) -> Call:
-        """The same call, with the reason why the operator leaves it alone."""
+        """Return a copy of the call, with the reason why the operator leaves it alone."""
         return replace(self, away=why)
 
     def opposite(self) -> Call:

@@ -37,7 +37,7 @@ class Limit:
     processor: float | None = None
 
     def with_more(self, wall: float, processor: float) -> Limit:
-        """Return the same with so many seconds more."""
+        """Return a deadline that is later by this many seconds."""
         return Limit(self.wall + wall, None if self.processor is None else self.processor + processor)
 
     @property

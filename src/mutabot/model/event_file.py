@@ -51,7 +51,7 @@ def unsealed(line: bytes, name: str, key: str) -> tuple[int, Event]:
 
 
 def seal(text: bytes, number: int, name: str, key: str) -> bytes:
-    """What stands before an event, given as JSON."""
+    """Return the digest that is written before an event, which is given as JSON."""
     sealing = blake2b(f"{name} {number} ".encode(), key=key.encode(), digest_size=_DIGITS // 2)
     sealing.update(text)
     return sealing.hexdigest().encode()

@@ -84,13 +84,13 @@ class Moment:
                 raise ValueError(f"{text!r} ends before it begins")
             return moment
         raise ValueError(
-            f'{shortened(text)!r} is no moment; write "every", the number of a call ("3"), "from 3", "once", '
-            'or a window of simulated time ("2-2.5 s")'
+            f'{shortened(text)!r} is not a moment; write "every", the number of a call ("3"), "from 3", '
+            '"once", or a window of simulated time ("2-2.5 s")'
         )
 
     @classmethod
     def parse_any(cls, text: str) -> Moment | None:
-        """The same, with None for every call."""
+        """Parse a moment; None means every call."""
         return None if text.strip() == EVERY else cls.parse(text)
 
     @property
@@ -109,7 +109,7 @@ class Moment:
         return self.when is When.BETWEEN
 
     def drawn(self, round: int, test: str, seed: int) -> Moment:
-        """The same moment in a test: a call that is to be drawn is drawn, from ``seed`` alone.
+        """Return the moment for a test: a call that is to be drawn is drawn, from ``seed`` alone.
 
         A test in which the baseline made no such call has none.
         """
@@ -300,7 +300,7 @@ class Place:
 
     @property
     def key(self) -> str:
-        """The same place in words, equal between processes."""
+        """Return a text for the place that is equal in all processes."""
         span = self.site.span
         columns = f"{span.line}:{span.column}-{span.end_line}:{span.end_column}"
         return f"{span.file}:{columns} {self.operation} {self.pattern or ''}".rstrip()
@@ -520,7 +520,7 @@ class Instrumentation:
     record: bool = False
 
     def only(self, places: Collection[int]) -> Instrumentation:
-        """The same with these places alone, by their numbers."""
+        """Return a copy with these places only, given by number."""
         texts = (
             replace(text, places=tuple(place for place in text.places if place.number in places))
             for text in self.texts

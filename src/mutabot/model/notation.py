@@ -125,7 +125,7 @@ def _field(text: str, name: str, spec: str) -> Field:
             format(sample, spec) for sample in {"d": (1, 12345), "g": (1.0, 12345.0), "s": ("a",)}[field.kind]
         ]
     except ValueError as error:
-        raise ValueError(f"notation {text!r}: {{{name}:{spec}}} is no format ({error})") from None
+        raise ValueError(f"notation {text!r}: {{{name}:{spec}}} is not a format ({error})") from None
     if field.kind != "s" and not all(re.fullmatch(field.expression, sample) for sample in samples):
         raise ValueError(
             f"notation {text!r}: {samples[-1]!r}, as {{{name}:{spec}}} prints it, cannot be read back"

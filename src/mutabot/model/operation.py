@@ -184,7 +184,7 @@ class Case:
 
 @frozen(refuses=True)
 class Pattern:
-    """One command of an operation that carries several, told apart by a text, an argument's value, or both.
+    """One of several commands of an operation, identified by a text, an argument's value, or both.
 
     Attributes:
         text: the notation of the text, such as ``lift/{height:g}``, together with the cases.
@@ -298,7 +298,7 @@ class Operation:
         return self.named.form if self.named is not None else None
 
     def by_numbers(self) -> Operation:
-        """The same operation, with values compared as numbers: a mock gets the call, and no robot."""
+        """Return the operation with values compared as numbers, for a mock in place of the robot."""
 
         def compared(arguments: tuple[Quantity, ...]) -> tuple[Quantity, ...]:
             return tuple(

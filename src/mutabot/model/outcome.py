@@ -431,7 +431,7 @@ def first_line(text: str | None) -> str:
 
 
 def end_in_words(outcome: Outcome) -> str:
-    """The same without the message."""
+    """Describe how the test ended, without the message."""
     by = f" by {outcome.by}" if outcome.by is not None else ""
     test = f" in {outcome.test}" if outcome.test is not None else ""
     return f"{outcome.verdict}{by}{test}"

@@ -153,7 +153,7 @@ def _read_step(match: re.Match[str], text: str) -> Step:
         item = ast.literal_eval(inside)
     except (ValueError, SyntaxError):
         raise ValueError(
-            f"path {text!r}: [{inside}] is no index, quoted key or slice (a key needs quotes)"
+            f"path {text!r}: [{inside}] is not an index, a quoted key or a slice (a key needs quotes)"
         ) from None
     if isinstance(item, bool) or not isinstance(item, int | str):
         raise ValueError(f"path {text!r}: [{inside}] must be a whole number or a quoted key")

@@ -50,7 +50,7 @@ def accounts_of(processes: Iterable[int]) -> Accounts:
 
 
 def below(roots: Iterable[int]) -> set[int]:
-    """These processes and all below them."""
+    """Return these processes and all their descendants."""
     found, due = set[int](), list(roots)
     children = _children_of if _are_listed() else _all_children().get
     while due:

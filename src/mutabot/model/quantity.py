@@ -44,7 +44,7 @@ def seconds_of(stamp: Any) -> float | None:
 
 
 def with_seconds(stamp: Any, seconds: float) -> Any:
-    """A copy of a stamp that says so many seconds; none says less than zero."""
+    """Return a copy of a stamp with this many seconds, at least zero."""
     whole, rest = divmod(max(0, round(seconds * _NANO)), _NANO)
     for names in _PARTS:
         if all(hasattr(stamp, name) for name in names):

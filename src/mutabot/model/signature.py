@@ -42,7 +42,7 @@ def parse_signature(text: str) -> Signature:
     try:
         return Signature(found)
     except ValueError as error:  # a name twice
-        raise ValueError(f"{text!r} is no signature ({error}); {_FORM}") from None
+        raise ValueError(f"{text!r} is not a signature ({error}); {_FORM}") from None
 
 
 def takes_anything(signature: Signature) -> bool:
@@ -59,10 +59,10 @@ def _arguments(text: str) -> ast.arguments:
         tree = ast.parse(f"def _{_with_rest(text)}: pass")
     except (SyntaxError, ValueError) as error:
         reason = getattr(error, "msg", str(error))
-        raise ValueError(f"{text!r} is no signature ({reason}); {_FORM}") from None
+        raise ValueError(f"{text!r} is not a signature ({reason}); {_FORM}") from None
     body = tree.body[0]
     if len(tree.body) != 1 or not isinstance(body, ast.FunctionDef) or not isinstance(body.body[0], ast.Pass):
-        raise ValueError(f"{text!r} is no signature; {_FORM}")
+        raise ValueError(f"{text!r} is not a signature; {_FORM}")
     return body.args
 
 
@@ -84,7 +84,7 @@ def _parameter(name: ast.arg, kind: Any, default: ast.expr | None) -> Parameter:
     except ValueError:
         text = ast.unparse(default)
         raise ValueError(
-            f"the default of {name.arg!r}, {text}, is no plain value; write … for one that is not known"
+            f"the default of {name.arg!r}, {text}, is not a plain value; write … for one that is not known"
         ) from None
 
 

@@ -55,7 +55,7 @@ class Suppression:
         return self.names(mutant) and (not self.line or self.has_line(mutant, lines))
 
     def names(self, mutant: Mutant) -> bool:
-        """The same, whatever its line says."""
+        """Whether the decision names the mutant, whatever its line says."""
         span = mutant.site.span
         first, last = self.numbers or (span.line, span.end_line)
         return (

@@ -154,7 +154,7 @@ class Subject:
         return f"the call {'passes' if self.is_written else 'returns'} no plain value here"
 
     def of_size(self, magnitude: float, unit: str | None, direction: str = "") -> Subject:
-        """The same with a fault of this magnitude, after which the variant is called."""
+        """Return a copy with a fault of this magnitude, which also names the variant."""
         variant = f"{direction}{magnitude:g}{'%' if unit == 'percent' else unit or ''}"
         return replace(self, variant=variant, magnitude=magnitude, unit=unit, direction=direction)
 
@@ -353,7 +353,7 @@ class Operator(Rule):
         )
 
     def is_chance(self, subject: Subject) -> bool:
-        """Whether only chance says at which calls it acts, so that nobody can tell beforehand."""
+        """Whether the calls at which it acts are random, and so cannot be known beforehand."""
         return self.by_chance
 
     def least_calls(self, subject: Subject) -> int:
@@ -459,11 +459,11 @@ class Context:
             raise Unchanged("not drawn for this call")
 
     def next_value(self, value: Value, by: int = 1) -> Value:
-        """The value that comes so many places after another one among the quantity's values.
+        """Return the value ``by`` places after this one among the quantity's values, cyclically.
 
         Raises Unchanged if it is none of them.
         """
         values = self.quantity.values or ()
         if value not in values:
-            raise Unchanged("it is not one of the known values")
+            raise Unchanged("it is not one of the values that the vocabulary gives")
         return values[(values.index(value) + by) % len(values)]

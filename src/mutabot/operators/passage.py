@@ -86,7 +86,7 @@ class CallRecord:
 
     @property
     def acted_at_once(self) -> bool:
-        """The same, without what is only done later."""
+        """Whether it acted at once, without what is only done later."""
         return self.changed_command or self.changed_reading or self.waited > 0.0
 
     @property
@@ -98,7 +98,7 @@ class CallRecord:
 
     @property
     def changed_command(self) -> bool:
-        """Whether the robot was told something else than the program said."""
+        """Whether the robot got a command that differs from what the program sent."""
         if self.is_late:
             return True
         if len(self.performed) != 1:
@@ -114,7 +114,7 @@ class CallRecord:
 
     @property
     def changed_reading(self) -> bool:
-        """Whether the program was told something else than the robot answered."""
+        """Whether the program got an answer that differs from the robot's."""
         if self.received is None:
             return False
         if not self.answered:  # the robot raised, and the program does not hear of it

@@ -48,7 +48,7 @@ def load_all() -> list[Operator]:
 
 
 def preload(wanted: Iterable[str] | None = None) -> None:
-    """Load these operators, or all; who needs one that cannot be loaded is told then."""
+    """Load these operators, or all. One that cannot be loaded raises only when it is needed."""
     for name in (*built_in(), *brought("operators")) if wanted is None else wanted:
         with suppress(OperatorError):
             operator(name)

@@ -88,7 +88,7 @@ def place_of(span: Span, source: str | None, length: Callable[[str], int] = len)
 
 
 def _prefix(line: str, column: int) -> str:
-    """What stands before a column in UTF-8 bytes, from 0."""
+    """Return the part of a line before a column, which counts UTF-8 bytes from 0."""
     return line.encode(errors="replace")[:column].decode(errors="ignore")
 
 

@@ -82,7 +82,7 @@ _META = (
 
 
 def portable(campaign: Results) -> Results:
-    """The same campaign, fit for any report."""
+    """Return a copy of the campaign that is fit for any report."""
     clean = Cleaner(campaign.meta.get("root"))
     texts = "state mutants graded controls flaky attempt verification left_out untested accepting"
     found: dict[str, Any] = {name: mapped(getattr(campaign, name), clean) for name in texts.split()}
@@ -107,7 +107,7 @@ _OWN = (Mutant, LeftOut, Untested)
 
 
 def mapped(value: T, change: Callable[[str], str]) -> T:
-    """The same data with every text in it changed; keys of tables too. Of ids, only signs are."""
+    """Return the data with every text changed, also keys of tables; of ids only special characters."""
     return cast("T", _mapped(value, change))
 
 

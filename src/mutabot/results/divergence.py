@@ -53,7 +53,7 @@ def change_text(mutant: Mutant, outcome: Outcome, quantity: Quantity | None = No
 
 
 def weight_of(outcome: Outcome) -> tuple[bool, float]:
-    """Of several rounds, that one is told about that differs in a stable test, and deviates most."""
+    """Rank a round for reports: one that differs in a stable test first, then the largest deviation."""
     return outcome.told is not None and not outcome.told.scatters, outcome.deviation or 0.0
 
 

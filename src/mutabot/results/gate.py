@@ -45,7 +45,7 @@ def decide(
     demands: Sequence[Demand] = (),
     fail_on: Collection[str] = (),
 ) -> Decision:
-    """Hold the results against the limits.
+    """Decide which limits the results break, and the exit code that follows.
 
     ``min_score`` (0 … 1) holds for every printed mean score, that is for each family and role on its own:
     a good score of the oracle never hides a poor one of the program. ``max_timeouts`` (0 … 1) is the

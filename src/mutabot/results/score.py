@@ -147,7 +147,7 @@ class RoundScores:
 
     @property
     def mean_check(self) -> float | None:
-        """Mean of the rounds' check scores, likewise."""
+        """Mean of the rounds' check scores; None if no round has one."""
         return _mean([score.check_score for score in self.rounds])
 
 

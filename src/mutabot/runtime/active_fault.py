@@ -111,7 +111,7 @@ class ActiveFault(ABC):
         """The test and its fixtures are over: take the fault away."""
 
     def begin_count(self) -> None:
-        """A test begins: what the fault did is counted anew."""
+        """Reset the evidence of the fault for a new test."""
         self._evidence = Evidence()
 
     def reached(self) -> None:
@@ -155,7 +155,7 @@ class _ControlFault(ActiveFault):
         self.control()
 
     def end_test(self) -> None:
-        """Nothing was put in place."""
+        """Do nothing: nothing was put in place."""
 
     def control(self) -> None:
         """What it does there."""
@@ -165,7 +165,7 @@ class IdentityControl(_ControlFault):
     """The control that changes nothing."""
 
     def control(self) -> None:
-        """It is reached."""
+        """Note that the control was reached."""
         self.reached()
 
 
@@ -173,7 +173,7 @@ class FatalControl(_ControlFault):
     """The control by which every test fails."""
 
     def control(self) -> None:
-        """It raises."""
+        """Raise FatalFault."""
         self.acts()
         raise self.error
 

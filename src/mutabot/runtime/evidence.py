@@ -165,7 +165,7 @@ class Evidence:
     away: dict[str, int] = field(default_factory=dict)
 
     def copy(self) -> Evidence:
-        """The same, for itself."""
+        """Return an independent copy of the evidence."""
         return replace(self, away=dict(self.away))
 
     @property
@@ -208,7 +208,7 @@ class Meter:
     began: float = field(default_factory=process_time)
 
     def go_on_in_copy(self) -> None:
-        """This process was just forked: its processor time begins anew."""
+        """Restart the count of processor time in a process that was just forked."""
         self.began = process_time()
 
     def tick(self, time: float) -> None:

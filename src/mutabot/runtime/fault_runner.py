@@ -159,7 +159,7 @@ class FaultRunner:
         module, _, name = self.activation.reference.partition(":")
         made: Any = getattr(import_module(module), name)(self._mutant, self.activation.data, self.context)
         if not isinstance(made, ActiveFault):
-            raise TypeError(f"{self.activation.reference} is no mutabot.runtime.active_fault.ActiveFault")
+            raise TypeError(f"{self.activation.reference} is not a mutabot.runtime.active_fault.ActiveFault")
         made.keys = self.activation.keys
         return made
 

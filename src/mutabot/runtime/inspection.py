@@ -112,7 +112,7 @@ class Inspection:
         for source, key, name in named:
             found = self._look_up(source, f"{key} {name}", name)
             if found is not None and not (isinstance(found, type) and issubclass(found, BaseException)):
-                self.tell(source, Finding(f"{key} {name}", f"{name} is no exception class"))
+                self.tell(source, Finding(f"{key} {name}", f"{name} is not an exception class"))
 
     def _look_up(self, source: str, key: str, target: str) -> Any:
         """What ``module:qualified.name`` names; None, and a problem, if there is no such thing."""

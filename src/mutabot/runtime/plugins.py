@@ -187,7 +187,7 @@ def watched(test: str, seconds: float, by: str) -> Watched:
 
 
 def watched_by_faulthandler(item: pytest.Item) -> Watched | None:
-    """The same for pytest's own limit; None if there is none, or it only prints."""
+    """Return the limit of pytest's faulthandler; None if there is none, or it only prints."""
     seconds, ends = _faulthandler(item.config)
     return watched(node_id(item), seconds, "faulthandler_timeout") if seconds > 0 and ends else None
 

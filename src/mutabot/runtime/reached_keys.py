@@ -51,7 +51,7 @@ class ReachedKeys:
         self._counts.clear()
 
     def tick(self, seconds: float) -> None:
-        """The clock stands at so many simulated seconds of the running test."""
+        """Note the simulated time of the running test, in seconds."""
         if not self._has_ticked:
             self._has_ticked = True
             self._on_first_tick()

@@ -471,7 +471,7 @@ class Session:
         self._tell_acted(self.recording.clock())
 
     def acted_in_call(self) -> None:
-        """The same, in a call: it did so when that began."""
+        """Note that the mutant acted in a call, at the time when the call began."""
         self._tell_acted(self.recorder.began)
 
     def _tell_acted(self, seconds: float | None) -> None:

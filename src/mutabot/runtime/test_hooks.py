@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 
 class ForkedRun:
-    """This process from its fork on.
+    """The run of this process after its fork.
 
     Args:
         tests: the hooks for each of its tests.

@@ -112,7 +112,7 @@ def parse_amount(text: str) -> tuple[float, str | None]:
     """
     found = _AMOUNT.fullmatch(text.strip())
     if found is None:
-        raise ValueError(f"{shortened(text)!r} is no magnitude; write a number and a unit, like '5 mm'")
+        raise ValueError(f"{shortened(text)!r} is not a magnitude; write a number and a unit, like '5 mm'")
     value, unit = float(found[1]), "percent" if found[2] == "%" else found[2]
     if not (value > 0 and math.isfinite(value)):
         raise ValueError(f"{text!r}: a magnitude is more than 0; both directions are meant")

@@ -35,7 +35,7 @@ def demanded_of(
 
 
 def at_magnitude(mutant: Mutant, size: float) -> Mutant:
-    """The same fault at another magnitude."""
+    """Return the fault at another magnitude."""
     old, new = f"{mutant.magnitude:g}", f"{size:g}"
     before, _, behind = mutant.description.rpartition(old)
     variant = mutant.variant.removeprefix(mutant.direction)

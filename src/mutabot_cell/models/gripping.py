@@ -122,7 +122,7 @@ def read_gripper(
 
 
 def _prefixed(spec: mujoco.MjSpec) -> mujoco.MjSpec:
-    """The same with `PREFIX` before all names."""
+    """Return a copy with `PREFIX` before all names."""
     whole = mujoco.MjSpec()
     whole.attach(spec, frame=whole.worldbody.add_frame(), prefix=PREFIX)
     return whole

@@ -158,9 +158,9 @@ class RobotModel:
         )
 
     def with_tool(self, tool: Tool | None) -> RobotModel:
-        """The same arm with `tool` at its flange; None for an arm alone."""
+        """Return the arm with `tool` at its flange; None for an arm alone."""
         return replace(self, tool=tool)
 
     def at(self, base: Pose) -> RobotModel:
-        """The same robot with its base at `base`: world frame, m and degrees."""
+        """Return the robot with its base at `base`: world frame, m and degrees."""
         return replace(self, base=base)

@@ -63,7 +63,7 @@ def _touches(model: mujoco.MjModel, geom: int) -> bool:
 
 def _fixed_box(model: mujoco.MjModel, data: mujoco.MjData, name: str, geom: int, path: FilePath) -> FixedBox:
     if model.geom_type[geom] != _BOX:
-        raise BadModel(f"fixture {name!r} of {path} is no box: give it a geom of type box")
+        raise BadModel(f"fixture {name!r} of {path} is not a box: give it a geom of type box")
     return FixedBox(
         name,
         _triple(2 * model.geom_size[geom]),

@@ -212,7 +212,7 @@ class Watch(Observer):
     def _check_coroutine(self, seen: _Seen) -> None:
         raw = seen.callee.raw
         if not seen.call.stands_in and not inspect.iscoroutinefunction(getattr(raw, "__func__", raw)):
-            text = "it returns a coroutine but is no coroutine function: name the one behind it"
+            text = "it returns a coroutine but is not a coroutine function: name the one behind it"
             seen.call.problem = text
 
     def _counts(self, seen: _Seen, caller: CallOrigin) -> bool:

@@ -45,7 +45,7 @@ class FilmWriter:
         self.count += 1
 
     def close(self) -> None:
-        """No more come."""
+        """Close the film: no further pictures are added."""
         os.close(self._file)
 
 

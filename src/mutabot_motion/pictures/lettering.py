@@ -60,7 +60,7 @@ class Letters:
         onto.text(place, self.known(text), fill=fill, font=self.font, anchor=anchor)
 
     def lines(self, text: str, width: float, most: int) -> list[str]:
-        """A text in so many lines at most; what finds no room is left out, with three dots."""
+        """Break a text into at most this many lines; the rest is cut, with three dots."""
         lines: list[str] = []
         rest = text[:_LONGEST].split()
         while rest and len(lines) < most:

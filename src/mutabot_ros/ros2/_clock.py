@@ -86,7 +86,7 @@ def later(node: Any) -> Callable[[float, Callable[[], object]], None]:
 
 
 def goes_out(node: Any) -> Callable[[float, Callable[[], object]], None]:
-    """How a message of a node goes out later, also while nobody spins it."""
+    """Return how a message of a node is sent later, also while the node does not spin."""
 
     def go_out(seconds: float, action: Callable[[], object]) -> None:
         def wait() -> None:

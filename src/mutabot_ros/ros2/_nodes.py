@@ -43,7 +43,7 @@ def _made(messages: Names, original: Any, node: Any, *args: Any, **kwargs: Any) 
 
 @contextmanager
 def own() -> Iterator[None]:
-    """What is made in the block is rclpy's own."""
+    """Context in which entities that are created belong to rclpy itself."""
     _now.making += 1
     try:
         yield
@@ -58,7 +58,7 @@ def is_own() -> bool:
 
 @contextmanager
 def of(node: Any) -> Iterator[None]:
-    """What is made in the block belongs to a node."""
+    """Context in which entities that are created belong to a node."""
     before, _now.node = _now.node, node
     try:
         yield
@@ -106,7 +106,7 @@ def where(
     lost: Callable[[], Awaitable[Any]] | None = None,
     cancel: Callable[[Any], Awaitable[None]] | None = None,
 ) -> Where:
-    """Where a call of a node is, and what can befall it.
+    """Return the site of a node's call and the faults that can act on it.
 
     Args:
         node: the node; None if it is not known.

@@ -64,7 +64,7 @@ class Never:
             yield self
 
     def then(self, go_on: Callable[[Any], None]) -> None:
-        """Nothing comes."""
+        """Do nothing: no further step follows."""
 
 
 def future_of(coroutine: Coroutine[Any, Any, Any]) -> Any:

@@ -191,7 +191,7 @@ class _Topics:
 
 
 class _Nothing(Exception):  # noqa: N818  (no error: there is no message)
-    """No message came in time."""
+    """Marks that no message came in time."""
 
 
 def _is_kept(qos_profile: Any) -> bool:

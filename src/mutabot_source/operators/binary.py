@@ -74,7 +74,7 @@ class ArithmeticReplacement(_BinaryOperator):
                 "(a + b) % c, (a - b) % c, a / b % c, a // b % c, a % b % c, a ** b % c, a % c, b % c",
             ),
         ),
-        TextExample("z = 'lift/' + height\n", note="a text is no operand of arithmetic"),
+        TextExample("z = 'lift/' + height\n", note="a text is not an operand of arithmetic"),
         TextExample("z = a + b\n", kinds={"a + b": "text"}, note="the baseline saw a text there"),
         TextExample("z = a @ b\n", note="not arithmetic on numbers"),
     )
@@ -100,7 +100,7 @@ class LogicalReplacement(_BinaryOperator):
             kinds={"x ^ y": "set"},
         ),
         TextExample(
-            "Speed = int | float\n", kinds={"int | float": "types:UnionType"}, note="a type is no value"
+            "Speed = int | float\n", kinds={"int | float": "types:UnionType"}, note="a type is not a value"
         ),
         TextExample("def f(speed: A | B): ...\n", note="nor is an annotation"),
     )

@@ -104,7 +104,9 @@ class RelationalReplacement(ConventionalOperator):
         TextExample(
             "z = x == None\n", ("z = x != None\n", "z = False\n", "z = True\n"), note="None has no order"
         ),
-        TextExample("if __name__ == '__main__': main()\n", note="what is not run by a test is no place"),
+        TextExample(
+            "if __name__ == '__main__': main()\n", note="a block that no test can run has no mutants"
+        ),
     )
 
     def drafts(self, node: SyntaxNode, around: Surroundings) -> Iterable[Draft]:

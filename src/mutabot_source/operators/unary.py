@@ -31,9 +31,7 @@ class Absolute(ConventionalOperator):
         ),
         TextExample("y = x\n", kinds={"x": "text"}, note="the baseline saw a text there"),
         TextExample("y = 0.2\n", note="a literal shows its sign: that is UOI's"),
-        TextExample(
-            "f.g\n", kinds={"f.g": "module:Kind"}, note="what it is taken from is no arithmetic value"
-        ),
+        TextExample("f.g\n", kinds={"f.g": "module:Kind"}, note="its operand is not an arithmetic value"),
     )
 
     def drafts(self, node: SyntaxNode, around: Surroundings) -> Iterable[Draft]:

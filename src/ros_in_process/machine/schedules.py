@@ -22,7 +22,7 @@ class Schedule(Protocol):
         """A test begins: what it draws depends on its name alone, so it can be replayed alone."""
 
     def choose(self, number: int) -> int:
-        """Which of so many threads that can run goes on."""
+        """Choose which of the threads that can run goes on."""
 
     def switches_here(self) -> bool:
         """Whether the running thread lets others go first at a place at which it need not."""
@@ -41,7 +41,7 @@ class FirstIn:
     """What has become ready first goes first; nothing takes time."""
 
     def begin(self, test: str) -> None:
-        """Nothing is drawn."""
+        """Do nothing: this order draws no numbers."""
 
     def choose(self, number: int) -> int:
         return 0

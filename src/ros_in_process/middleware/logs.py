@@ -139,7 +139,7 @@ def rclpy_logging_fini() -> None:
 
 
 def rclpy_logging_initialize() -> None:
-    """Nothing is to be set up."""
+    """Do nothing: there is no logging to set up."""
 
 
 def rclpy_logging_shutdown() -> None:

@@ -78,7 +78,7 @@ class ChildProcess:
         self._started().tell(9)
 
     def close(self) -> None:
-        """Nothing is held."""
+        """Do nothing: no resource is held."""
 
     @property
     def pid(self) -> int | None:
@@ -145,7 +145,7 @@ class Connection(_SharedObject):
             return bool(queue.not_empty.wait_for(queue._qsize, timeout))
 
     def close(self) -> None:
-        """Nothing is held."""
+        """Do nothing: no resource is held."""
 
 
 class _SharedValue(_SharedObject):

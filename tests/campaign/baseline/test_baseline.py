@@ -217,4 +217,4 @@ def test_a_plain_function_that_returns_a_coroutine_is_refused(tmp_path: Path) ->
     mission = "import asyncio, robot\n\ndef run(arm):\n    asyncio.run(robot.start())\n    arm.move_by(0.5)\n"
     vocabulary = VOCABULARY + '\n    [[operation]]\n    call = "robot:start"\n'
     write_project(tmp_path, mission, TESTS, robot=robot, vocabulary=vocabulary)
-    stopped(tmp_path, ConfigurationError, "returns a coroutine but is no coroutine function")
+    stopped(tmp_path, ConfigurationError, "returns a coroutine but is not a coroutine function")

@@ -81,7 +81,7 @@ def project(folder: Path, vocabulary: str) -> Path:
 def test_a_quantity_that_names_an_object_is_told_with_its_place_and_what_to_do(tmp_path: Path) -> None:
     report = check(request_for(project(tmp_path, DRIVE), engine="fork", rounds=1), Quiet())
     (note,) = (line for line in report.lines if line.startswith("note "))
-    assert "arguments.speed: speed is of mission:Speed, which is no plain data" in note
+    assert "arguments.speed: speed is of mission:Speed, which is not plain data" in note
     assert "describe the part of it that is a number, such as speed.magnitude" in note
     reason = "the call passes no plain value here"
     assert report.data["left_out_because"] == {reason: 1}

@@ -82,7 +82,7 @@ VOCABULARY = f"""
     call = "robot:Arm.look"
     result = {{ kind = "position", axis = "x", unit = "m", missing = "robot:NoImage" }}
 """
-WHY = "nobody reads what the call returns: it is a statement by itself"
+WHY = "the result of the call is not used: it is a statement by itself"
 
 
 @pytest.mark.needs("catalogue")

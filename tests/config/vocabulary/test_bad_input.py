@@ -18,8 +18,8 @@ GOOD_OPERATION = "[[operation]]\n" + MOVE
 
 #: name -> (text of robot.toml, words the message must contain)
 VOCABULARIES: dict[str, tuple[str, list[str]]] = {
-    "broken_toml": ("[[operation]]\ncall = \n", ["robot.toml:2", "no valid TOML"]),
-    "unclosed_list": ("refusals = [", ["robot.toml:1", "no valid TOML"]),
+    "broken_toml": ("[[operation]]\ncall = \n", ["robot.toml:2", "not valid TOML"]),
+    "unclosed_list": ("refusals = [", ["robot.toml:1", "not valid TOML"]),
     "inline_table_over_lines": (
         GOOD_OPERATION + "arguments.dx = {\n  kind = 'translation' }",
         ["robot.toml:3", "on one line"],
@@ -121,7 +121,7 @@ VOCABULARIES: dict[str, tuple[str, list[str]]] = {
     ),
     "overrides_of_a_function": (
         "[[operation]]\ncall = 'robot:move'\noverrides = true",
-        ["robot.toml:3", "no method of a class"],
+        ["robot.toml:3", "not a method of a class"],
     ),
     "argument_of_a_pattern_that_holds_the_text": (
         GOOD_OPERATION
@@ -130,7 +130,7 @@ VOCABULARIES: dict[str, tuple[str, list[str]]] = {
     ),
     "message_in_self_of_a_function": (
         "[[operation]]\ncall = 'link:send'\nmessage = 'self'",
-        ["robot.toml:3", "no method of a class", "no self"],
+        ["robot.toml:3", "not a method of a class", "no self"],
     ),
     "field_of_a_message_in_self": (
         GOOD_OPERATION
@@ -249,7 +249,7 @@ QUANTITIES: dict[str, tuple[str, list[str]]] = {
     "unit_written_out": ("arguments.dx = { " + _BY.replace("'m'", "'metres'") + " }", ["dx.unit", "'m'"]),
     "unit_of_another_dimension": (
         "arguments.dx = { " + _BY.replace("'m'", "'deg'") + " }",
-        ["'deg' is no unit for a translation", "m, cm, mm, um or inch"],
+        ["'deg' is not a unit for a translation", "m, cm, mm, um or inch"],
     ),
     "no_unit": (
         "result = { kind = 'angle', axis = 'j1' }",
@@ -439,7 +439,7 @@ PATTERNS: dict[str, tuple[str, list[str]]] = {
     ),
     "broken_braces": ("{ text = 'go/{a' }", ["patterns 'go/{a'", "text"]),
     "unnamed_field": ("{ text = 'go/{}' }", ["plain name"]),
-    "bad_format": ("{ text = 'go/{a:yd}' }", ["is no format"]),
+    "bad_format": ("{ text = 'go/{a:yd}' }", ["is not a format"]),
     "empty_text": ("{ text = '' }", ["cannot be empty"]),
     "no_text": ("{ kind = 'flag' }", ["patterns#1", "'text'", "missing"]),
     "opposite_with_other_fields": (
@@ -474,7 +474,7 @@ CONFIGURATIONS: dict[str, tuple[str, list[str]]] = {
     "no_such_folder_at_all": (GOOD.replace("mission.py", "a/b/c.py"), ["there is no 'a/b/c.py'"]),
     "glob_without_match": (GOOD.replace("mission.py", "lib/*.py"), ["'lib/*.py' matches no Python file"]),
     "glob_of_texts": (GOOD.replace("mission.py", "*.toml"), ["no Python file"]),
-    "odd_glob": (GOOD.replace("mission.py", "a**"), ["no pattern of paths"]),
+    "odd_glob": (GOOD.replace("mission.py", "a**"), ["not a pattern of paths"]),
     "absolute_program": (GOOD.replace("mission.py", "/etc"), ["'/etc'", "relative to the project's folder"]),
     "home_program": (GOOD.replace("mission.py", "~/mission.py"), ["relative to the project's folder"]),
     "escape": (GOOD.replace("mission.py", "../mission.py"), [":2", "leads out of the project's folder"]),

@@ -87,9 +87,12 @@ def test_the_example_of_the_design_means_what_it_says(tmp_path: Path) -> None:
     assert lift.source == "robot.toml:26 · link:send · lift/{z}"
 
 
-def test_the_example_of_the_documentation_loads(tmp_path: Path) -> None:
-    example = next(block for block in blocks(PAGE.read_text(encoding="utf-8")) if block.language == "toml")
-    vocabulary = loaded(tmp_path, example.text)
+def test_the_examples_of_the_documentation_load(tmp_path: Path) -> None:
+    first, whole, *_ = (
+        block for block in blocks(PAGE.read_text(encoding="utf-8")) if block.language == "toml"
+    )
+    assert [operation.name for operation in loaded(tmp_path, first.text).operations] == ["Arm.move_by"]
+    vocabulary = loaded(tmp_path, whole.text)
     assert [operation.name for operation in vocabulary.operations][:2] == ["Arm.move_by", "Arm.tool_pose"]
     pose = vocabulary.operation("robot:Arm.tool_pose")
     assert pose is not None

@@ -105,7 +105,7 @@ def test_literal_braces_and_signs_of_regular_expressions_stand_for_themselves() 
         ("go/{a.b}", "plain name"),
         ("go/{x}/{x}", "two fields named 'x'"),
         ("go/{x!r}", "conversion"),
-        ("go/{x:yd}", "is no format"),
+        ("go/{x:yd}", "is not a format"),
         ("go/{x:,.2f}", "cannot be read back"),
         ("go/{x:8.2f}", "cannot be read back"),
     ],

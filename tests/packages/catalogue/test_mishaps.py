@@ -142,7 +142,7 @@ def test_what_cannot_be_known_before_is_said(stage: ClientStage) -> None:
     _, _, activation = stage.mutated(SEND.replace("{fresh}", "True"), "stale", "first")
     assert activation.evidence.hits == 4
     assert activation.evidence.acted == 3
-    assert activation.evidence.away == {"there is none before it": 1}
+    assert activation.evidence.away == {"no call came before it": 1}
 
 
 def test_what_is_published_late_goes_out_by_itself(stage: ClientStage) -> None:

@@ -66,12 +66,12 @@ def test_settings_that_would_stay_the_same_are_left_out_with_the_reason() -> Non
     given = {"name": "/arm/target", "depth": 1, "reliability": "reliable", "deadline": 0.0}
     plan = planned(ADVERTISE, Hit(given, {}))
     assert kinds(plan) == ["wrong-name=misspelt", "wrong-reliability", "wrong-deadline=tight"]
-    assert reasons(plan, "wrong-name") == ["would change nothing in the call: its name is a global one"]
+    assert reasons(plan, "wrong-name") == ["would change nothing in the call: its name is global already"]
     assert reasons(plan, "short-queue") == ["would change nothing in the call: the value would stay the same"]
     assert reasons(plan, "flip-latch") == [
         "would change nothing in the call: its middleware has no such setting, or chooses it itself"
     ]
-    assert reasons(plan, "wrong-deadline") == ["would change nothing in the call: it has none"]
+    assert reasons(plan, "wrong-deadline") == ["would change nothing in the call: it has no deadline"]
 
 
 def test_a_parameter_whose_default_is_what_was_set_is_left_out() -> None:

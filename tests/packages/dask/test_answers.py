@@ -173,13 +173,13 @@ def test_a_fork_parent_tells_of_its_own_mutants_only() -> None:
     data["lines"].append(event_to_data(ForkTestEnd(mutant(1).id, replace(END, trace=()))))
     assert sum(isinstance(line, ForkTestEnd) for line in events_of(packed(data), fork_parent())) == 1
     data["lines"].append(event_to_data(ForkTestEnd(mutant(2).id, replace(END, trace=()))))
-    with pytest.raises(Misfit, match="is no mutant of this task"):
+    with pytest.raises(Misfit, match="is not a mutant of this task"):
         UnitAnswer.of(packed(data), fork_parent())
 
 
 def test_the_unmutated_program_has_the_tests_of_its_unit_and_a_mutant_may_make_others() -> None:
     data = changed(lambda a: a["lines"][END_LINE].update(test="tests/test_other.py::test"))
-    with pytest.raises(Misfit, match="is no test of this task"):
+    with pytest.raises(Misfit, match="is not a test of this task"):
         UnitAnswer.of(data, fork_parent())
     ends = [line for line in events_of(data, unit()) if isinstance(line, TestEnd)]
     assert [line.test for line in ends] == ["tests/test_other.py::test"]

@@ -129,7 +129,7 @@ def _has_refused(roster: Roster) -> bool:
 
 def test_a_file_that_is_no_scheduler_file(tmp_path: Path) -> None:
     (tmp_path / "s.json").write_text("{}")
-    with pytest.raises(UsageError, match=r"is no scheduler file: `dask scheduler --scheduler-file"):
+    with pytest.raises(UsageError, match=r"is not a scheduler file: `dask scheduler --scheduler-file"):
         address_in(tmp_path / "s.json")
 
 

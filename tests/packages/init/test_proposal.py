@@ -426,7 +426,7 @@ def test_a_pose_that_is_read_is_understood(vendor: Path, target: str) -> None:
 def test_what_cannot_be_told_is_a_comment_with_its_reason(vendor: Path) -> None:
     text = (vendor / "robot.toml").read_text()
     assert '# call = "vendor:Client.close_later"' in text
-    assert "it returns a coroutine but is no coroutine function" in text
+    assert "it returns a coroutine but is not a coroutine function" in text
     assert '# arguments."velocities[0:6]" = { kind = "speed", unit = "…" }  # question: the unit' in text
     assert (
         '# arguments."tpose[3:6]" = { kind = "rotation_vector", unit = "rad" }  # question: a rotation'

@@ -160,7 +160,7 @@ def test_the_call_before_is_the_one_of_the_same_operation_wherever_it_stands(mak
     assert done(make_stage, lines, "previous-target", index=2)[0] == ["move 1", "grip 5", "move 1"]
     log, evidence = done(make_stage, lines, "previous-target")
     assert log == ["move 1", "grip 5", "move 2"]
-    assert evidence.away == {"there is none before it": 1}
+    assert evidence.away == {"no call came before it": 1}
 
 
 def test_a_reading_that_drops_out_raises_what_the_vocabulary_says(make_stage: Make) -> None:

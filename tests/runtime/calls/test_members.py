@@ -139,5 +139,5 @@ def test_a_member_that_is_none_of_the_values_is_left_alone(make_stage: Make) -> 
     assert seen.name == "GREEN"
     assert (activation.evidence.acted, list(activation.evidence.away)) == (
         0,
-        ["it is not one of the known values"],
+        ["it is not one of the values that the vocabulary gives"],
     )

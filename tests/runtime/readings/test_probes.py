@@ -155,7 +155,7 @@ def test_what_the_program_lets_go_is_kept_until_the_probes_are_read_and_no_longe
         ("robot:Arm.away", "it needs place; a probe is called without arguments"),
         ("robot:Arm.wher", "Arm has no 'wher'; did you mean 'where'?"),
         ("robot:Arm.later", "it is a coroutine function"),
-        ("robot:Arm.itself", "no plain data"),
+        ("robot:Arm.itself", "not plain data"),
         ("robot:Bare.at", "no object of Bare is known"),
         ("not_imported:world", "no test has imported its module 'not_imported'"),
     ],

@@ -252,7 +252,7 @@ def _operation(
         elif doubt is not None:
             doubts.append((one, doubt))
     if sure and text in known.alone:
-        return sure[0], "where tests reach this text, it is no operation"
+        return sure[0], "where tests reach this text, it is not an operation"
     if sure:
         return _best(call, sure, scope, origins), ""
     return doubts[0] if doubts else None

@@ -1,4 +1,4 @@
-"""More seeds of the original: its own spread is known from several, also where mutants run with few.
+"""Further seeds of the original, to know its own spread even if mutants run with few.
 
 Its runs with seeds of rounds in which no mutant runs judge nothing. They show by how much things differ
 without any fault, so that reports tell of mutants by what is the same with all seeds.

@@ -168,7 +168,7 @@ def _no_numbers(baseline: Baseline, vocabulary: Vocabulary) -> Iterator[Remark]:
         if quantity.is_numeric and seen and not any(map(holds_number, seen)):
             path = f'{side}."{quantity.name}.{quantity.axis or "x"}"'
             text = (
-                f"its value is no number, such as {_ADDRESS.sub('', value_text(seen[0]))}, so that no "
+                f"its value is not a number, such as {_ADDRESS.sub('', value_text(seen[0]))}, so that no "
                 f"{quantity.kind} is mutated; name a number in it by its path, such as {path}"
             )
             yield Remark(owner.source, f"{side}.{quantity.name}", text)

@@ -70,7 +70,7 @@ class Unhandled:
     suspects: list[tuple[int, str]] = field(default_factory=list)
 
     def why(self, mutant: Mutant) -> str:
-        """Why a mutant is left, in words."""
+        """Describe why a mutant is left over."""
         if mutant.id in self.apart:
             return "it is active before any point at which it could be forked"
         return "; ".join(dict.fromkeys([*self.reasons.values(), *self.notes]))
@@ -122,7 +122,7 @@ def _taken(
 
 
 def cut(parents: list[_ForkRound], places: int) -> list[_ForkRound]:
-    """Cut fork parents into parts for so many places that share nothing. The longest come first."""
+    """Split fork parents into parts for workers that share nothing, the longest first."""
     if places < 2 or not parents:
         return parents
     whole = sum(one.seconds for one in parents) or 1.0
@@ -393,7 +393,7 @@ class _ForkRound:
             self._waiting.setdefault(last, set()).add(mutant)
 
     def _judged(self, run: _ForkOutcome, shared: int) -> Iterator[Outcome]:
-        """The outcome of a mutant that has so many tests from its parent.
+        """Return the outcome of a mutant whose parent ran ``shared`` tests before the fork.
 
         It is left to replay if a process that a test started did not get it.
         """

@@ -162,7 +162,7 @@ class _Reruns:
     settled: set[RunId] = field(default_factory=set)
 
     def verify(self, count: int) -> None:
-        """Run so many outcomes once more, and note which ended otherwise.
+        """Re-run this many outcomes, and note which ended differently.
 
         What was found first stays, unless it was over a simulation.
         """

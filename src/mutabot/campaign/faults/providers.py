@@ -193,7 +193,7 @@ def _at_places(
             reasons = (unmet.get(Need.ERROR), unmet.get(Need.PLACE), foreseen, *later)
             reason = next(filter(None, reasons), None)
             if reason is None and original.unread.get(place, False) and only_reads:
-                reason = "nobody reads what the call returns: it is a statement by itself"
+                reason = "the result of the call is not used: it is a statement by itself"
             is_read_alone = subject.quantity in subject.read and subject.quantity not in subject.written
             if place in original.written_through and is_read_alone:
                 reason = _LOST_WRITE
@@ -413,7 +413,7 @@ def _reason(subject: Subject, value: Any, hits: int) -> str:
     if value is None:
         return f"none of the {hits} calls {'passes' if subject.is_written else 'returns'} a plain value here"
     if quantity.is_numeric and not holds_number(value):
-        return f"{quantity.name} of {subject.operation.name} is no number: name a number in it by its path"
+        return f"{quantity.name} of {subject.operation.name} is not a number: name a number in it by its path"
     within = " within the values that the vocabulary allows" if quantity.range or quantity.values else ""
     return f"would change nothing in {calls}{within} (value {quantity.text(value)})"
 
@@ -508,7 +508,7 @@ def operators_of_packages() -> dict[str, str]:
 
 
 def _with_demanded(planted: Sequence[PlannedMutant], project: Project) -> list[PlannedMutant]:
-    """These mutants, with one for each demanded magnitude that its ladder lacks.
+    """Return the mutants, with one added for each demanded magnitude that its ladder lacks.
 
     Where a family was not asked for, the ladders stay of which a demand speaks, and no others of it.
     """
@@ -533,7 +533,7 @@ def _with_demanded(planted: Sequence[PlannedMutant], project: Project) -> list[P
 
 
 def _ladders_last(planted: Sequence[PlannedMutant]) -> list[PlannedMutant]:
-    """These mutants with an order by which those with sizes come last, ladder by ladder."""
+    """Number the mutants so that graded ones come last, ladder by ladder."""
     _, ladders = split_ladders(one.mutant for one in planted if one.reason is None)
     steps = [mutant.id for mutants in ladders.values() for mutant in mutants]
     order = {mutant: (1, number) for number, mutant in enumerate(steps)}

@@ -149,7 +149,7 @@ class _KeptRuns:
     request: Request
 
     def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Event]]:
-        """As those of an executor."""
+        """Return the events of these tasks, as an executor does."""
         left, notes = [], {}
         for task in tasks:
             name = self._name_of(task)
@@ -171,7 +171,7 @@ class _KeptRuns:
             yield one
 
     def _name_of(self, task: Task) -> str:
-        """The same for tasks that do the same."""
+        """Return a name that is equal for tasks that do the same."""
         request = self.request
         return _digest([to_data(task.job), task.may_share, request.arguments, request.simulation])
 

@@ -278,7 +278,9 @@ class Revision:
 
 def _commit(project: Path, ref: str) -> str:
     if ref.startswith("-"):
-        raise UsageError(f"{_OPTION} {ref}: that is no name of a revision")
+        raise UsageError(
+            f"{_OPTION} {ref}: that is not the name of a revision; write a branch, a tag or a commit"
+        )
     try:
         return _text(project, "rev-parse", "--verify", "--quiet", f"{ref}^{{commit}}").strip()
     except _FailedError as error:

@@ -150,8 +150,8 @@ def refuse_strangers(parts: Sequence[ShardJournal]) -> None:
             raise MergeError(f"{part.shard.words} is there twice: {other.path} and {part.path}")
         if part.shard.depends is None:
             raise MergeError(
-                f"{part.words} ended in its baseline, or files changed meanwhile, so that nobody knows what "
-                f"it was about: run it again with --shard {part.shard.number}/{part.shard.of} or leave it out"
+                f"{part.words} ended in its baseline, or files changed meanwhile, so its plan is not known: "
+                f"run it again with --shard {part.shard.number}/{part.shard.of} or leave it out"
             )
     for part in others:
         differing = _differing(first, part)

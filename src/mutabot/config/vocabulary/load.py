@@ -179,7 +179,7 @@ def _check_current(operation: Operation, name: str, reading: Operation) -> None:
         raise ValueError(f"{name} is a command: asking it where the robot is would make the robot act")
     moved = [quantity for quantity in _all_arguments(operation) if quantity.kind in READING_OF]
     if not moved:
-        raise ValueError("is of no use here: no argument is a translation or a rotation")
+        raise ValueError("has no effect here: no argument is a translation or a rotation")
     readings = reading.readings
     if not any(is_reading_of(one, written) for written in moved for one in readings):
         missing = ", ".join(dict.fromkeys(_described(one, READING_OF[one.kind]) for one in moved))

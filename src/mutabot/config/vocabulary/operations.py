@@ -96,11 +96,11 @@ def _check_self(place: DocumentPlace, operation: Operation) -> None:
     if "." in target.partition(":")[2]:
         return
     if operation.overrides:
-        (place / "overrides").error(f"{target} is no method of a class, so nothing overrides it")
+        (place / "overrides").error(f"{target} is not a method of a class, so nothing overrides it")
     cases = [case.argument for pattern in operation.patterns for case in pattern.when]
     for key, paths in (("message", [operation.message]), ("when", cases)):
         if any(path and Path.parse(path, rooted=True).root == "self" for path in paths):
-            (place / key).error(f"{target} is no method of a class, so it has no self")
+            (place / key).error(f"{target} is not a method of a class, so it has no self")
 
 
 def _read_operation(

@@ -291,7 +291,7 @@ def _of_meaning(table: QuantityTable, is_written: bool, is_vector: bool) -> list
         (
             "unit",
             units and unit in UNITS and unit not in units,
-            f"{unit!r} is no unit for {a}; use {_listed(units)}",
+            f"{unit!r} is not a unit for {a}; use {_listed(units)}",
         ),
         ("unit", unit in units and is_named, f"{a} with named values has no unit"),
         ("mode", kind in _MOVED and table.mode is None, modes),

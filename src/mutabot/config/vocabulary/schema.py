@@ -140,7 +140,7 @@ def _type(text: str) -> str:
     """``package/Name`` for ``package/msg/Name`` and the like."""
     found = re.fullmatch(r"(\w+)/(?:(?:msg|srv|action)/)?(\w+)", text)
     if found is None:
-        raise ValueError(f"{text!r} is no type; expected package/Name, such as geometry_msgs/PoseStamped")
+        raise ValueError(f"{text!r} is not a type; expected package/Name, such as geometry_msgs/PoseStamped")
     return f"{found[1]}/{found[2]}"
 
 

@@ -92,7 +92,7 @@ class Opposite(CommandOperator):
             return await proceed(call.opposite())
         end = quantity.other_end(call.values.get(quantity.name))
         if end is None:
-            raise Unchanged("the value is neither of the two ends")
+            raise Unchanged(f"the value is at neither end of the range or values of {quantity.name}")
         return await proceed(call.with_value(quantity, end))
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:

@@ -238,7 +238,7 @@ def script(name: str, data: Any) -> bytes:
 
 
 def _short(number: float) -> float | int:
-    """As many digits as a page shows, so that thousands of numbers stay small."""
+    """Round a number to the digits that a page shows, so that thousands of numbers stay small."""
     if number.is_integer() and abs(number) < 2**53:  # up to this, whole numbers are whole to the page as well
         return int(number)
     return number if abs(number) >= _EXACT else float(f"{number:.7g}")
@@ -309,7 +309,7 @@ def _gaps(times: Sequence[float], when: Sequence[float]) -> list[list[int]]:
 
 
 def _turned_like(before: Row, row: Row) -> Row:
-    """The same pose, with the one of its two quaternions that is nearer to the one before."""
+    """Return the pose with the one of its two quaternions that is nearer to the previous one."""
     if sum(a * b for a, b in zip(before[3:], row[3:], strict=True)) < 0:
         return (*row[:3], *(-value for value in row[3:]))
     return row

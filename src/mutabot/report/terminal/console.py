@@ -77,7 +77,7 @@ def _pieces(word: str, width: int) -> list[str]:
 
 
 def leave_pipe() -> None:
-    """Discard all further output: nobody reads standard output any more."""
+    """Discard all further output, since the reader of standard output has closed it."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     try:
         os.dup2(nowhere, sys.stdout.fileno())

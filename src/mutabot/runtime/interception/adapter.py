@@ -302,7 +302,7 @@ class Adapter:
         return values
 
     def _tell_undecided(self, patterns: list[Pattern], invocation: Invocation) -> None:
-        """No mode fits: say which argument has a value that the vocabulary does not mention."""
+        """Report the argument whose value is in no mode of the vocabulary."""
         cases = [case for pattern in patterns for case in pattern.when if case.key == "mode"]
         for argument in dict.fromkeys(case.argument for case in cases):
             known = tuple(dict.fromkeys(case.value for case in cases if case.argument == argument))
@@ -379,7 +379,7 @@ class Adapter:
     def _check_result(self, invocation: Invocation, result: Any) -> None:
         """Report a coroutine that is never awaited, and a call that succeeded against its signature."""
         if type(result) is CoroutineType:
-            text = f"{self.operation.target} returns a coroutine but is no coroutine function"
+            text = f"{self.operation.target} returns a coroutine but is not a coroutine function"
             self._tell("call", f"{text}; name the coroutine function behind it")
         if invocation.values is None and self.operation.signature is not None:
             given = [*("…" for _ in invocation.args), *(f"{name}=…" for name in invocation.kwargs)]
@@ -548,7 +548,7 @@ def _unread(quantity: Quantity, error: Exception) -> PathError:
 def _strange(quantity: Quantity, found: Any) -> StrangeValueError:
     """Say what to describe instead of an object that is no plain data."""
     path, kind = str(quantity.path), class_name(type(found))
-    what = f"{path or 'the result'} is of {kind}, which is no plain data, so its value is left as it is"
+    what = f"{path or 'the result'} is of {kind}, which is not plain data, so its value is left as it is"
     part = next((name for name in ("x", "y", "z") if hasattr(type(found), name)), "magnitude")
     return StrangeValueError(f"{what}; describe the part of it that is a number, such as {path}.{part}")
 

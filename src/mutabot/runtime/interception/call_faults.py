@@ -28,7 +28,7 @@ _SAYS = "no reading (planted by mutabot)"
 def why_not(means: MiddlewareControls | None, call_fault: CallFault) -> str:
     """Return why a fault of the middleware cannot happen to a call here; empty if it can."""
     if means is None:
-        return "it is no call of a middleware"
+        return "it is not a call of a middleware"
     if call_fault is CallFault.CANCELLED and means.cancel is None:
         return "what it begins cannot be cancelled"
     if call_fault is CallFault.JUMPED and means.jump is None:
@@ -67,7 +67,7 @@ def perform(call: Call, action: Callable[[], Any]) -> Any:
 
 
 async def after(call: Call, result: Any) -> None:
-    """Let happen what befalls what a call began; ``result`` is what it returned."""
+    """Apply the fault to what a call began; ``result`` is what the call returned."""
     cancel = _means(call).cancel if CallFault.CANCELLED in call.call_faults else None
     if cancel is not None:
         await cancel(result)
@@ -97,7 +97,7 @@ def hand_over(call: Call, reply: Reply, result: Callable[[Reply], Any]) -> Calla
         # the program may change what it got, and would find that in what comes next
         return partial(_given, Delivery((*parts[:1], *((late, copied(one)) for late, one in parts[1:]))))
     if reply.lost and means.lost is None:
-        raise LookupError(f"nobody knows how {call.operation.name} loses its answer")
+        raise LookupError(f"no way to lose the answer of {call.operation.name} is known")
     got = None if reply.lost else result(reply)
 
     async def handed() -> Any:
@@ -119,7 +119,7 @@ def missing(name: str) -> BaseException:
     except (ImportError, LookupError) as error:
         raise LookupError(f"missing = {name!r} names nothing: {error}") from error
     if not (isinstance(kind, type) and issubclass(kind, BaseException)):
-        raise LookupError(f"missing = {name!r} is no exception")
+        raise LookupError(f"missing = {name!r} is not an exception; name one, such as 'camera:NoImageError'")
     for given in ((_SAYS,), ()):
         try:
             return kind(*given)
@@ -140,7 +140,7 @@ async def _given(result: Any) -> Any:
 def _means(call: Call) -> MiddlewareControls:
     means: MiddlewareControls | None = call.payload.where.means
     if means is None:
-        raise LookupError(f"nobody knows what can befall {call.operation.name}")
+        raise LookupError(f"no fault of messages is known for {call.operation.name}")
     return means
 
 

@@ -53,7 +53,7 @@ class CallMutant(ActiveFault):
         self._active.start(seed, context.round, context.test, moment, usual)
 
     def end_test(self) -> None:
-        """It stays where it is: what runs between tests is mutated as well."""
+        """Leave the mutant active: what runs between tests is mutated as well."""
 
     def begin_count(self) -> None:
         """The mutant counts by itself."""

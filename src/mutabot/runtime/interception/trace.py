@@ -253,7 +253,7 @@ class Locator:
         return os.path.realpath(os.path.join(self._root, path))
 
     def _in_interpreter(self, frame: FrameType) -> CallPlace | None:
-        """The same for a frame in which an interpreter carries out a file of the program or the oracle."""
+        """Find the site in a frame of an interpreter that runs a file of the program or the oracle."""
         for front_end in self._interpreted:
             filename = front_end.file_of(frame)
             role = self.role(filename) if filename is not None else None

@@ -123,7 +123,7 @@ class PrivateFiles:
         if self.why_not is not None:
             raise PermissionError(f"{path} cannot be changed, as its files are not private: {self.why_not}")
         if not is_below(file, self.root):
-            raise PermissionError(f"{path} cannot be changed: it is no file of the project")
+            raise PermissionError(f"{path} cannot be changed: it is not a file of the project")
         before = os.stat(file).st_mtime if os.path.exists(file) else 0.0
         with open(file, "wb") as opened:
             opened.write(content)
@@ -416,7 +416,7 @@ def _renew(descriptor: int, status: os.stat_result, copies: dict[_Shared, int]) 
 
 
 def _opened_again(descriptor: int, position: int, flags: int) -> int | None:
-    """The same file opened once more; None if it is ours, in a folder that tests do not see."""
+    """Open a file a second time; None if it is mutabot's own, in a folder that tests do not see."""
     path = os.readlink(f"/proc/self/fd/{descriptor}")
     try:
         opened = os.open(path, flags & ~(os.O_CREAT | os.O_EXCL | os.O_TRUNC) | os.O_CLOEXEC)

@@ -146,7 +146,7 @@ class ForkParent:
         return self._live.keys()
 
     def reach(self, *keys: Key, is_due: Callable[[Mutant], bool] = lambda mutant: True) -> None:
-        """These keys are reached: fork for each mutant that differs from here on and has no process yet.
+        """Fork for each mutant that differs from these keys on and has no process yet.
 
         In a child this process is its mutant from here on. ``is_due``: whether a mutant does differ.
         """
@@ -319,7 +319,7 @@ class ForkParent:
         self.pipe.send(Unforked(self._test, (mutant.id,), why))
 
     def _note_copy(self) -> None:
-        """This process is about to be forked, by whomever."""
+        """Note that this process is about to be forked."""
         self._copied = self._copied or not self._forking
 
     def note_finished(self, mutant: str) -> None:
@@ -333,7 +333,7 @@ class ForkParent:
         self._tests[slot] = number
 
     def finish(self) -> None:
-        """All tests are over: wait for the children that still run, holding no token meanwhile."""
+        """Wait for the children that still run after all tests, without holding a token."""
         self._give_back()
         while self._children:
             self._is_stopped()

@@ -275,7 +275,7 @@ class ClockReader:
             where = (
                 f"the path {self._clock.time!r}" if self._clock.time else f"what {self._clock.tick} returns"
             )
-            self._wrong(f"{where} gives {reprlib.repr(value)}, which is no number")
+            self._wrong(f"{where} gives {reprlib.repr(value)}, which is not a number")
             return None
         return convert(number, self._clock.unit, "s")
 
@@ -287,7 +287,7 @@ class ClockReader:
         root = self._path.root or ""
         if start is None and root not in known:
             of_call = f"has no argument {root!r}; it has {', '.join(known)}"
-            why = "is no method, so it has no self" if root == "self" else of_call
+            why = "is not a method, so it has no self" if root == "self" else of_call
             raise PathError(f"{self._clock.tick} {why}", step=root, known=known)
         return start
 
@@ -319,7 +319,7 @@ class ProgramTime:
         return meter.simulated or 0.0
 
     def now_if_known(self) -> float | None:
-        """The same; None without a clock."""
+        """Return the simulated time in seconds; None without a clock."""
         return self.now() if self.vocabulary.clock is not None and self.meter() is not None else None
 
     async def wait(self, seconds: float) -> None:

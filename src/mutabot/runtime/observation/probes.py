@@ -187,7 +187,7 @@ def _parts(value: Any, name: str) -> Iterator[tuple[str, Any]]:
     elif "__repr__" not in {name for base in type(value).__mro__[:-1] for name in vars(base)}:
         kind = class_name(type(value))
         raise UnreadableError(
-            f"it reads an object of {kind}, which is no plain data such as numbers, texts, lists, dataclasses"
+            f"it reads an object of {kind}, which is not plain data: numbers, texts, lists, dataclasses"
         )
     else:
         yield name, repr(value)
@@ -360,7 +360,7 @@ def _text(value: str | bytes | bytearray) -> Any:
 
 
 def opaque(value: Any) -> dict[str, str]:
-    """What stands for a value that is no plain data."""
+    """Return a placeholder for a value that is not plain data."""
     return {"opaque": class_name(type(value))}
 
 

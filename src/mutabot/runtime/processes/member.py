@@ -77,7 +77,7 @@ class TextOnly:
             self.text.start_test(test)
 
     def look_back(self, *, at_all: bool = False) -> None:
-        """No mutant has handed out anything."""
+        """Do nothing: no mutant has handed out anything."""
 
     @property
     def evidence(self) -> Evidence:
@@ -90,7 +90,7 @@ class TextOnly:
         return self.job.round
 
     def untracked(self) -> AbstractContextManager[None]:
-        """No calls are tracked."""
+        """Do nothing: no calls are tracked."""
         return nullcontext()
 
     def change_file(self, path: str, content: bytes) -> None:

@@ -129,7 +129,7 @@ class Alternatives:
         self._kept = (self.hits, self.idle, self.example)
 
     def start(self) -> None:
-        """A new test begins: count anew."""
+        """Reset the counts for a new test."""
         hits, idle, self.example = self._kept
         self.hits, self.idle, self._has_told = dict(hits), dict(idle), False
 
@@ -358,7 +358,7 @@ class Sightings:
                 self._on_first(place)
 
     def start(self) -> None:
-        """A new test begins: look at every place anew."""
+        """Watch every place again for a new test."""
         self.entered.clear()
         asked, self.asked = self.asked, []
         for witness in asked:

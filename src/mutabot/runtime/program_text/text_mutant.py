@@ -26,7 +26,7 @@ class TextMutant(ActiveFault):
     is_checked: ClassVar[bool] = False
 
     def prepare_process(self) -> None:
-        """Let it stand for the original."""
+        """Activate the alternative in place of the original."""
         if self.context.text is not None:
             self.context.text.alternatives.activate(*self.data)
 
@@ -34,7 +34,7 @@ class TextMutant(ActiveFault):
         """The text itself counts from the start of a test."""
 
     def end_test(self) -> None:
-        """It stays where it is."""
+        """Leave the alternative active between tests."""
 
     def begin_count(self) -> None:
         """The text counts by itself."""

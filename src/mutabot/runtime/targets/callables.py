@@ -126,7 +126,7 @@ class Callables:
         self.pending.difference_update(targets)
 
     def seek(self) -> Iterator[tuple[str, Finding]]:
-        """Import what nobody imported, so that every target is looked at."""
+        """Import the modules that are not imported yet, so that every target is checked."""
         for target in sorted(self.pending):
             module = target.partition(":")[0]
             try:

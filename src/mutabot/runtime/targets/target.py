@@ -1,4 +1,4 @@
-"""How an operation is found at run time, and what a handler around it is told.
+"""How an operation is found at run time, and what a handler around it receives.
 
 A target is what an operation of the vocabulary names: a Python callable (``callables``), or a name on a
 middleware (``Messages``). Each of the two finds its targets in the running program, lets a handler stand
@@ -119,13 +119,13 @@ class Delivery:
 
 
 class TimeModule(Protocol):
-    """How time passes for the program: the module ``time``, or what stands for it in a simulation."""
+    """How time passes for the program: the module ``time``, or its replacement in a simulation."""
 
     def monotonic(self) -> float:
         """Seconds since some moment."""
 
     def sleep(self, seconds: float, /) -> None:
-        """Let so many seconds pass."""
+        """Wait for this many seconds."""
 
 
 #: ``handler(wrapped, instance, args, kwargs, where=NOWHERE)``, as wrapt calls it, with a ``Where`` behind it
