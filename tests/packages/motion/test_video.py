@@ -182,8 +182,8 @@ def test_a_drawing_shows_more_as_time_goes_on_and_both_sides_in_one_scale() -> N
         ("a.avi", "must end in .mp4 or .gif"),
         ("folder.mp4", "it is a folder"),
         ("nowhere/a.mp4", "there is no folder"),
-        ("text.mp4", "there is another file of that name, which is no video"),
-        ("text.gif", "there is another file of that name, which is no video"),
+        ("text.mp4", "a file of that name exists and is not a video"),
+        ("text.gif", "a file of that name exists and is not a video"),
     ],
 )
 def test_a_file_that_cannot_be_a_video_is_refused_beforehand(name: str, told: str, tmp_path: Path) -> None:
