@@ -61,7 +61,7 @@ class Given:
         self._bound.arguments.update((key, value) for key, value in values.items() if value is not ...)
 
     def settings(self, **names: str) -> dict[str, Any]:
-        """Those that are given, by the names that all middlewares use."""
+        """Return the settings that are given, by the names that all middlewares use."""
         given = self._bound.arguments
         return {ours: given[theirs] for ours, theirs in names.items() if given.get(theirs) is not None}
 

@@ -104,15 +104,15 @@ class Quiet:
     progress: Progress
 
     def stage(self, text: str, total: int | None = None) -> None:
-        """As in ``Progress``."""
+        """See ``Progress``."""
         self.progress.stage(text, total)
 
     def mutant_ended(self, end: MutantEnd) -> None:
-        """As in ``Progress``."""
+        """See ``Progress``."""
         self.progress.mutant_ended(end)
 
     def advance(self, line: str | None = None) -> None:
-        """As in ``Progress``."""
+        """See ``Progress``."""
         self.progress.advance(line)
 
     def note(self, text: str) -> None:

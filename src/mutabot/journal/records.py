@@ -152,7 +152,7 @@ class BaselineTest:
 
     @classmethod
     def of(cls, round: int, repetition: int, end: TestEnd) -> BaselineTest:
-        """What is kept of the end of a test."""
+        """Return what the journal keeps of the end of a test."""
         return cls(round, repetition, TestEnd(end.test, end.outcome, wall=end.wall, simulated=end.simulated))
 
 

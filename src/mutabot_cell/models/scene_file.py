@@ -50,7 +50,8 @@ def _shape_of(spec: mujoco.MjSpec, model: mujoco.MjModel, name: str, path: FileP
             geom for geom in range(model.ngeom) if model.geom_bodyid[geom] == body and _touches(model, geom)
         ]
         if len(found) != 1:
-            raise BadModel(f"body {name!r} of {path} has {len(found)} shapes that collide; Scene takes one")
+            what = f"{len(found)} shapes that collide; Scene takes one: leave contype=1 on a single geom"
+            raise BadModel(f"body {name!r} of {path} has {what}")
         return found[0]
     if spec.geom(name) is None:
         raise BadModel(f"{path} has no body or geom {name!r}; bodies: {names_of(spec.bodies)}")

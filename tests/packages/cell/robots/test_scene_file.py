@@ -52,7 +52,7 @@ def test_sizes_masses_and_friction_are_the_files(file: Path) -> None:
     [
         ({"parts": ["box"]}, r"no body or geom 'box'; bodies: .*'brick'"),
         ({"parts": ["table"]}, r"part 'table' .* does not weigh anything"),
-        ({"fixtures": ["ball"]}, r"fixture 'ball' .* is no box"),
+        ({"fixtures": ["ball"]}, r"fixture 'ball' .* is not a box"),
     ],
     ids=["missing", "weightless", "round"],
 )
