@@ -15,10 +15,6 @@ import mutabot.api
 SOURCE = Path(mutabot.api.__file__).parents[2]
 MODULES = [import_module(f"mutabot.api.{name}") for name in ("faults", "values", "reports", "processes")]
 PACKAGES = sorted(one.parent.name for one in SOURCE.glob("mutabot_*/__init__.py"))
-#: packages that still reach past the interface
-_NOT_YET = {
-    "mutabot_live",
-}  # fmt: skip
 
 
 def names(module: ModuleType) -> list[str]:
@@ -49,10 +45,7 @@ def test_packages_import_nothing_of_mutabot_but_its_interface(package: str) -> N
         for name in imported(node)
         if name.partition(".")[0] == "mutabot" and not name.startswith("mutabot.api.")
     }
-    if package in _NOT_YET:
-        assert outside, "take it out of _NOT_YET"
-    else:
-        assert sorted(outside) == []
+    assert sorted(outside) == []
 
 
 def imported(node: ast.AST) -> list[str]:

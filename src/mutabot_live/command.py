@@ -9,6 +9,7 @@ import signal
 import threading
 import time
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import TracebackType
 from typing import Annotated, Any, Self
@@ -16,10 +17,7 @@ from typing import Annotated, Any, Self
 import typer
 
 from mutabot.api.processes import Request
-from mutabot.api.reports import CommandContext, MutantEnd, Progress
-from mutabot.campaign.run import run_campaign
-from mutabot.report.terminal.progress import Pace
-from mutabot.report.texts import legible
+from mutabot.api.reports import CampaignRun, CommandContext, Progress, ReportPages
 
 from .pages import Pages
 from .server import LiveFeed, Server
@@ -75,10 +73,10 @@ class Live:
             self._server.close()
 
     def run(self, progress: Progress) -> Path:
-        """The campaign; like ``run_campaign``."""
-        self._told.progress = progress
+        """Run the campaign to its end; return the path of its journal."""
+        self._told.show_on(progress)
         try:
-            path = run_campaign(self._request, self._told)
+            path = CampaignRun.to_end(self._request, self._told)
         except BaseException as error:
             self._told.end("interrupted" if isinstance(error, KeyboardInterrupt) else str(error))
             raise
@@ -103,6 +101,34 @@ def _stop() -> None:
     signal.pthread_kill(main, signal.SIGTERM if is_ignored else signal.SIGINT)
 
 
+#: part of a stage after which the time left is worth telling: the first steps say little about the others
+_TELLING = 0.1
+
+
+@dataclass(slots=True)
+class _StagePace:
+    """The steps of one stage.
+
+    Attributes:
+        stage: its name.
+        total: how many there are; None if that is not known.
+        done: how many are done.
+        began: when it began, s of ``time.monotonic``.
+    """
+
+    stage: str
+    total: int | None
+    done: int = 0
+    began: float = field(default_factory=time.monotonic)
+
+    @property
+    def left(self) -> float | None:
+        """Seconds that the rest will take; None as long as too little is known to tell."""
+        if self.total is None or self.done == 0 or self.done < _TELLING * self.total:
+            return None
+        return (time.monotonic() - self.began) / self.done * max(0, self.total - self.done)
+
+
 class _FeedProgress:
     """A progress that also tells the feed.
 
@@ -118,29 +144,29 @@ class _FeedProgress:
     def __init__(self, feed: LiveFeed) -> None:
         self._feed = feed
         self._lock = threading.Lock()
-        self._stage, self._line, self._pace = "", "", Pace()
+        self._line, self._pace = "", _StagePace("", None)
         self.progress: Progress | None = None
         self.steps, self.ended = 0, ""
+
+    def show_on(self, progress: Progress) -> None:
+        """From now on there is something to show on the terminal."""
+        self.progress = progress
+        self.mutant_ended = progress.mutant_ended  # of no use to the page, which has it from the journal
 
     def stage(self, text: str, total: int | None = None) -> None:
         """A new stage begins."""
         if self.progress is not None:
             self.progress.stage(text, total)
-        self._stage, self._line, self._pace = text, "", Pace(total)
+        self._line, self._pace = "", _StagePace(text, total)
         self.steps += 1
         self.tell()
-
-    def mutant_ended(self, end: MutantEnd) -> None:
-        """A mutant has ended in a round."""
-        if self.progress is not None:
-            self.progress.mutant_ended(end)
 
     def advance(self, line: str | None = None) -> None:
         """One step is done."""
         if self.progress is not None:
             self.progress.advance(line)
-        self._line = legible(line or "")
-        self._pace.advance()
+        self._line = ReportPages.legible(line or "")
+        self._pace.done += 1
         self.steps += 1
         self.tell()
 
@@ -148,11 +174,11 @@ class _FeedProgress:
         """Something the user should know."""
         if self.progress is not None:
             self.progress.note(text)
-        self._feed.note(legible(text))
+        self._feed.note(ReportPages.legible(text))
 
     def end(self, how: str) -> None:
         """Note that the campaign has ended."""
-        self.ended = legible(how)
+        self.ended = ReportPages.legible(how)
         self.steps += 1
         self.pages.look_at_once()
         self.tell()
@@ -162,7 +188,7 @@ class _FeedProgress:
         with self._lock:
             pace = self._pace
             state: dict[str, Any] = {
-                "stage": self._stage,
+                "stage": pace.stage,
                 "line": self._line,
                 "done": pace.done,
                 "total": pace.total,

@@ -9,23 +9,14 @@ import re
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import closing
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
 
-from mutabot.errors import JournalError
-from mutabot.report.html.folder import Recorded, campaign_data, mutant_page, script
-from mutabot.report.texts import Cleaner, portable
-from mutabot.results.results import MutantResult, Results
-from mutabot.results.stored import StoredEvidence
-from mutabot.results.suggested import kept_suggestions
+from mutabot.api.reports import ReportPages
 
 #: seconds between two looks into the journal, at least; and how many times as long as one takes
 _LEAST, _TIMES = 1.0, 20.0
-#: bytes of recordings that a mutant's page may take
-_ROOM = 4_000_000
 _KINDS = {".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml"}
 _NUMBERED = re.compile(r"data/(mutants|originals)/([0-9]{1,7})\.js")
 #: the report from disk asks nobody for anything; this one asks the server that it came from
@@ -42,21 +33,6 @@ class Page:
     data: bytes
 
 
-@dataclass(frozen=True, slots=True)
-class _CampaignSnapshot:
-    """The campaign as it was when the journal was last looked into.
-
-    Attributes:
-        version: up to which step all outcomes are in it.
-        campaign: fit for reports; None if it has no plan yet.
-        clean: makes texts of recordings so.
-    """
-
-    version: int
-    campaign: Results | None
-    clean: Callable[[str], str]
-
-
 class Pages:
     """The pages of a campaign.
 
@@ -70,12 +46,10 @@ class Pages:
     """
 
     def __init__(self, journal: Path, name: str, version: Callable[[], int]) -> None:
-        self._journal, self._name, self._version = journal, name, version
+        self._report, self._version = ReportPages(journal, name), version
         self._assets = dict(_assets())
         self._lock = threading.Lock()
-        self._snapshot = _CampaignSnapshot(0, None, Cleaner(None))
-        self._scripts: dict[str, bytes] = {}
-        self._recorded: Recorded | None = None
+        self._read = 0
         self._next = 0.0
         self.every = _LEAST
 
@@ -83,15 +57,16 @@ class Pages:
         """What is at a path; None if there is nothing."""
         if path in self._assets:
             return self._assets[path]
+        whole = {"data/campaign.js": self._report.campaign, "data/sources.js": self._report.sources}
         numbered = _NUMBERED.fullmatch(path)
-        if numbered is None and path not in ("data/campaign.js", "data/sources.js"):
+        if numbered is None and path not in whole:
             return None
         with self._lock:
-            snapshot = self._look()
+            self._look()
             if numbered is None:
-                return _script(self._whole(path, snapshot))
-            make = self._mutant if numbered[1] == "mutants" else self._original
-            found = make(int(numbered[2]), snapshot)
+                return _script(whole[path]())
+            of = self._report.mutant if numbered[1] == "mutants" else self._report.original
+            found = of(int(numbered[2]))
         return None if found is None else _script(found)
 
     def look_at_once(self) -> None:
@@ -99,69 +74,16 @@ class Pages:
         with self._lock:
             self._next = 0.0
 
-    def _look(self) -> _CampaignSnapshot:
-        """The campaign, as new as may be: reading must not take the time of those who do the work."""
+    def _look(self) -> None:
+        """Read the journal, as often as may be: reading must not take the time of those who do the work."""
         version, now = self._version(), time.monotonic()
-        if version == self._snapshot.version or now < self._next:
-            return self._snapshot
-        self._snapshot = _CampaignSnapshot(version, *self._read())
-        self._scripts.clear()
+        if version == self._read or now < self._next:
+            return
+        self._report.read(version)
+        self._read = version
         took = time.monotonic() - now
         self.every = max(_LEAST, _TIMES * took)
         self._next = now + took + self.every
-        return self._snapshot
-
-    def _read(self) -> tuple[Results | None, Callable[[str], str]]:
-        try:
-            stored = Results.read(self._journal)
-        except JournalError:  # there is none yet
-            return None, Cleaner(None)
-        if stored.attempt is not None or not stored.everything:
-            return None, Cleaner(None)  # it is still that of the campaign before
-        return portable(stored), Cleaner(stored.meta.get("root"))
-
-    def _whole(self, path: str, snapshot: _CampaignSnapshot) -> bytes:
-        campaign = snapshot.campaign
-        if campaign is None:
-            return b""
-        if path not in self._scripts:
-            if path == "data/campaign.js":
-                data: Any = {**campaign_data(campaign, self._name), "version": snapshot.version}
-                self._scripts[path] = script("campaign", data)
-            else:
-                sources = [[file, text] for file, text in campaign.sources.items()]
-                self._scripts[path] = script("sources", sources)
-        return self._scripts[path]
-
-    def _mutant(self, number: int, snapshot: _CampaignSnapshot) -> bytes | None:
-        campaign = snapshot.campaign
-        found = (one for one in campaign.mutants if one.mutant.number == number) if campaign else iter(())
-        result = next(found, None)
-        if result is None:
-            return None
-        suggestions = kept_suggestions(self._journal, campaign.meta) if campaign is not None else {}
-        page = script(f"mutant {number}", mutant_page(result, suggestions.get(result.mutant.id)))
-        with closing(StoredEvidence(self._journal)) as evidence:
-            # originals that were asked for before keep their numbers: browsers know them by these
-            known = self._recorded.originals if self._recorded is not None else {}
-            recorded = self._recorded = Recorded(evidence, snapshot.clean, known)
-            data = _recordings(recorded, result)
-            return page + (script(f"recordings {number}", data) if any(data.values()) else b"")
-
-    def _original(self, number: int, snapshot: _CampaignSnapshot) -> bytes | None:
-        originals = [*self._recorded.originals.values()] if self._recorded is not None else []
-        return script(f"original {number}", originals[number]) if number < len(originals) else None
-
-
-def _recordings(recorded: Recorded, result: MutantResult) -> dict[str, Any]:
-    found: list[Any] = []
-    used = 0
-    for one in recorded.of(result):
-        used += len(script("", one))
-        if used > _ROOM:
-            break
-        found.append(one)
-    return {"recordings": found, "without": recorded.count(result) - len(found)}
 
 
 def _script(data: bytes) -> Page:
@@ -169,17 +91,17 @@ def _script(data: bytes) -> Page:
 
 
 def _assets() -> Iterator[tuple[str, Page]]:
-    for package in ("mutabot.report.html", "mutabot_live"):
-        for one in files(package).joinpath("assets").iterdir():
-            kind = _KINDS.get(Path(one.name).suffix)
-            if kind is not None and one.name != "index.html":
-                yield f"assets/{one.name}", Page(kind, one.read_bytes())
-    yield "", Page(_KINDS[".html"], index().encode())
+    found = ReportPages.assets()
+    own = files("mutabot_live").joinpath("assets").iterdir()
+    for name, data in (*found.items(), *((one.name, one.read_bytes()) for one in own)):
+        kind = _KINDS.get(Path(name).suffix)
+        if kind is not None and name != "index.html":
+            yield f"assets/{name}", Page(kind, data)
+    yield "", Page(_KINDS[".html"], index(found["index.html"].decode()).encode())
 
 
-def index() -> str:
+def index(text: str) -> str:
     """The report's page, with what keeps it up to date."""
-    text = files("mutabot.report.html").joinpath("assets", "index.html").read_text(encoding="utf-8")
     for old, new in (_POLICY, ("</head>", _STYLE), ('<script src="data/campaign.js">', _SCRIPT)):
         assert text.count(old) == 1, old
         text = text.replace(old, new)

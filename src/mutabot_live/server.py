@@ -28,7 +28,7 @@ from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any
 
-from mutabot.errors import UsageError
+from mutabot.api.reports import UsageError
 
 from .pages import Page, Pages
 

@@ -12,7 +12,6 @@ from mutabot.api.processes import Request
 from mutabot.api.reports import (
     CampaignRun,
     MutabotError,
-    MutantEnd,
     MutantResult,
     Progress,
     Results,
@@ -97,23 +96,12 @@ def _short(value: float) -> str:
     return repr(float(f"{value:.3g}"))
 
 
-@dataclass(frozen=True, slots=True)
 class Quiet:
     """Progress without the remarks of campaigns that only serve."""
 
-    progress: Progress
-
-    def stage(self, text: str, total: int | None = None) -> None:
-        """See ``Progress``."""
-        self.progress.stage(text, total)
-
-    def mutant_ended(self, end: MutantEnd) -> None:
-        """See ``Progress``."""
-        self.progress.mutant_ended(end)
-
-    def advance(self, line: str | None = None) -> None:
-        """See ``Progress``."""
-        self.progress.advance(line)
+    def __init__(self, progress: Progress) -> None:
+        self.stage, self.advance = progress.stage, progress.advance
+        self.mutant_ended = progress.mutant_ended
 
     def note(self, text: str) -> None:
         """Print nothing: the campaign itself has printed the note."""

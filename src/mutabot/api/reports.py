@@ -12,18 +12,18 @@ if TYPE_CHECKING:
     from mutabot.cli.context import CommandContext
     from mutabot.errors import MutabotError, UsageError
     from mutabot.evidence.paths import RecordedPaths
-    from mutabot.model.mutant_end import MutantEnd
     from mutabot.model.outcome import Verdict
+    from mutabot.report.html.pages import ReportPages
     from mutabot.results.results import MutantResult, Results
 
 __all__ = [
     "CampaignRun",
     "CommandContext",
     "MutabotError",
-    "MutantEnd",
     "MutantResult",
     "Progress",
     "RecordedPaths",
+    "ReportPages",
     "Results",
     "UsageError",
     "Verdict",
@@ -37,8 +37,8 @@ _HOMES = {
         "UsageError",
     ),
     "mutabot.evidence.paths": ("RecordedPaths",),
-    "mutabot.model.mutant_end": ("MutantEnd",),
     "mutabot.model.outcome": ("Verdict",),
+    "mutabot.report.html.pages": ("ReportPages",),
     "mutabot.results.results": (
         "MutantResult",
         "Results",
