@@ -2,14 +2,14 @@
 
 import json
 import os
-import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-SUITES = Path(__file__).parents[2] / "suites" / "projects"
+from suites.corpus import PROJECTS, copied
+
 PRIVILEGED = pytest.mark.skipif(os.geteuid() != 0, reason="only root can give a fork the id of its parent")
 #: as an ordinary user: without any right, in a user namespace
 ORDINARY = ["unshare", "--user", "--map-user=1000", "--map-group=1000"]
@@ -82,8 +82,7 @@ def test_an_ordinary_user_forks_what_does_not_ask_for_its_id(
     project: str, engine: str, tmp_path: Path
 ) -> None:
     """Nobody but root can give a fork its parent's id: such a program runs in processes of its own."""
-    folder = tmp_path / project
-    shutil.copytree(SUITES / project, folder)
+    folder = copied(PROJECTS / project, tmp_path / project)
     command = [*ORDINARY, sys.executable, "-m", "mutabot", "-C", str(folder), "run", "--json", "-j", "1"]
     done = subprocess.run(
         [*command, "--sample", "4"], check=False, capture_output=True, text=True, timeout=120
