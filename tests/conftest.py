@@ -14,6 +14,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 from tests.processor_time import ProcessorTime
 
@@ -27,6 +28,9 @@ def pytest_configure(config: pytest.Config) -> None:
 
     Tests start a thousand processes that may not write bytecode: it is there before them.
     """
+    # no test may fail because the machine is busy
+    settings.register_profile("busy", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+    settings.load_profile("busy")
     if not hasattr(config, "workerinput"):
         compileall.compile_dir(Path(__file__).parents[1] / "src", quiet=2)
     if signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
