@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from array import array
+
 import pytest
 
 from mutabot.evidence.differences import noise_between
 from mutabot.evidence.paths import RecordedPaths
-from mutabot.evidence.recording import RecordedCall, Recording
+from mutabot.evidence.recording import RecordedCall, Recording, Track, TrackKind
+from mutabot.evidence.spread import spread_between
 from mutabot.evidence.story import diverged
 from tests.evidence.worlds import SHELF, TABLE, Place, apart, line, recorded, story
 
@@ -131,3 +134,29 @@ def test_the_first_call_that_differs_is_named(calls: list[tuple[str, dict[str, f
     found = apart(original, told(calls))
     assert found is not None
     assert found.what == what
+
+
+def with_arm(recording: Recording, height: float) -> Recording:
+    """The same with an arm that is drawn."""
+    values = array("f", [0.0, 0.0, 0.0, 0.0, 0.0, height]) * len(recording.times)
+    recording.tracks["arm"] = Track("arm", TrackKind.LINE, values, radii=(0.05, 0.05))
+    return recording
+
+
+def test_what_is_only_drawn_is_no_difference() -> None:
+    places = [*line(SHELF, TABLE, 1.0)]
+    assert apart(with_arm(recorded(places), 0.5), with_arm(recorded(places), 0.9)) is None
+
+
+def test_what_is_only_drawn_changes_nothing_of_a_difference() -> None:
+    places, others = [*line(SHELF, TABLE, 1.0)], [*line(SHELF, SHELF, 1.0)]
+    bare = apart(recorded(places), recorded(others))
+    assert bare is not None
+    assert apart(with_arm(recorded(places), 0.5), with_arm(recorded(others), 0.9)) == bare
+
+
+def test_what_is_only_drawn_changes_no_spread() -> None:
+    runs = [recorded([*line(SHELF, (1.0, 0.0, z), 1.0)], [SHELF] * 10) for z in (0.02, 0.03)]
+    bare = spread_between([RecordedPaths(one) for one in runs])
+    drawn = [with_arm(one, height) for one, height in zip(runs, (0.1, 0.9), strict=True)]
+    assert spread_between([RecordedPaths(one) for one in drawn]) == bare

@@ -191,3 +191,16 @@ def test_bodies_may_be_numbers(tape: Tape) -> None:
 def test_a_rate_of_nothing_is_refused() -> None:
     with pytest.raises(ValueError, match="above 0"):
         Feed(lambda: 0.0, rate=0.0)
+
+
+def test_a_line_has_three_numbers_per_radius_and_others_are_a_problem(tape: Tape) -> None:
+    world = World()
+    feed = Feed(lambda: world.time)
+    feed.line("arm", lambda: [0.0, 0.0, world.height, 1.0, 0.0, 0.0], radii=[0.05, 0.04])
+    feed.line("wrong", lambda: [0.0, 0.0, 0.0], radii=[0.05, 0.04])
+    world.run(feed, 1.0)
+    arm, wrong = tape.recording.tracks["arm"], tape.recording.tracks["wrong"]
+    assert arm.radii == (0.05, 0.04)
+    assert len(arm.values) == len(wrong.values) == 6 * len(tape.recording.times)
+    assert all(map(isnan, wrong.values))
+    assert tape.recording.problems == ["wrong cannot be recorded: 3 numbers instead of 6"]

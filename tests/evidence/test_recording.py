@@ -33,11 +33,11 @@ def recordings(draw: some.DrawFn) -> Recording:
     tracks = {}
     for name in draw(some.lists(NAMES, max_size=3, unique=True)):
         kind = draw(some.sampled_from(TrackKind))
-        values = array(
-            "f", draw(some.lists(NUMBERS, min_size=count * kind.width, max_size=count * kind.width))
-        )
         size = draw(some.none() | some.just((0.5, 0.25, 0.125)))
-        tracks[name] = Track(name, kind, values, draw(NAMES), size)
+        radii = (0.5, 0.25) if kind is TrackKind.LINE else ()
+        track = tracks[name] = Track(name, kind, array("f"), draw(NAMES), size, radii)
+        many = count * track.width
+        track.values.extend(draw(some.lists(NUMBERS, min_size=many, max_size=many)))
     told = some.builds(
         RecordedCall,
         some.none() | some.floats(0, 10),

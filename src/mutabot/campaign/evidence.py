@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from mutabot.errors import JournalError
 from mutabot.evidence.differences import noise_between
 from mutabot.evidence.paths import RecordedPaths
-from mutabot.evidence.recording import bytes_of, from_bytes
+from mutabot.evidence.recording import TrackKind, bytes_of, from_bytes
 from mutabot.evidence.spread import spread_between
 from mutabot.evidence.story import diverged
 from mutabot.journal.recordings import ORIGINAL, Rank, Recordings
@@ -86,7 +86,7 @@ class CampaignEvidence:
         self._digests[round, end.test] = _digest(recording)
         self.recordings.add(ORIGINAL, round, end.test, Rank.ORIGINAL, data)
         found = from_bytes(data)
-        self.has_tracks |= bool(found.tracks)
+        self.has_tracks |= any(one.kind is not TrackKind.LINE for one in found.tracks.values())
         if end.outcome == "passed":
             self._passed.setdefault(end.test, []).append(round)
         return found

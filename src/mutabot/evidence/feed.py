@@ -27,6 +27,7 @@ class _Source:
     read: Callable[[], Any]
     unit: str = ""
     size: Triple | None = None
+    radii: tuple[float, ...] = ()
 
 
 class Feed:
@@ -70,6 +71,15 @@ class Feed:
     def value(self, name: str, read: Callable[[], float], *, unit: str = "") -> None:
         """One number, such as the opening of a gripper or the margin of a monitor."""
         self._sources.append(_Source(name, TrackKind.VALUE, read, unit))
+
+    def line(self, name: str, read: Callable[[], Sequence[float]], *, radii: Sequence[float]) -> None:
+        """A line that is drawn and never compared, such as an arm from its base through its joints.
+
+        Args:
+            read: gives x, y, z of one point after the other in m, world frame: three numbers per radius.
+            radii: how thick it is at each of its points, m.
+        """
+        self._sources.append(_Source(name, TrackKind.LINE, read, radii=tuple(map(float, radii))))
 
     def contacts(self, read: Callable[[], Iterable[tuple[str, str]]], *, robots: Iterable[str] = ()) -> None:
         """What touches what.
@@ -190,14 +200,14 @@ class Feed:
 
     def _sample(self, tape: Tape, now: float) -> None:
         for source in self._sources:
-            track = tape.track(source.name, source.kind, source.unit, source.size)
+            track = tape.track(source.name, source.kind, source.unit, source.size, source.radii)
             length = len(track.values)
             with tape.reading(f"{source.name} cannot be recorded"):
                 found = [source.read()] if source.kind is TrackKind.VALUE else list(source.read())
-                if len(found) == track.kind.width:
+                if len(found) == track.width:
                     track.values.extend(found)
                     continue
-                why = f"{len(found)} numbers instead of {track.kind.width}"
+                why = f"{len(found)} numbers instead of {track.width}"
                 tape.problem(f"{source.name} cannot be recorded: {why}")
             del track.values[length:]
         tape.close_moment(now)

@@ -13,7 +13,7 @@ from itertools import pairwise
 from math import asin, degrees, dist, inf, isnan, sqrt
 from typing import Self
 
-from mutabot.evidence.recording import Recording, Track, bytes_of, from_bytes
+from mutabot.evidence.recording import Recording, Track, TrackKind, bytes_of, from_bytes
 
 Point = tuple[float, float, float]
 #: a row of a track: the numbers of one moment
@@ -134,7 +134,7 @@ class TrackPath:
     @cached_property
     def _present(self) -> list[tuple[float, Row]]:
         """The moments at which it was there, with their numbers."""
-        values = [iter(self.track.values)] * self.track.kind.width
+        values = [iter(self.track.values)] * self.track.width
         rows = zip(self.times, zip(*values, strict=True), strict=False)
         return [(time, row) for time, row in rows if not isnan(row[0])]
 
@@ -176,7 +176,17 @@ class RecordedPaths:
 
     @cached_property
     def paths(self) -> dict[str, TrackPath]:
-        """Everything that was tracked, by name, if it was ever there; times in s, positions in m."""
-        recording = self.recording
-        found = {name: TrackPath(track, recording.times) for name, track in recording.tracks.items()}
+        """What is compared, by name, if it was ever there; times in s, positions in m."""
+        return self._those(is_drawn=False)
+
+    @cached_property
+    def lines(self) -> dict[str, TrackPath]:
+        """What is only drawn, likewise: lines through points, three numbers each."""
+        return self._those(is_drawn=True)
+
+    def _those(self, *, is_drawn: bool) -> dict[str, TrackPath]:
+        times, tracks = self.recording.times, self.recording.tracks.items()
+        found = {
+            name: TrackPath(one, times) for name, one in tracks if (one.kind is TrackKind.LINE) is is_drawn
+        }
         return {name: path for name, path in found.items() if path.rows}

@@ -25,11 +25,15 @@ class TrackKind(StrEnum):
     POSE = "pose"
     POINT = "point"
     VALUE = "value"
+    LINE = "line"
 
     @property
     def width(self) -> int:
-        """Numbers at each moment: x, y, z in m, for a pose followed by the quaternion w, x, y, z."""
-        return {TrackKind.POSE: 7, TrackKind.POINT: 3, TrackKind.VALUE: 1}[self]
+        """Numbers at each moment: x, y, z in m, for a pose followed by the quaternion w, x, y, z.
+
+        Of a line those of each of its points.
+        """
+        return {TrackKind.POSE: 7, TrackKind.POINT: 3, TrackKind.VALUE: 1, TrackKind.LINE: 3}[self]
 
 
 @dataclass(slots=True)
@@ -39,9 +43,10 @@ class Track:
     Attributes:
         name: what it is, such as ``tool``.
         kind: what the numbers are.
-        values: ``kind.width`` numbers per moment, one moment after the other; NaN where it was not there.
+        values: ``width`` numbers per moment, one moment after the other; NaN where it was not there.
         unit: of a value; positions are in m, in the world's frame.
         size: edge lengths of its box in m, of an object that has one; to draw it and to see how near it was.
+        radii: of a line, how thick it is at each of its points, m. A line is drawn, and never compared.
     """
 
     name: str
@@ -49,6 +54,12 @@ class Track:
     values: array[float]
     unit: str = ""
     size: tuple[float, float, float] | None = None
+    radii: tuple[float, ...] = ()
+
+    @property
+    def width(self) -> int:
+        """Numbers at each moment."""
+        return self.kind.width * max(1, len(self.radii))
 
 
 class Block(NamedTuple):
@@ -143,7 +154,7 @@ def to_bytes(recording: Recording) -> bytes:
     """The recording as compressed bytes, to be kept; numbers in this machine's order of bytes."""
     tracks = recording.tracks.values()
     fields = {name: getattr(recording, name) for name in _PLAIN_FIELDS}
-    fields["tracks"] = [(one.name, one.kind, one.unit, one.size) for one in tracks]
+    fields["tracks"] = [(one.name, one.kind, one.unit, one.size, one.radii) for one in tracks]
     fields["count"] = len(recording.times)
     head = json.dumps(fields, default=_plain, separators=(",", ":")).encode()
     numbers = [one.tobytes() for one in (recording.times, *(track.values for track in tracks))]
@@ -165,9 +176,10 @@ def from_bytes(data: bytes) -> Recording:
         count = head["count"]
         times, end = _numbers("d", data, end, count)
         tracks = {}
-        for name, kind, unit, size in head["tracks"]:
-            values, end = _numbers(_TYPE, data, end, count * TrackKind(kind).width)
-            tracks[name] = Track(name, TrackKind(kind), values, unit, _tuple(size))
+        for name, kind, unit, size, *radii in head["tracks"]:  # earlier versions know no radii
+            track = Track(name, TrackKind(kind), array(_TYPE), unit, _tuple(size), *map(tuple, radii))
+            track.values, end = _numbers(_TYPE, data, end, count * track.width)
+            tracks[name] = track
         head.setdefault("robots", ())  # recordings of earlier versions do not say
         fields = {name: head[name] for name in _PLAIN_FIELDS}
         fields["robots"] = tuple(fields["robots"])

@@ -110,12 +110,19 @@ class Tape:
             self.clock = lambda: self.end
             return self.end
 
-    def track(self, name: str, kind: TrackKind, unit: str, size: tuple[float, float, float] | None) -> Track:
+    def track(
+        self,
+        name: str,
+        kind: TrackKind,
+        unit: str,
+        size: tuple[float, float, float] | None,
+        radii: tuple[float, ...] = (),
+    ) -> Track:
         """The track of this name; a new one was not there before now."""
         found = self.recording.tracks.get(name)
         if found is None:
-            values = array("f", [_NAN]) * (kind.width * len(self.recording.times))
-            found = self.recording.tracks[name] = Track(name, kind, values, unit, size)
+            found = self.recording.tracks[name] = Track(name, kind, array("f"), unit, size, radii)
+            found.values = array("f", [_NAN]) * (found.width * len(self.recording.times))
         return found
 
     def close_moment(self, now: float) -> None:
@@ -123,7 +130,7 @@ class Tape:
         times = self.recording.times
         times.append(now)
         for track in self.recording.tracks.values():
-            missing = track.kind.width * len(times) - len(track.values)
+            missing = track.width * len(times) - len(track.values)
             if missing:
                 track.values.extend([_NAN] * missing)
         if len(times) >= _MOST_MOMENTS:
@@ -176,7 +183,7 @@ class Tape:
         recording = self.recording
         recording.times = recording.times[::2]
         for track in recording.tracks.values():
-            width, values = track.kind.width, track.values
+            width, values = track.width, track.values
             track.values = array(
                 "f",
                 (

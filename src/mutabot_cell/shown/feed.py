@@ -16,6 +16,7 @@ from mutabot_cell.stretch import LONGEST, Stretch
 
 from .camera import TracingCamera, View
 from .contacts import Contacts
+from .skeleton import skeleton_of
 
 #: of a film: from where robot, conveyor and table are seen, pixels, pictures per simulated second
 _VIEW = View(azimuth=90.0, elevation=-33.0, distance=2.05, look_at=(0.0, 0.1, 0.96))
@@ -37,6 +38,8 @@ def tell_of(simulation: Simulation, scene: Scene) -> Feed:
         margin = _limit_margin(simulation, robot)
         if margin is not None:
             feed.value(f"{prefix}joint limit margin", margin, unit="deg")
+        for line in skeleton_of(simulation, robot):
+            feed.line(line.name, line.read, radii=line.radii)
     contacts = Contacts(simulation)
     feed.contacts(contacts.read, robots=contacts.robots)
     for fixture in scene.fixtures:

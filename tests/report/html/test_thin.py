@@ -81,3 +81,17 @@ def test_a_value_keeps_a_hundredth_of_its_range() -> None:
     track = Track("current", TrackKind.VALUE, array("f", values), "A")
     made = decoded(thinned(track, times))
     assert all(abs(at(*made, time)[0] - value) < 2e-8 for time, value in zip(times, values, strict=True))
+
+
+def test_a_line_is_where_its_points_were_to_half_a_centimetre() -> None:
+    times = [0.01 * number for number in range(500)]
+    rows = [(sin(time), 0.0, 0.0, 0.0, 2 * sin(time), 1.0) for time in times]
+    track = Track(
+        "arm", TrackKind.LINE, array("f", [value for row in rows for value in row]), radii=(0.1, 0.2)
+    )
+    data = thinned(track, times)
+    made = decoded(data)
+    assert data["radii"] == [0.1, 0.2]
+    assert len(data["t"]) < 60
+    for time, row in zip(times, rows, strict=True):
+        assert all(abs(seen - value) < 0.006 for seen, value in zip(at(*made, time), row, strict=True))

@@ -249,6 +249,8 @@ _LENGTH, _TURN = 1e-4, 1e-3
 _MISS_LENGTH, _MISS_TURN = 5.0, 3.0
 #: steps over the range of a value, and by how many a line may miss
 _STEPS, _MISS_VALUE = 2000, 8.0
+#: the same of lines, which are only drawn: m
+_DRAWN, _MISS_DRAWN = 1e-3, 5.0
 
 
 def thinned(track: Track, times: Sequence[float]) -> Any:
@@ -259,7 +261,7 @@ def thinned(track: Track, times: Sequence[float]) -> Any:
         return None
     rows = list(accumulate(path.rows, _turned_like)) if track.kind is TrackKind.POSE else path.rows
     gaps = _gaps(times, when)
-    scales, misses = _scales(track.kind, rows)
+    scales, misses = _scales(track, rows)
     steps = [tuple(value / scale for value, scale in zip(row, scales, strict=True)) for row in rows]
     kept = kept_points(when, steps, misses)
     channels = [[round(steps[index][axis]) for index in kept] for axis in range(len(scales))]
@@ -268,6 +270,7 @@ def thinned(track: Track, times: Sequence[float]) -> Any:
         "kind": track.kind.value,
         "unit": track.unit,
         **({"size": list(track.size)} if track.size is not None else {}),
+        **({"radii": list(track.radii)} if track.radii else {}),
         **({"gaps": gaps} if gaps else {}),
         "scales": scales,
         "t": _differences([round(1000 * when[index]) for index in kept]),
@@ -315,12 +318,14 @@ def _turned_like(before: Row, row: Row) -> Row:
     return row
 
 
-def _scales(kind: TrackKind, rows: Sequence[Row]) -> tuple[list[float], list[float]]:
-    if kind is TrackKind.VALUE:
+def _scales(track: Track, rows: Sequence[Row]) -> tuple[list[float], list[float]]:
+    if track.kind is TrackKind.LINE:
+        return [_DRAWN] * track.width, [_MISS_DRAWN] * track.width
+    if track.kind is TrackKind.VALUE:
         values = [row[0] for row in rows]
         reach = max(max(values) - min(values), 1e-9 * max(map(abs, values)), 1e-12)
         return [float(f"{reach / _STEPS:.3g}")], [_MISS_VALUE]
-    turns = kind.width - 3
+    turns = track.width - 3
     return [_LENGTH] * 3 + [_TURN] * turns, [_MISS_LENGTH] * 3 + [_MISS_TURN] * turns
 
 

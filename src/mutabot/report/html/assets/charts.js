@@ -20,7 +20,7 @@
     const made = [];
     for (const one of mutant.tracks.values()) {
       const usual = original && original.tracks.get(one.name);
-      if (!one.times.length) continue;
+      if (!one.times.length || one.kind === "line") continue; // lines are only drawn
       for (const measure of measures(usual && usual.times.length ? usual : one)) made.push(chart(one, usual, measure, end, mutant.fault, clock, apart.find((each) => each.name === measure.name)));
     }
     const different = made.filter((one) => one.differs).sort((one, other) => other.share - one.share);

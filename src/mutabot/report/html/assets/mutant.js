@@ -105,17 +105,18 @@
   /** The view of what the robot did, and what goes below the source: its commands, readings and contacts. */
   function robot(one, page, stops) {
     const events = h("section", { "aria-labelledby": "events" });
-    const section = h("section", { class: "robot", "aria-labelledby": "robot" }, h("h2", { id: "robot" }, "What the robot did"));
+    const head = h("div", { class: "head" }, h("h2", { id: "robot" }, "What the robot did"));
+    const section = h("section", { class: "robot", "aria-labelledby": "robot" }, head);
     if (!page.recordings.length) {
       section.append(nothingRecorded(one, page));
       return { seen: section, events: "" };
     }
     const holder = h("div", null);
-    const label = (found) => `round ${found.round + 1} · ${found.test}`;
+    const label = (found) => `round ${found.round + 1} · ${found.test.replace(/^.*::/, "")}`;
     if (page.recordings.length > 1) {
-      section.append(h("div", { class: "field" }, h("label", { for: "recording" }, "Round and test"),
+      head.append(h("div", null, h("label", { for: "recording", class: "unseen" }, "Round and test"),
         h("select", { id: "recording", onchange: (event) => show(Number(event.target.value)) }, page.recordings.map((found, index) => h("option", { value: index }, label(found))))));
-    } else section.append(h("p", { class: "hint" }, label(page.recordings[0])));
+    } else head.append(h("p", { class: "hint" }, label(page.recordings[0])));
     if (page.withoutRecordings) section.append(h("p", { class: "hint" }, `${count(page.withoutRecordings, "further recording")} had no room in this report; \`mutabot show ${one.number}\` tells of them.`));
     section.append(holder);
     let stop = [];
@@ -153,7 +154,7 @@
     const named = (each) => each && [...each.tracks.values()].some((track) => track.times.length);
     holder.replaceChildren();
     if (diverged && diverged.story && !one.why.includes(diverged.story)) holder.append(h("p", { class: "story" }, diverged.story));
-    if (diverged && diverged.what) holder.append(h("p", null, h("strong", null, "First difference"), diverged.at !== null ? ` at ${number(diverged.at, 4)} s: ` : ": ", diverged.what));
+    const first = diverged && diverged.what ? h("p", null, h("strong", null, "First difference"), diverged.at !== null ? ` at ${number(diverged.at, 4)} s: ` : ": ", diverged.what) : "";
     const drawn = h("div", { class: "drawn-world" });
     if (named(mutant) || named(usual)) {
       const worlds = [usual && { name: "original", recording: usual, ink: () => mutabot.ink("original"), width: 1.6, dash: [6, 3] }, { name: "mutant", recording: mutant, ink: () => mutabot.ink("mutant"), width: 2.2, dash: [] }].filter(Boolean);
@@ -163,6 +164,7 @@
       drawn.append(h("div", { class: "multiples" }, mutabot.charts(usual, mutant, clock, diverged ? diverged.apart : [])));
       holder.append(slider(clock, mutant, made.canvas, stop), drawn);
     }
+    holder.append(first);
     events.replaceChildren(h("h2", { id: "events" }, "Commands, readings and contacts"), mutabot.timeline.lanes(usual, mutant, clock), mutabot.timeline.table(usual, mutant, clock, fault(one, diverged)), apart(diverged));
     if (mutant.problems.length) events.append(h("p", { class: "hint" }, `Not recorded: ${mutant.problems.join("; ")}`));
     if (!mutant.simulated) events.append(h("p", { class: "hint" }, "Times are of the wall clock: the vocabulary names no simulated clock."));

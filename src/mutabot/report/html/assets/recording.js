@@ -14,7 +14,7 @@
     const channels = data.v.map((one, axis) => summed(one).map((value) => value * data.scales[axis]));
     const rows = times.map((_, index) => channels.map((one) => one[index]));
     const gaps = (data.gaps || []).map(([from, to]) => [from / 1000, to / 1000]);
-    return { name: data.name, kind: data.kind, unit: data.unit, size: data.size, times, rows, gaps };
+    return { name: data.name, kind: data.kind, unit: data.unit, size: data.size, radii: data.radii, times, rows, gaps };
   }
 
   function recording(data) {

@@ -14,12 +14,15 @@
   /** A canvas that shows two recordings, and follows a clock. `worlds`: the original first, each with name and ink. */
   function scene(worlds, clock) {
     const blocks = worlds[worlds.length - 1].recording.blocks.map(([name, centre, size, colour]) => ({ name, centre, half: times(size, 0.5), colour }));
-    const things = worlds.map((world) => [...world.recording.tracks.values()].filter((one) => one.kind !== "value" && one.times.length));
-    const shown = new Set(things.flat().map((one) => one.name));
+    const those = (is) => worlds.map((world) => [...world.recording.tracks.values()].filter((one) => one.times.length && is(one.kind)));
+    const things = those((kind) => kind === "pose" || kind === "point"), robots = those((kind) => kind === "line");
+    const ROBOT = Symbol("robot");
+    const shown = new Set([...things.flat().map((one) => one.name), ROBOT]);
     const bounds = boundsOf(things.flat(), blocks);
     const home = { yaw: -1.05, pitch: 0.42, distance: 1.15 * bounds.radius / FIELD, target: bounds.centre };
     const view = { ...home };
-    const points = things.flat().flatMap((one) => one.rows.filter((_, index) => index % Math.ceil(one.rows.length / 200) === 0));
+    const some = (one, most) => one.rows.filter((_, index) => index % Math.ceil(one.rows.length / most) === 0);
+    const points = [...things.flat().flatMap((one) => some(one, 200)), ...robots.flat().flatMap((one) => some(one, 40).flatMap(pointsOf))];
     let isFitted = true; // until the reader comes nearer or moves it, all paths fill the view
     const canvas = h("canvas", { class: "scene", tabindex: "0", role: "application", "aria-roledescription": "3D view",
       "aria-label": "Paths of original and mutant in 3D. Arrow keys turn it, plus and minus zoom, 0 shows it as at first, space plays." });
@@ -39,6 +42,7 @@
       if (isFitted) fit(view, points, width, height);
       const camera = cameraOf(view, width, height);
       drawBlocks(pen, camera, blocks, colours);
+      if (shown.has(ROBOT)) worlds.forEach((world, index) => robot(pen, camera, robots[index], blocks, clock.time, world, index < worlds.length - 1));
       worlds.forEach((world, index) => things[index].filter((one) => shown.has(one.name)).forEach((one) => path(pen, camera, one, world, blocks, clock.time, colours)));
       worlds.forEach((world, index) => things[index].filter((one) => shown.has(one.name)).forEach((one) => body(pen, camera, one, world, clock.time, colours, index)));
       if (worlds.length > 1) things[1].filter((one) => shown.has(one.name)).forEach((one) => ghost(pen, camera, things[0].find((other) => other.name === one.name), one, worlds[0].ink(), clock.time, colours));
@@ -94,13 +98,13 @@
     clock.on(draw);
 
     const turn = (name, yaw, pitch) => h("button", { type: "button", onclick: () => { Object.assign(view, home, { yaw, pitch }); isFitted = true; draw(); } }, name);
-    const names = [...new Set(things.flat().map((one) => one.name))];
+    const names = [...new Set(things.flat().map((one) => one.name)), ...(robots.flat().length ? [ROBOT] : [])];
     const controls = h("div", { class: "scene-controls" },
       h("div", { role: "group", "aria-label": "View" }, turn("3D", home.yaw, home.pitch), turn("Top", -Math.PI / 2, 1.55), turn("Front", -Math.PI / 2, 0), turn("Side", 0, 0),
         h("button", { type: "button", "aria-label": "Nearer", onclick: () => { zoom(1 / 1.25); draw(); } }, "+"),
         h("button", { type: "button", "aria-label": "Farther", onclick: () => { zoom(1.25); draw(); } }, "−")),
       names.length > 1 ? h("div", { role: "group", "aria-label": "Shown" }, names.map((name) => h("label", { class: "toggle" },
-        h("input", { type: "checkbox", checked: true, onchange: (event) => { if (event.target.checked) shown.add(name); else shown.delete(name); draw(); } }), name))) : null);
+        h("input", { type: "checkbox", checked: true, onchange: (event) => { if (event.target.checked) shown.add(name); else shown.delete(name); draw(); } }), name === ROBOT ? "robot" : name))) : null);
     const stop = () => { watch.disconnect(); removeEventListener("theme", draw); paper.removeEventListener("change", paint); };
     return { canvas, controls, stop };
   }
@@ -125,7 +129,7 @@
       const depth = Math.max(0.02, dot(from, forward));
       return [width / 2 + scale * dot(from, right) / depth, height / 2 - scale * dot(from, up) / depth, depth];
     };
-    return { eye, forward, right, up, project };
+    return { eye, forward, right, up, project, scale };
   }
 
   /** Bring a view so near that points fill it but for a margin for their names, and their middle to its own. */
@@ -246,6 +250,61 @@
     if (style >= 0) pen.stroke();
     pen.setLineDash([]);
     pen.globalAlpha = 1;
+  }
+
+  /** The points of a line at a moment: three numbers each. */
+  const pointsOf = (row) => Array.from({ length: row.length / 3 }, (_, index) => row.slice(3 * index, 3 * index + 3));
+
+  /** A robot at a time, link by link, the farthest first; of the original as one translucent shape. */
+  function robot(pen, camera, lines, blocks, time, world, isGhost) {
+    const links = lines.flatMap((one) => {
+      const row = at(one, time);
+      const points = row ? pointsOf(row) : [];
+      return points.slice(1).map((point, index) => ({ ends: [points[index], point], radii: one.radii.slice(index, index + 2) }));
+    });
+    if (!links.length) return;
+    for (const one of links) {
+      one.seen = one.ends.map(camera.project);
+      one.middle = times(plus(...one.ends), 0.5);
+    }
+    links.sort((one, other) => other.seen[0][2] + other.seen[1][2] - one.seen[0][2] - one.seen[1][2]);
+    const [light, usual, dark] = isGhost ? [world.ink(), world.ink(), world.ink()] : ["robot-light", "robot", "robot-dark"].map(ink);
+    if (isGhost) {
+      const layer = h("canvas", { width: pen.canvas.width, height: pen.canvas.height });
+      const under = layer.getContext("2d");
+      under.setTransform(pen.getTransform());
+      links.forEach((one) => link(under, camera, one, [light, usual, dark], null));
+      pen.save();
+      pen.setTransform(1, 0, 0, 1, 0, 0);
+      pen.globalAlpha = 0.42;
+      pen.drawImage(layer, 0, 0);
+      pen.restore();
+      return;
+    }
+    links.forEach((one) => { pen.globalAlpha = hidden(camera.eye, one.middle, blocks) ? 0.3 : 1; link(pen, camera, one, [light, usual, dark], world.ink()); });
+    pen.globalAlpha = 1;
+  }
+
+  /** A link: round at both ends, lit from above; a ring in the colour of its side at the joint where it begins. */
+  function link(pen, camera, { seen: [[x, y, near], [x2, y2, far]], radii }, [light, usual, dark], accent) {
+    const [r, r2] = [camera.scale * radii[0] / near, camera.scale * radii[1] / far];
+    const long = Math.hypot(x2 - x, y2 - y), way = Math.atan2(y2 - y, x2 - x), half = Math.acos(Math.max(-1, Math.min(1, (r - r2) / (long || 1))));
+    pen.beginPath();
+    if (long <= Math.abs(r - r2)) { const [cx, cy, most] = r > r2 ? [x, y, r] : [x2, y2, r2]; pen.arc(cx, cy, most, 0, 2 * Math.PI); }
+    else { pen.arc(x, y, r, way + half, way - half + 2 * Math.PI); pen.arc(x2, y2, r2, way - half, way + half); }
+    pen.closePath();
+    const side = Math.cos(way) < 0 ? -1 : 1, most = Math.max(r, r2), across = [side * Math.sin(way) * most, -side * Math.cos(way) * most];
+    const shade = pen.createLinearGradient(x + across[0], y + across[1], x - across[0], y - across[1]);
+    [[0, usual], [0.3, light], [0.62, usual], [1, dark]].forEach(([at, colour]) => shade.addColorStop(at, colour));
+    pen.fillStyle = shade;
+    pen.fill();
+    pen.strokeStyle = dark;
+    pen.lineWidth = 0.8;
+    pen.stroke();
+    if (!accent || r < 3) return;
+    pen.strokeStyle = accent;
+    pen.lineWidth = Math.max(1.5, 0.28 * r);
+    pen.beginPath(); pen.arc(x, y, 0.62 * r, 0, 2 * Math.PI); pen.stroke();
   }
 
   /** Where a thing is now: its box, or a ring with its z axis. */
