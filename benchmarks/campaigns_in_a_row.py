@@ -33,12 +33,11 @@ from pathlib import Path
 from textwrap import dedent
 from typing import Any
 
-from mutabot.campaign.request import Request
+from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.run import run_campaign
 from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load_vocabulary
 from mutabot.journal.journal import Journal
-from mutabot.model.mutant_end import MutantEnd
 
 ENGINES = ("fork", "replay")
 PEACE, INTERRUPTED, SIGINT, SIGKILL = "left in peace", "interrupted here", "SIGINT", "SIGKILL"
@@ -106,19 +105,8 @@ MISSION = """
 """
 
 
-class Silent:
-    """A progress that says nothing."""
-
-    def stage(self, text: str, total: int | None = None) -> None:
-        """Ignore it."""
-
-    def mutant_ended(self, end: MutantEnd) -> None: ...
-
-    def advance(self, line: str | None = None) -> None:
-        """Ignore it."""
-
-    def note(self, text: str) -> None:
-        """Ignore it."""
+class Silent(Progress):
+    """A progress that shows nothing."""
 
 
 @dataclass

@@ -38,7 +38,7 @@ from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.engine import run_trials
 from mutabot.campaign.evidence import CampaignEvidence, recorded
 from mutabot.campaign.plan import make_plan
-from mutabot.campaign.request import Request
+from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.reuse.keys import Dependencies, OutcomeWriter
 from mutabot.campaign.reuse.original import OriginalRuns
 from mutabot.campaign.reuse.snapshot import State
@@ -57,7 +57,6 @@ from mutabot.model.events import (
     event_to_data,
 )
 from mutabot.model.job import Forking
-from mutabot.model.mutant_end import MutantEnd
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 WORKERS = 100
@@ -182,24 +181,16 @@ def _forked(lines: Iterable[str], forking: Forking) -> Iterator[str]:
             yield text
 
 
-class Silent:
+class Silent(Progress):
     """A progress that counts."""
 
     def __init__(self, looked: Callable[[int], None] = lambda count: None) -> None:
         self._looked, self._count = looked, 0
 
-    def stage(self, text: str, total: int | None = None) -> None:
-        """Nothing to do."""
-
-    def mutant_ended(self, end: MutantEnd) -> None: ...
-
     def advance(self, line: str | None = None) -> None:
         """One outcome more."""
         self._count += 1
         self._looked(self._count)
-
-    def note(self, text: str) -> None:
-        """Nothing to do."""
 
 
 def memory() -> float:

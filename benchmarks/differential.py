@@ -28,7 +28,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from mutabot.campaign.request import Request
+from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.run import run_campaign
 from mutabot.config.configuration import load_configuration
 from mutabot.config.options import Sample
@@ -36,7 +36,6 @@ from mutabot.config.vocabulary import load_vocabulary
 from mutabot.journal.journal import Journal
 from mutabot.model import Outcome
 from mutabot.model.codec import to_data
-from mutabot.model.mutant_end import MutantEnd
 
 ROOT = Path(__file__).resolve().parent.parent
 #: example to its rounds; one round of pick_and_place takes replay minutes
@@ -86,19 +85,8 @@ class Row:
     seconds: Mapping[str, float]
 
 
-class Silent:
-    """A progress that says nothing."""
-
-    def stage(self, text: str, total: int | None = None) -> None:
-        """Ignore it."""
-
-    def mutant_ended(self, end: MutantEnd) -> None: ...
-
-    def advance(self, line: str | None = None) -> None:
-        """Ignore it."""
-
-    def note(self, text: str) -> None:
-        """Ignore it."""
+class Silent(Progress):
+    """A progress that shows nothing."""
 
 
 def compare(

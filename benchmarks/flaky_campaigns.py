@@ -21,14 +21,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from textwrap import dedent
 
-from mutabot.campaign.request import Request
+from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.run import run_campaign
 from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load_vocabulary
 from mutabot.errors import MutabotError
 from mutabot.journal.journal import Journal
 from mutabot.model import Verdict
-from mutabot.model.mutant_end import MutantEnd
 from mutabot.results.results import Results, read_results
 from mutabot.results.statistics import Estimate, false_kills, false_survivors
 
@@ -111,17 +110,8 @@ class Tally:
     seconds: float = 0.0
 
 
-class _Silent:
-    def stage(self, text: str, total: int | None = None) -> None:
-        pass
-
-    def mutant_ended(self, end: MutantEnd) -> None: ...
-
-    def advance(self, line: str | None = None) -> None:
-        pass
-
-    def note(self, text: str) -> None:
-        pass
+class _Silent(Progress):
+    """A progress that shows nothing."""
 
 
 def write_project(folder: Path, chance: float, moves: int) -> None:

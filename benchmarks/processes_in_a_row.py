@@ -23,13 +23,12 @@ import time
 from pathlib import Path
 from typing import Any
 
-from mutabot.campaign.request import Request
+from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.run import run_campaign
 from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load_vocabulary
 from mutabot.families import USUAL
 from mutabot.journal.journal import Journal
-from mutabot.model.mutant_end import MutantEnd
 
 ROOT = Path(__file__).resolve().parent.parent
 #: example to the folder in it with the project, and the module that it needs
@@ -38,19 +37,8 @@ SHARED = Path("/dev/shm")
 LOGS = Path.home() / ".ros" / "log"
 
 
-class Silent:
-    """A progress that says nothing."""
-
-    def stage(self, text: str, total: int | None = None) -> None:
-        """Ignore it."""
-
-    def mutant_ended(self, end: MutantEnd) -> None: ...
-
-    def advance(self, line: str | None = None) -> None:
-        """Ignore it."""
-
-    def note(self, text: str) -> None:
-        """Ignore it."""
+class Silent(Progress):
+    """A progress that shows nothing."""
 
 
 def request_for(folder: Path, given: argparse.Namespace) -> Request:

@@ -9,7 +9,6 @@ import signal
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from pathlib import Path
 from types import TracebackType
 from typing import Annotated, Any, Self
@@ -101,34 +100,6 @@ def _stop() -> None:
     signal.pthread_kill(main, signal.SIGTERM if is_ignored else signal.SIGINT)
 
 
-#: part of a stage after which the time left is worth telling: the first steps say little about the others
-_TELLING = 0.1
-
-
-@dataclass(slots=True)
-class _StagePace:
-    """The steps of one stage.
-
-    Attributes:
-        stage: its name.
-        total: how many there are; None if that is not known.
-        done: how many are done.
-        began: when it began, s of ``time.monotonic``.
-    """
-
-    stage: str
-    total: int | None
-    done: int = 0
-    began: float = field(default_factory=time.monotonic)
-
-    @property
-    def left(self) -> float | None:
-        """Seconds that the rest will take; None as long as too little is known to tell."""
-        if self.total is None or self.done == 0 or self.done < _TELLING * self.total:
-            return None
-        return (time.monotonic() - self.began) / self.done * max(0, self.total - self.done)
-
-
 class _FeedProgress:
     """A progress that also tells the feed.
 
@@ -144,7 +115,8 @@ class _FeedProgress:
     def __init__(self, feed: LiveFeed) -> None:
         self._feed = feed
         self._lock = threading.Lock()
-        self._line, self._pace = "", _StagePace("", None)
+        self._stage, self._line, self._done = "", "", 0
+        self._total: int | None = None
         self.progress: Progress | None = None
         self.steps, self.ended = 0, ""
 
@@ -157,7 +129,8 @@ class _FeedProgress:
         """A new stage begins."""
         if self.progress is not None:
             self.progress.stage(text, total)
-        self._line, self._pace = "", _StagePace(text, total)
+        self._stage, self._line = text, ""
+        self._done, self._total = 0, total
         self.steps += 1
         self.tell()
 
@@ -166,9 +139,14 @@ class _FeedProgress:
         if self.progress is not None:
             self.progress.advance(line)
         self._line = ReportPages.legible(line or "")
-        self._pace.done += 1
+        self._done += 1
         self.steps += 1
         self.tell()
+
+    @property
+    def left(self) -> float | None:
+        """Seconds that the rest of the stage will take; None if that is not known."""
+        return None if self.progress is None else self.progress.left
 
     def note(self, text: str) -> None:
         """Something the user should know."""
@@ -186,13 +164,13 @@ class _FeedProgress:
     def tell(self) -> None:
         """Tell the state as it is now."""
         with self._lock:
-            pace = self._pace
+            left = self.left
             state: dict[str, Any] = {
-                "stage": pace.stage,
+                "stage": self._stage,
                 "line": self._line,
-                "done": pace.done,
-                "total": pace.total,
-                "left": None if pace.left is None else round(pace.left, 1),
+                "done": self._done,
+                "total": self._total,
+                "left": None if left is None else round(left, 1),
                 "ended": self.ended,
                 "version": self.steps,
                 "every": self.pages.every,

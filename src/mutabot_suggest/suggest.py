@@ -99,6 +99,8 @@ def _short(value: float) -> str:
 class Quiet:
     """Progress without the remarks of campaigns that only serve."""
 
+    left: float | None = None
+
     def __init__(self, progress: Progress) -> None:
         self.stage, self.advance = progress.stage, progress.advance
         self.mutant_ended = progress.mutant_ended

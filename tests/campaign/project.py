@@ -14,13 +14,12 @@ from typing import Any
 
 import pytest
 
-from mutabot.campaign.request import Request
+from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.run import run_campaign
 from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load_vocabulary
 from mutabot.journal.journal import Journal
 from mutabot.model import Outcome
-from mutabot.model.mutant_end import MutantEnd
 
 #: the reference, as one of several engines: it takes long, and that it agrees with forks is for the corpus
 REPLAY = pytest.param("replay", marks=pytest.mark.whole)
@@ -94,15 +93,13 @@ CONFIGURATION = """
 
 
 @dataclass
-class Quiet:
+class Quiet(Progress):
     """A progress that keeps what it is told."""
 
     lines: list[str] = field(default_factory=list)
 
     def stage(self, text: str, total: int | None = None) -> None:
         self.lines.append(f"== {text} {total}")
-
-    def mutant_ended(self, end: MutantEnd) -> None: ...
 
     def advance(self, line: str | None = None) -> None:
         self.lines.append(line or "")

@@ -8,11 +8,11 @@ from typing import Any
 
 import pytest
 
-from mutabot.campaign.beginning import check, plan_only
+from mutabot.campaign.beginning import PlannedCampaign, check, plan_only
 from mutabot.campaign.run import run_campaign
 from mutabot.campaign.verdict import Run, _ruling
 from mutabot.errors import NothingToDoError
-from mutabot.model import By, LeftOut, Mutant, Outcome, Role, Site, Span, Verdict
+from mutabot.model import By, Mutant, Outcome, Role, Site, Span, Verdict
 from mutabot.model.events import TestEnd
 from mutabot.model.outcome import same_end
 from tests.campaign.project import (
@@ -301,8 +301,8 @@ def test_a_program_that_cannot_be_imported_kills_by_exception(ends: dict[str, Ou
 
 @pytest.mark.usefixtures("script")
 def test_numbers_of_robot_mutants_do_not_change_when_families_are_added(project: Path) -> None:
-    alone, *_ = plan_only(request_for(project), Quiet())
-    together, *_ = plan_only(request_for(project, families=("robot", "conventional", "text")), Quiet())
+    alone = plan_only(request_for(project), Quiet()).mutants
+    together = plan_only(request_for(project, families=("robot", "conventional", "text")), Quiet()).mutants
     assert together[: len(alone)] == alone
     assert [mutant.number for mutant in together] == list(range(1, len(together) + 1))
     assert [mutant.family for mutant in together] == sorted(
@@ -313,9 +313,9 @@ def test_numbers_of_robot_mutants_do_not_change_when_families_are_added(project:
 @pytest.mark.usefixtures("script")
 def test_families_operators_and_ids_select(project: Path) -> None:
     def chosen(**selection: Any) -> set[str]:
-        mutants, *_ = plan_only(
+        mutants = plan_only(
             request_for(project, families=("robot", "conventional"), **selection), Quiet()
-        )
+        ).mutants
         return {mutant.id for mutant in mutants}
 
     assert all(":BSR" in mutant for mutant in chosen(only=("BSR",)))
@@ -388,11 +388,11 @@ def test_a_file_without_its_alternatives_never_lets_its_mutants_survive(tmp_path
     project = write_project(tmp_path, "def near(x):\n    return x < 0.5\n", tests)
     with pytest.raises(NothingToDoError, match=r"no test reaches any of the \d+ mutants of mission.py"):
         run(project, families=("conventional",))
-    mutants, _ = plan_with_robot(project)
+    mutants = plan_with_robot(project).mutants
     assert any(one.site.span.file == "mission.py" for one in mutants)  # not covered
 
 
-def plan_with_robot(project: Path) -> tuple[Any, list[LeftOut]]:
+def plan_with_robot(project: Path) -> PlannedCampaign:
     """The plan of a program in which at least one file is imported."""
     (project / "other.py").write_text("def one():\n    return 1\n", encoding="utf-8")
     (project / "tests" / "test_other.py").write_text(
@@ -400,7 +400,7 @@ def plan_with_robot(project: Path) -> tuple[Any, list[LeftOut]]:
     )
     text = CONFIGURATION.replace('["mission.py"]', '["mission.py", "other.py"]')
     (project / "mutabot.toml").write_text(dedent(text), encoding="utf-8")
-    return plan_only(request_for(project, families=("conventional",)), Quiet())[:2]
+    return plan_only(request_for(project, families=("conventional",)), Quiet())
 
 
 def test_a_file_that_was_imported_too_early_is_left_out_with_the_reason(tmp_path: Path) -> None:
@@ -485,9 +485,8 @@ def test_text_whose_tests_fail_while_it_is_looked_at_is_named_and_not_mutated(
         MISSION,
         "import mission\nfrom robot import Arm\n\ndef test_right():\n    mission.right(Arm())\n",
     )
-    mutants, left_out, *_ = plan_only(
-        request_for(tmp_path, families=("robot", "conventional"), rounds=rounds), Quiet()
-    )
+    planned = plan_only(request_for(tmp_path, families=("robot", "conventional"), rounds=rounds), Quiet())
+    mutants, left_out = planned.mutants, planned.left_out
     assert {mutant.family for mutant in mutants} == {"robot"}
     reasons = {one.reason for one in left_out if "mission.py" in one.id}
     assert "tests fail while mutabot looks which values its text has" in reasons

@@ -265,7 +265,7 @@ def test_a_mutant_without_an_answer_is_left_out_with_the_reason(
 ) -> None:
     assert "stopped:arm.stop#1:call" not in found
     folder = project(tmp_path, USES_HANDLE, TEST_OF_HANDLE, operation("start"))
-    _, left_out, *_ = plan_only(request_for(folder), Quiet())
+    left_out = plan_only(request_for(folder), Quiet()).left_out
     (reason,) = [one.reason for one in left_out if one.id.endswith(":skip")]
     assert reason == (
         "what it answers cannot be kept (builtins:function); "
@@ -292,7 +292,8 @@ def test_a_statement_by_itself_needs_no_answer_to_be_left_out(tmp_path: Path, li
             arm.start.assert_called_once_with(0.5)
     """
     folder = project(tmp_path, mission, tests, operation("start"))
-    plan, left_out, *_ = plan_only(request_for(folder), Quiet())
+    planned = plan_only(request_for(folder), Quiet())
+    plan, left_out = planned.mutants, planned.left_out
     assert "skip" in {one.operator for one in plan}
     assert left_out == []
 

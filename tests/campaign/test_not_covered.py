@@ -107,8 +107,8 @@ def test_a_mutant_keeps_its_id_and_its_outcome_gives_way_once_a_test_comes(
 
 
 def test_mutants_that_run_keep_their_numbers(tmp_path: Path, script: Script) -> None:
-    alone, *_ = plan_only(request_for(write_project(tmp_path / "alone", PROGRAM, AHEAD)), Quiet())
-    both, *_ = plan_only(request_for(project(tmp_path / "both")), Quiet())
+    alone = plan_only(request_for(write_project(tmp_path / "alone", PROGRAM, AHEAD)), Quiet()).mutants
+    both = plan_only(request_for(project(tmp_path / "both")), Quiet()).mutants
     assert [one.id for one in both[: len(alone)]] == [one.id for one in alone]
 
 
@@ -179,7 +179,7 @@ def test_a_file_that_no_test_imports_is_told_whatever_it_is_written_in(tmp_path:
     (folder / "old.py").write_text("print 'Python 2'\n", encoding="utf-8")
     toml = (folder / "mutabot.toml").read_text(encoding="utf-8")
     (folder / "mutabot.toml").write_text(toml.replace('"other.py"', '"other.py", "old.py"'), encoding="utf-8")
-    _, _, untested, _ = plan_only(request_for(folder), Quiet())
+    untested = plan_only(request_for(folder), Quiet()).untested
     assert [call.place for call in untested.unreached_calls] == ["mission.py:6:5", "other.py:5:5"]
     assert untested.files == 3
     assert untested.unreached_files == ("old.py", "other.py")

@@ -130,7 +130,7 @@ def test_a_skipped_call_of_which_nobody_knows_the_answer_is_left_out(
         arguments.dx = { kind = "translation", axis = "x", unit = "m", mode = "by" }
     """
     write_project(tmp_path, MISSION, tests, robot=robot, vocabulary=vocabulary)
-    _, left_out, *_ = plan_only(request_for(tmp_path), Quiet())
+    left_out = plan_only(request_for(tmp_path), Quiet()).left_out
     reasons = {one.id: one.reason for one in left_out}
     assert "no recorded call returned" in reasons["mission.py:too_far:arm.move_by#1:call:skip"]
 

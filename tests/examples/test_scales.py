@@ -11,14 +11,13 @@ from pathlib import Path
 import jsonschema
 import pytest
 
-from mutabot.campaign.request import Request
+from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.run import run_campaign
 from mutabot.cli.app import main
 from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load_vocabulary
 from mutabot.journal.journal import Journal
 from mutabot.model import Outcome
-from mutabot.model.mutant_end import MutantEnd
 from mutabot.report.document import document, dumps
 from mutabot.results.results import read_results
 from pages import blocks
@@ -70,16 +69,8 @@ EXPECTED = {
 LEFT_OUT = {"link.send#2:lift/{height}/height:reverse", "link.send#5:drop/{height}/height:reverse"}
 
 
-class Silent:
-    """A progress that tells nobody."""
-
-    def stage(self, text: str, total: int | None = None) -> None: ...
-
-    def mutant_ended(self, end: MutantEnd) -> None: ...
-
-    def advance(self, line: str | None = None) -> None: ...
-
-    def note(self, text: str) -> None: ...
+class Silent(Progress):
+    """A progress that shows nothing."""
 
 
 @pytest.fixture(scope="module")

@@ -13,13 +13,12 @@ from pathlib import Path
 from typing import Any
 
 from mutabot.campaign.beginning import plan_only
-from mutabot.campaign.request import Request
+from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.run import run_campaign
 from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load_vocabulary
 from mutabot.errors import MutabotError
 from mutabot.journal.journal import Journal
-from mutabot.model.mutant_end import MutantEnd
 from mutabot.report.document import data_of, document
 from mutabot.results.results import read_results
 from mutabot.runtime.seeds import derive
@@ -45,19 +44,8 @@ EXPECTED = {
 }
 
 
-class Silent:
-    """A progress that says nothing."""
-
-    def stage(self, text: str, total: int | None = None) -> None:
-        """Ignore it."""
-
-    def mutant_ended(self, end: MutantEnd) -> None: ...
-
-    def advance(self, line: str | None = None) -> None:
-        """Ignore it."""
-
-    def note(self, text: str) -> None:
-        """Ignore it."""
+class Silent(Progress):
+    """A progress that shows nothing."""
 
 
 @dataclass(frozen=True)
@@ -363,7 +351,7 @@ def campaign(request: Request) -> dict[str, Any]:
 def chosen(request: Request, only: Mapping[str, int]) -> list[str]:
     """Ids of the mutants to run, drawn by a fixed seed."""
     by_family: dict[str, list[str]] = {}
-    for mutant in map(data_of, plan_only(request, Silent())[0]):
+    for mutant in map(data_of, plan_only(request, Silent()).mutants):
         by_family.setdefault(mutant["family"], []).append(mutant["id"])
     draw = random.Random(1)
     return [

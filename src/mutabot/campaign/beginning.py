@@ -28,6 +28,7 @@ from mutabot.execution.interruption import interruptions_kept
 from mutabot.execution.processes import provide
 from mutabot.extensions import brought
 from mutabot.families import CALLS, MESSAGES
+from mutabot.frozen import frozen
 from mutabot.journal.files import at_work, refuse_tracked
 from mutabot.journal.journal import Journal
 from mutabot.journal.reader import kept_original
@@ -183,11 +184,25 @@ def _why_no_mutants(request: Request, plan: Plan, baseline: Baseline) -> str:
     return "\n".join([*lines, *([f"… and {more} more"] if more > 0 else [])])
 
 
-def plan_only(request: Request, progress: Progress) -> tuple[list[Mutant], list[LeftOut], Untested, Duration]:
-    """Take the baseline and plan, without running a mutant.
+@frozen
+class PlannedCampaign:
+    """What a campaign would run.
 
-    Returns the mutants, what is left out, what no test reaches, and how long a run will take.
+    Attributes:
+        mutants: those that would run.
+        left_out: those that would not, with the reasons.
+        untested: operations and calls that no test reaches.
+        duration: how long the run will take.
     """
+
+    mutants: list[Mutant]
+    left_out: list[LeftOut]
+    untested: Untested
+    duration: Duration
+
+
+def plan_only(request: Request, progress: Progress) -> PlannedCampaign:
+    """Take the baseline and plan, without running a mutant."""
     path = request.journal_path
     with locked_executor(request, progress) as opened, ExitStack() as stack:
         with OriginalRuns(request, kept_original(path), progress) as original:
@@ -196,7 +211,7 @@ def plan_only(request: Request, progress: Progress) -> tuple[list[Mutant], list[
     plan = selected(campaign, whole_plan(campaign)[0])
     part = part_of(plan, request.shard, campaign.baseline)
     duration = duration_of(campaign, part.mutants)
-    return part.mutants, part.left_out, campaign.baseline.untested, duration
+    return PlannedCampaign(part.mutants, part.left_out, campaign.baseline.untested, duration)
 
 
 def check(request: Request, progress: Progress) -> CheckReport:

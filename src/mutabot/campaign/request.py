@@ -247,19 +247,28 @@ class Request:
 
 
 class Progress(Protocol):
-    """Told what a campaign is doing."""
+    """Shows what a campaign is doing. The methods of this class itself do nothing."""
+
+    @property
+    def left(self) -> float | None:
+        """Seconds that the rest of the stage will take; None as long as too little is known to estimate."""
+        return None
 
     def stage(self, text: str, total: int | None = None) -> None:
         """Begin a new stage, with its number of steps if that is known."""
+        return
 
     def mutant_ended(self, end: MutantEnd) -> None:
         """A mutant has ended in a round, or an earlier campaign has found how. This is no step of a stage."""
+        return
 
     def advance(self, line: str | None = None) -> None:
         """One step is done; ``line`` says which."""
+        return
 
     def note(self, text: str) -> None:
         """Something the user should know."""
+        return
 
 
 @frozen

@@ -50,13 +50,13 @@ def list_(
 ) -> None:
     """List the mutants that would run."""
     with context.progress() as progress:
-        mutants, left_out, reach, duration = beginning.plan_only(request, progress)
+        planned = beginning.plan_only(request, progress)
     if json:
-        data = plan_data(mutants, left_out, reach)
-        context.print_json({**data, "runs": duration.runs, "seconds": duration.seconds})
+        data = plan_data(planned.mutants, planned.left_out, planned.untested)
+        context.print_json({**data, "runs": planned.duration.runs, "seconds": planned.duration.seconds})
     else:
-        print_plan(make_console(), mutants, left_out, reach, everything=all)
-        context.print(f"\nA run takes {duration.text}; less where results are reused.")
+        print_plan(make_console(), planned.mutants, planned.left_out, planned.untested, everything=all)
+        context.print(f"\nA run takes {planned.duration.text}; less where results are reused.")
 
 
 def run(
@@ -68,12 +68,11 @@ def run(
     json: bool = False,
 ) -> None:
     """Run the campaign, or continue it."""
-    run = partial(run_campaign, request)
     if stream and json:
         raise UsageError(f"--format {stream} and --json: only one of them can be printed")
-    if stream:
-        context.stream_to_end(request, run, min_score, format=stream, fail_on=fail_on or ())
-    context.run_to_end(request, run, min_score, json=json, fail_on=fail_on or ())
+    context.run_to_end(
+        request, partial(run_campaign, request), min_score, json=json, stream=stream, fail_on=fail_on or ()
+    )
 
 
 _Journals = Annotated[

@@ -6,7 +6,7 @@ import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn, Self
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import typer
 
@@ -25,8 +25,11 @@ from mutabot.results.stored import StoredEvidence
 from mutabot.results.suggested import Suggestion, keep_suggestions
 
 if TYPE_CHECKING:
+    from rich.console import Console
+
     from mutabot.campaign.request import Progress, Request
     from mutabot.config.configuration import Configuration
+    from mutabot.model.mutant_end import MutantEnd
     from mutabot.report.stream import MutantStream
 
 
@@ -139,50 +142,42 @@ class CommandContext:
         run: Callable[[Progress], Path],
         min_score: float | None,
         *,
-        json: bool,
+        json: bool = False,
+        stream: str = "",
         fail_on: Sequence[str] = (),
     ) -> NoReturn:
-        """Run a campaign, print its summary, and exit as the limits decide.
+        """Run a campaign, print its summary or a line per mutant, and exit as the limits decide.
 
         Args:
             run: runs the campaign, and returns the path of its journal.
             min_score: in percent; None for the configured one.
+            json: print the results as JSON.
+            stream: name of a format of lines, of which each is printed as soon as its mutant is settled;
+                empty for the summary.
             fail_on: what there must be none of, by names of ``results.gate.FAIL_ON``.
 
-        Raises typer.Exit, and what the campaign raises.
+        Raises UsageError for an unknown format, typer.Exit, and what the campaign raises.
         """
-        with self.progress() as progress:
-            path = run(progress)
-        results = self.show_results(path, json=json, summary=True)
+        if stream:
+            results = self._stream(stream, request, run)
+        else:
+            with self.progress() as progress:
+                path = run(progress)
+            results = self.show_results(path, json=json, summary=True)
         self.exit_as(decided(request.configuration, results, min_score, fail_on))
 
-    def stream_to_end(
-        self,
-        request: Request,
-        run: Callable[[Progress], Path],
-        min_score: float | None,
-        *,
-        format: str,
-        fail_on: Sequence[str] = (),
-    ) -> NoReturn:
-        """Run a campaign, print a line per mutant as soon as it is settled, and exit as the limits decide.
-
-        Args:
-            run, min_score, fail_on: as in ``run_to_end``.
-            format: name of a format of lines.
-
-        Raises UsageError for another name, typer.Exit, and what the campaign raises.
-        """
+    def _stream(self, format: str, request: Request, run: Callable[[Progress], Path]) -> Results:
+        """Run a campaign and print a line per mutant as soon as it is settled."""
         from mutabot.report.stream import STREAMED, MutantStream  # noqa: PLC0415  # few commands need it
 
         if format not in STREAMED:
             raise UsageError(unknown_name_text("format of lines", format, STREAMED))
         stream = MutantStream(format, request.rounds, request.vocabulary, str(request.root), self.print)
-        with _Streaming(Lines(make_console(stderr=True)), stream) as progress:
+        with _Streaming(make_console(stderr=True), stream) as progress:
             path = run(progress)
         results = Results.read(path)
         stream.finish(portable(results))
-        self.exit_as(decided(request.configuration, results, min_score, fail_on))
+        return results
 
     def exit_as(self, decision: Decision) -> NoReturn:
         """Print why, and exit so. Raises typer.Exit."""
@@ -190,20 +185,16 @@ class CommandContext:
         raise typer.Exit(decision.exit_code)
 
 
-class _Streaming:
-    """A progress that hands mutants to a stream, and all else to plain lines."""
+class _Streaming(Lines):
+    """Plain lines of progress; what becomes of mutants goes to a stream instead."""
 
-    def __init__(self, lines: Lines, stream: MutantStream) -> None:
-        self._lines = lines
-        self.stage, self.advance, self.note = lines.stage, lines.advance, lines.note
-        self.mutant_ended = stream.add
+    def __init__(self, console: Console, stream: MutantStream) -> None:
+        super().__init__(console)
+        self._stream = stream
 
-    def __enter__(self) -> Self:
-        self._lines.__enter__()
-        return self
-
-    def __exit__(self, *error: object) -> None:
-        self._lines.__exit__(*error)
+    def mutant_ended(self, end: MutantEnd) -> None:
+        """Hand the outcome to the stream."""
+        self._stream.add(end)
 
 
 def decided(

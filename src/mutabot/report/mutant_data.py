@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from mutabot.report.texts import effect_text, one_line, state_of
@@ -30,6 +31,13 @@ def mutant_data(result: MutantResult) -> dict[str, Any]:
         "why": one_line(effect_text(result)),
         "accepted": result.acceptance.why if result.acceptance is not None and result.is_accepted else None,
     }
+
+
+def lines_of(
+    results: Results, mutant_line: Callable[[MutantResult], str], end_line: Callable[[Results], str]
+) -> str:
+    """Return a report that has a line per mutant, and a last one about the campaign."""
+    return "".join(f"{line}\n" for line in (*map(mutant_line, results.mutants), end_line(results)))
 
 
 def end_data(results: Results) -> dict[str, Any]:

@@ -104,7 +104,7 @@ def test_a_description_names_the_operation_where_the_call_does_not(tmp_path: Pat
         """
     vocabulary = "\n".join(f'[[operation]]\ncall = "robot:Arm.{name}"\n' for name in ("lift", "drop", "park"))
     folder = write_project(tmp_path, mission, tests, robot=robot, vocabulary=vocabulary)
-    mutants, *_ = plan_only(request_for(folder, rounds=1, only=("skip",)), Quiet())
+    mutants = plan_only(request_for(folder, rounds=1, only=("skip",)), Quiet()).mutants
     assert [mutant.description for mutant in mutants] == [
         "getattr(arm, name) (Arm.lift): do nothing",
         "getattr(arm, name) (Arm.drop): do nothing",

@@ -92,7 +92,8 @@ def test_readings_of_calls_that_stand_alone_are_left_out(tmp_path: Path) -> None
         configuration=CONFIGURATION + "    rounds = 1\n",
     )  # fmt: skip
     families = (ROBOT, CATALOGUE, GRADED)
-    mutants, left_out, *_ = plan_only(request_for(folder, families=families, rounds=1), Quiet())
+    planned = plan_only(request_for(folder, families=families, rounds=1), Quiet())
+    mutants, left_out = planned.mutants, planned.left_out
     unread = [one.id.split(":")[2:] for one in left_out if one.reason == WHY]
     assert [site for site, *_, operator in unread if operator == "negate"] == [
         "arm.where#1", "arm.where#2", "arm.later#1", "arm.step#1", "arm.look#1", "arm.where#4",

@@ -111,7 +111,7 @@ def test_a_shard_is_no_whole_campaign(campaigns: Path) -> None:
 
 def test_shards_part_the_plan_and_no_ladder(campaigns: Path) -> None:
     root = campaigns / "cell"
-    whole, *_ = plan_only(request_for(root, **CHANGES), Quiet())
+    whole = plan_only(request_for(root, **CHANGES), Quiet()).mutants
     parts = []
     for name in ("1", "2"):
         with Journal.open(campaigns / name / "journal.sqlite") as journal:

@@ -36,7 +36,8 @@ def folder(tmp_path: Path) -> Path:
 
 
 def test_a_refusal_goes_unreported_only_where_a_call_raises(folder: Path) -> None:
-    mutants, left_out, *_ = plan_only(request_for(folder, families=("catalogue",)), Quiet())[:2]
+    planned = plan_only(request_for(folder, families=("catalogue",)), Quiet())
+    mutants, left_out = planned.mutants, planned.left_out
     planned = [one.id for one in mutants if one.operator == "unreported-refusal"]
     assert planned == ["mission.py:run:arm.move_by#2:call:unreported-refusal"]
     reasons = [one.reason for one in left_out if one.id.endswith("unreported-refusal")]

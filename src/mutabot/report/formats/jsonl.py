@@ -6,7 +6,7 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from mutabot.report.document import finite
-from mutabot.report.mutant_data import end_data, mutant_data
+from mutabot.report.mutant_data import end_data, lines_of, mutant_data
 
 if TYPE_CHECKING:
     from mutabot.report.format import Material
@@ -15,9 +15,7 @@ if TYPE_CHECKING:
 
 def make(material: Material) -> str:
     """Return the report."""
-    campaign = material.campaign
-    found = (mutant_line(one) for one in campaign.mutants)
-    return "".join(f"{line}\n" for line in (*found, end_line(campaign)))
+    return lines_of(material.campaign, mutant_line, end_line)
 
 
 def mutant_line(result: MutantResult) -> str:

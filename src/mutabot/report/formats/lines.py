@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from mutabot.report.mutant_data import end_data, mutant_data
+from mutabot.report.mutant_data import end_data, lines_of, mutant_data
 from mutabot.report.texts import one_line
 
 if TYPE_CHECKING:
@@ -18,9 +18,7 @@ if TYPE_CHECKING:
 
 def make(material: Material) -> str:
     """Return the report."""
-    campaign = material.campaign
-    found = (mutant_line(one) for one in campaign.mutants)
-    return "".join(f"{line}\n" for line in (*found, end_line(campaign)))
+    return lines_of(material.campaign, mutant_line, end_line)
 
 
 def mutant_line(result: MutantResult) -> str:

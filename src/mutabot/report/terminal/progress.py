@@ -180,6 +180,11 @@ class Bar:
             text = self._tally.words or plain(line or "").partition("\n")[0]
             self._progress.update(self._task, advance=1, line=text)
 
+    @property
+    def left(self) -> float | None:
+        """Seconds that the rest of the stage will take; None if that cannot be estimated yet."""
+        return self._pace.left
+
     def note(self, text: str) -> None:
         """Print a line above the bars."""
         self._progress.console.print(plain(text))
@@ -227,6 +232,11 @@ class Lines:
         self._pace.advance()
         if self._pace.done == self._pace.total or time.monotonic() - self._last >= self._every:
             self._tell(line)
+
+    @property
+    def left(self) -> float | None:
+        """Seconds that the rest of the stage will take; None if that cannot be estimated yet."""
+        return self._pace.left
 
     def note(self, text: str) -> None:
         """Print a line."""
