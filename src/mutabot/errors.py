@@ -134,7 +134,7 @@ class UnstableError(MutabotError):
 
 
 class JournalError(MutabotError):
-    """The journal is missing, is not one of ours, or cannot be written.
+    """The journal is missing, was not written by mutabot, or cannot be written.
 
     ``version`` is the journal's own, if another version of mutabot has written it.
     """

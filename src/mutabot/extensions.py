@@ -54,7 +54,7 @@ T = TypeVar("T")
 
 @frozen
 class Described:
-    """A part that ``--help`` tells of without importing it.
+    """A part that ``--help`` lists without importing it.
 
     Attributes:
         reference: ``module:attribute``.
@@ -227,12 +227,12 @@ def brought(kind: str, own: Collection[str] = ()) -> Mapping[str, ExtensionPart]
 
 
 def versions() -> tuple[str, ...]:
-    """Distributions whose versions decide how tests end, by the packages that say so."""
+    """Distributions that packages declare as deciding how tests end."""
     return tuple(dict.fromkeys(name for _, extension in _declared() for name in extension.versions))
 
 
 def references(owner: str) -> tuple[str, ...]:
-    """All references of a distribution's extensions, by its name; only the controller can tell."""
+    """All references of a distribution's extensions, by its name; available only in the controller."""
     found = (extension for name, extension in _declared() if name.lower() == owner)
     return tuple(
         part if isinstance(part, str) else part.reference
@@ -249,7 +249,7 @@ def _part(name: str, declared: str | Described, owner: str) -> ExtensionPart:
 
 
 def not_installed(name: str, kind: str) -> str | None:
-    """What to say of a part that one of mutabot's own packages brings, and is missing; else None."""
+    """The message for a missing part of one of mutabot's own packages; None for any other part."""
     package = _OF_OWN_PACKAGES.get(kind, {}).get(name)
     if package is None or name in (found := brought(kind)):
         return None

@@ -240,7 +240,7 @@ class FaultProvider(ABC):
         """
 
     def draws(self, operator: str) -> bool:
-        """Whether an operator of its own draws numbers anew for each round."""
+        """Whether one of its operators draws new random numbers in each round."""
         return False
 
     def is_raced(self, operator: str) -> bool:

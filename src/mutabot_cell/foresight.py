@@ -104,7 +104,7 @@ class Foresight:
         return ticks
 
     def quiet(self, stretch: Stretch, known: int, ticks: int) -> int:
-        """At how many in a row, of the first so many ticks, no check would have found anything.
+        """Return how many of the first ticks, in a row, no check would have objected to.
 
         Args:
             known: at so many at least.

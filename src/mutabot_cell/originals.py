@@ -45,7 +45,7 @@ class Originals:
         self._is_of_library = all(_is_native(library) for library in libraries)
 
     def are_in_place(self, *objects: object) -> bool:
-        """Whether nobody has put anything else in its place, or in that of a method of these objects."""
+        """Whether neither it nor a method of these objects has been replaced."""
         try:
             return (
                 self._is_of_library

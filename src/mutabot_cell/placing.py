@@ -1,4 +1,4 @@
-"""Fixtures that stand elsewhere than they should: moved without building the cell anew."""
+"""Misplaced fixtures: move them without rebuilding the cell."""
 
 from __future__ import annotations
 

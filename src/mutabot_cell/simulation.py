@@ -127,7 +127,7 @@ class Simulation:
             self._frames.append((self._ticks, self._places.copy()))
 
     def _take_stretch(self, most: int) -> bool:
-        """Let at most so many ticks pass, up to the first at which a check is needed; False: none passed."""
+        """Run at most a number of ticks, up to the first that needs a check; False if none ran."""
         stretch, foresight = self._stretch, self.foresight
         ticks = foresight.write(self.before_tick, self.after_tick, stretch.inputs[:most])
         if ticks < 2:
@@ -163,14 +163,14 @@ class Simulation:
             self._ticks -= ticks
 
     def _quiet_until(self, ticks: int) -> int:
-        """At how many in a row, of the first so many ticks of the stretch, nothing was wrong; at least so."""
+        """Return a lower bound of the ticks at the start of the stretch that need no check."""
         known = self._quiet
         if known < ticks:
             self._quiet = self.foresight.quiet(self._stretch, known, self._sane(known, ticks))
         return self._quiet
 
     def _sane(self, known: int, ticks: int) -> int:
-        """After how many of the first so many ticks of the stretch nothing was wrong in the physics."""
+        """Return after how many of the stretch's first ticks the physics was sane."""
         places, speeds = self._stretch.places[known:ticks], self._stretch.speeds[known:ticks]
         # two numbers tell of all, in doubt each tick is looked at
         if _are_sane(places.ravel(), speeds.ravel()):

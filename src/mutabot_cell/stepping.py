@@ -82,7 +82,7 @@ class Stepping:
             self._memory.put(self._key, values.tobytes())
 
     def step(self, inputs: Array, before: Array) -> None:
-        """Step one tick anew; `before` becomes the state before its last step."""
+        """Compute one tick; `before` becomes the state before its last step."""
         model, data, step, servos = self._model, self._data, mujoco.mj_step, self._servos
         for row in inputs[:-1]:
             servos[:] = row
@@ -99,7 +99,7 @@ class Stepping:
 
 
 def _measure_no_time() -> None:
-    """Keep MuJoCo from measuring how long each part of a step takes, which costs 5 % of it and nobody reads.
+    """Keep MuJoCo from timing each part of a step, which costs 5 % and is not used.
 
     Its bindings set the clock when they are imported, and cannot take it away again.
     """

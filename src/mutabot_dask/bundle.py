@@ -103,7 +103,7 @@ def _opened(path: Path) -> int:
 
 
 def _target(link: Path, limit: Path) -> str | None:
-    """What a link leads to in the end, relative to it; None if that is outside, or cannot be told."""
+    """The final target of a link, relative to it; None if it is outside or cannot be resolved."""
     try:
         folder, target = link.parent.resolve(), link.resolve()
     except (OSError, RuntimeError):

@@ -80,7 +80,7 @@ def _search_path(root: Path) -> Iterator[Path]:
 
 
 def differences(here: Mapping[str, str], there: Mapping[str, str]) -> list[str]:
-    """What differs between two machines' versions, in words."""
+    """Describe the differences between two machines' versions."""
     found = []
     for name in sorted({*here, *there}, key=lambda name: (name not in _FIRST, name)):
         if here.get(name) != there.get(name):

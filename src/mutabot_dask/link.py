@@ -183,7 +183,7 @@ def _news(number: int, found: Any) -> News:
 
 
 def _is_foreign(error: Exception) -> bool:
-    """Whether a worker raised that: what our functions raise comes as data, and losses are nobody's fault."""
+    """Whether a worker's error came neither from our functions, which return data, nor from its loss."""
     return isinstance(error, guard.Unreadable) and error.kind not in _LOSSES
 
 

@@ -134,5 +134,5 @@ def _check_count(workers: int, name: str) -> None:
 
 
 def _number(digits: str) -> int:
-    """The number, as far as numbers of that size are told apart: of thousands of digits Python makes none."""
+    """Read a number; one with more digits than Python reads becomes a power of ten."""
     return int(digits.lstrip("0") or "0") if len(digits.lstrip("0")) < _DIGITS else 10**_DIGITS

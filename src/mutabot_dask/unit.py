@@ -93,7 +93,7 @@ class UnitAnswer:
 
     @classmethod
     def of(cls, data: bytes, unit: WorkUnit) -> UnitAnswer:
-        """Return the answer in such bytes. Raises Misfit if it is none to this unit."""
+        """Read an answer from bytes. Raises Misfit if it does not answer this unit."""
         line, _, answer = data.partition(b"\n")
         said = _read(line, {"ticket": (str,), "fault": _TEXT, "is_unfit": (bool,), "lost": _TEXT})
         if said["ticket"] != unit.ticket:

@@ -1,4 +1,4 @@
-"""Calls that were seen, turned into proposed operations, and the commands that one call stands for.
+"""Turn observed calls into proposed operations, with the commands that a call can express.
 
 A text, or a node, register or name, tells such commands apart: patterns, and what stands beside them.
 """
@@ -254,7 +254,7 @@ def _find_current(proposal: Proposal, found: dict[str, Proposal]) -> None:
 
 
 def _with_axes(guesses: Mapping[str, Guess], told: Mapping[str, str]) -> set[tuple[str, str]]:
-    """What is told of quantities, each with an axis."""
+    """The descriptions of quantities, each with an axis."""
     return {
         (told[guess.table["kind"]], axis)
         for guess in guesses.values()

@@ -84,7 +84,7 @@ class LiveFeed:
             self._changed.notify_all()
 
     def after(self, number: int, seconds: float) -> list[LiveEvent]:
-        """What came after an event, at once or within so many seconds. A number of no event is the first."""
+        """Return the events after a given one, waiting up to ``seconds``; all after an unknown number."""
         with self._changed:
             if number > self._number:  # it is from another feed
                 number = 0
@@ -110,7 +110,7 @@ class LiveFeed:
                 self._left = time.monotonic()
 
     def is_listened_to(self, seconds: float) -> bool:
-        """Whether a browser listens, or did within so many seconds: it may only load its page again."""
+        """Whether a browser listens, or did within the last ``seconds``: it may be reloading its page."""
         with self._changed:
             return self._readers > 0 or time.monotonic() - self._left < seconds
 
@@ -343,7 +343,7 @@ class _PageHandler(BaseHTTPRequestHandler):
                     written = time.monotonic()
 
     def _is_gone(self) -> bool:
-        """Whether the browser has closed the connection; one that talks on is none."""
+        """Whether the browser has closed the connection, or sends more, which this server does not serve."""
         poll = select.poll()
         poll.register(self.connection, select.POLLIN)
         return bool(poll.poll(0))

@@ -85,7 +85,7 @@ def film(
 
 
 def _tasks(planned: Task, test: str, more: float, folder: Path) -> Iterator[Task]:
-    """The task of the mutant for both sides, with so many seconds more for the pictures of the test."""
+    """Yield the mutant's task for both sides, with ``more`` seconds for the pictures of the test."""
     limit = planned.deadlines[test].with_more(more, more)
     deadlines = {**planned.deadlines, test: limit}
     for name in ("original", "mutant"):

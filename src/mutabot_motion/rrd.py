@@ -135,7 +135,7 @@ def _layout(shown: Shown) -> Any:
 
 
 def open_viewer(file: Path, home: Path) -> str:
-    """Open Rerun's viewer, which goes on when this process has ended. Returns what came of it, in words.
+    """Open Rerun's viewer, which outlives this process. Returns a description of the result.
 
     Without a screen it is not opened. Raises UsageError if it does not begin.
     """

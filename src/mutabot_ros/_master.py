@@ -103,7 +103,7 @@ def start(home: str) -> Master:
 
 
 def _free_port(number: int) -> int:
-    """A port that nobody uses now, another one for each number.
+    """Return a free port, a different one for each number.
 
     It is none of those that the system gives to who asks for any: until the master has it, a connection of
     another node could take it, even one that asks whether the master is there.

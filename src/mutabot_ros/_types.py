@@ -123,7 +123,7 @@ class Types(ABC):
                     yield from self._look_at_steps(message, refused.parsed, "refused.path")
 
     def _look_at_told(self, operation: Operation) -> Iterator[Finding]:
-        """Refusals that are told on topics whose types are known."""
+        """Look for refusals on topics whose types are known."""
         for refused in operation.told_as_refused:
             listened = {} if refused.topic is None else self.of(Form.RECEIVE, refused.topic)
             for name, kind in listened.items():

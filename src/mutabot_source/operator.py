@@ -32,7 +32,7 @@ TextParts = tuple[str | ast.expr, ...]
 
 @dataclass(frozen=True, slots=True)
 class Draft:
-    """What could stand in a node's place.
+    """A replacement for a node.
 
     Attributes:
         variant: which of the operator's alternatives here.
@@ -108,7 +108,7 @@ class ConventionalOperator(Rule):
 
     @abstractmethod
     def drafts(self, node: SyntaxNode, around: Surroundings) -> Iterable[Draft]:
-        """What could stand in this node's place; nothing for nodes that are none of its business."""
+        """Yield the replacements of a node; none for nodes that the operator does not handle."""
 
     def with_variables(self, names: Iterable[str]) -> Iterable[Alternative]:
         """For operators that ask: alternatives of a variable for which these names could stand."""

@@ -74,6 +74,11 @@ BROKEN = {
         "from mutabot.operators import Operator\nclass Rule(Operator):\n    name = 'late'",
         "abstract",
     ),
+    "does not change any value": (
+        "late",
+        "from mutabot.operators import ValueOperator\nclass Rule(ValueOperator):\n    name = 'late'",
+        "'late' defines neither change nor changes",
+    ),
     "has another name": (
         "late",
         "from mutabot.operators.kinds.commands import Skip\nclass Rule(Skip):\n    name = 'early'",

@@ -122,7 +122,7 @@ def begin(
 
 
 def whole_plan(campaign: Campaign) -> tuple[Plan, tuple[str, ...]]:
-    """Return the plan without excluded mutants, and the user's decisions that fit no mutant, in words."""
+    """Return the plan without excluded mutants, and descriptions of decisions that match no mutant."""
     return divided(campaign, make_plan(campaign.baseline, campaign.request.project))
 
 

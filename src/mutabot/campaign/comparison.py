@@ -44,7 +44,7 @@ def _angles_of(operations: Sequence[Operation]) -> dict[CommandName, dict[str, Q
 
 
 def _angle_between(quantity: Quantity | None, before: Any, after: Any) -> float | None:
-    """How far two values of a quantity are apart as orientations or angles; None if they are none."""
+    """Distance between two values of a quantity as orientations or angles; None for other quantities."""
     if quantity is not None and quantity.is_whole:
         first, second = quantity.orientation(before), quantity.orientation(after)
         return quantity.from_unit(first.distance(second), "rad") if first and second else None
@@ -71,7 +71,7 @@ def _value(quantity: Quantity, keys: Sequence[str], values: Mapping[str, Any]) -
 
 
 def parts_of(name: str, quantity: Quantity, values: Mapping[str, Any]) -> Iterator[Any]:
-    """The values of a quantity in a reading of a probe, as far as they are there."""
+    """Return the values of a quantity that a reading of a probe contains."""
     for one in _meant(name, quantity, values):
         keys = _keys(name, one, values)
         if keys and all(key in values for key in keys):
@@ -79,13 +79,13 @@ def parts_of(name: str, quantity: Quantity, values: Mapping[str, Any]) -> Iterat
 
 
 def is_pattern(quantity: Quantity) -> bool:
-    """Whether it stands for all parts whose names fit, such as ``["*tool"]``, and there may be none."""
+    """Whether it matches all parts by name, such as ``["*tool"]``; there may be no match."""
     last = quantity.path.steps[-1].item if quantity.path.steps else None
     return isinstance(last, str) and "*" in last
 
 
 def _meant(name: str, quantity: Quantity, values: Mapping[str, Any]) -> Iterator[Quantity]:
-    """The quantities that a pattern stands for, or the quantity itself if it is none."""
+    """The quantities that a pattern matches, or the quantity itself if it is no pattern."""
     if not is_pattern(quantity):
         yield quantity
         return
@@ -290,7 +290,7 @@ def compare(
 def _on_the_way(
     original: Observation, mutant: Observation, probes: Sequence[Probe], spread: ProbeSpread
 ) -> tuple[float | None, str, int]:
-    """How far readings after the same calls are apart, as far as both made the same calls.
+    """Compare readings after the same calls, up to the first call that differs.
 
     Returns the greatest deviation (None if there is nothing to compare), the greatest difference in words,
     empty if it is within the tolerance, and how many moments were compared.

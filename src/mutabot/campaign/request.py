@@ -1,4 +1,4 @@
-"""What a campaign is asked to do, and how it tells what it is doing."""
+"""The request for a campaign, and the interface by which it reports its progress."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Preview(Protocol):
     def folders_left_out(self) -> Collection[str]: ...
 
     def lacking(self, opened: Collection[str] | None) -> str | None:
-        """What tests lack there of the files that they opened here, in words; None if that is nothing."""
+        """Describe the files that tests opened here and will lack there; None if they lack none."""
 
     def check(self, opened: Collection[str] | None) -> tuple[list[str], Mapping[str, Any]]:
         """What ``mutabot check`` says of it: lines for people, and the same for machines."""
@@ -70,7 +70,7 @@ class ExecutorChoice(ABC):
 
     @abstractmethod
     def open(self, request: Request, tell: Callable[[str], None]) -> AbstractContextManager[Executor]:
-        """The executor. Raises UsageError where there is none.
+        """Open the executor. Raises UsageError if it is not available.
 
         ``tell``: told what the user should know about where and how tasks run.
         """

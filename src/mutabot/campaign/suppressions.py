@@ -116,7 +116,7 @@ def _next_code(lines: Sequence[str], number: int) -> int:
 
 
 def divided(campaign: Campaign, plan: Plan) -> tuple[Plan, tuple[str, ...]]:
-    """Return the plan without excluded mutants, and the decisions that fit no mutant, in words.
+    """Return the plan without excluded mutants, and descriptions of decisions that match no mutant.
 
     Excluded mutants are left out, with the reason. Numbers stay as they are.
     """
@@ -138,7 +138,7 @@ def divided(campaign: Campaign, plan: Plan) -> tuple[Plan, tuple[str, ...]]:
 
 
 def _unmatched(campaign: Campaign, plan: Plan, lines: _SourceLines) -> Iterator[str]:
-    """Decisions that fit no mutant of the families of this campaign, in words."""
+    """Describe the decisions that match no mutant of this campaign's families."""
     ids = {one.id for one in plan.left_out}
     for one in campaign.suppressions:
         named = [mutant for mutant in plan.mutants if one.names(mutant)]
@@ -181,7 +181,7 @@ class _SourceLines:
         self._of: dict[str, list[str]] = {}
 
     def of(self, mutant: Mutant) -> list[str]:
-        """The lines of the file in which a mutant stands; none if it stands in none."""
+        """The lines of a mutant's file; no lines for a mutant outside of files."""
         file = mutant.site.span.file
         if file not in self._of:
             path = self._root / file

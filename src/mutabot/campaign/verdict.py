@@ -96,7 +96,7 @@ class Run:
 
     @property
     def hindered(self) -> str | None:
-        """Why a limit of wall clock that ended it says little of its mutant, in words; None if none did."""
+        """Why the wall-clock limit that ended it is inconclusive; None if no such limit did."""
         deaths = [self.death.hindered] if self.death is not None else []
         return next((why for why in (*deaths, *(end.hindered for end in self.ends)) if why is not None), None)
 
@@ -284,7 +284,7 @@ def _looked(run: Run, baseline: Baseline) -> tuple[Looked, ...]:
 
 
 def _ruling(run: Run, usual: int) -> Ruling:
-    """Verdict, the test that decided it, and the reason in words; ``usual``: the suite's exit code."""
+    """Verdict, the test that decided it, and the reason as text; ``usual``: the suite's exit code."""
     if run.problem is not None:
         return Verdict.ERROR, None, run.problem
     acted = False

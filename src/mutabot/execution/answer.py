@@ -91,7 +91,7 @@ class Answer:
 
     @classmethod
     def of(cls, data: bytes, task: Task) -> Answer:
-        """Return the answer in such bytes. Raises ValueError, with the place, if it is none to this task."""
+        """Read an answer from bytes. Raises ValueError, with the position, if it is not for this task."""
         if len(data) > MOST_BYTES:
             raise ValueError(f"{len(data)} bytes, more than {MOST_BYTES}")
         first, *lines = data.split(b"\n")
@@ -155,7 +155,7 @@ def _storable(value: Any) -> Any:
 
 
 def _check_numbers(value: Any) -> None:
-    """Raise ValueError for counts and times that are none; the user's own data may hold any number."""
+    """Raise ValueError for invalid counts and times; the user's own data may contain any number."""
     kind: Any = type(value)
     for name, is_own in _fields(kind).items():
         item = getattr(value, name)

@@ -258,12 +258,12 @@ class Journal(JournalReader):
         self._put("outcome", outcome.mutant, outcome.round, verdict, data, key, 0)
 
     def add_parts(self, parts: Mapping[str, Mapping[str, str]]) -> None:
-        """Write down what digests in keys stand for."""
+        """Store the contents behind the digests in keys."""
         for digest, data in parts.items():
             self._write("INSERT OR IGNORE INTO parts VALUES (?, ?)", digest, _dump(data))
 
     def add_texts(self, texts: Mapping[str, bytes]) -> None:
-        """Write down what stands in Python files, by the digest."""
+        """Store the text of Python files by its digest."""
         with self._transaction():
             for digest, text in texts.items():
                 self._write("INSERT OR IGNORE INTO text VALUES (?, ?)", digest, text)
@@ -387,7 +387,7 @@ class Journal(JournalReader):
 
     @contextmanager
     def _noted(self) -> Iterator[None]:
-        """Go on without the file if it is not as it should be, and say so."""
+        """Continue without the file if it is invalid, and note that."""
         try:
             yield
         except sqlite3.Error as error:
@@ -417,7 +417,7 @@ class Journal(JournalReader):
         return has_log and not found
 
     def _restore(self) -> None:
-        """Write the file anew, and put it in the place of whatever is there."""
+        """Rewrite the file, replacing whatever is there."""
         with suppress(sqlite3.Error):
             self._file.close()
         self._lock.renew()

@@ -227,5 +227,5 @@ def _remove(path: Path) -> None:
 
 
 def _is_foreign(error: sqlite3.DatabaseError) -> bool:
-    """Whether a file is none of SQLite's, or damaged, or has other tables."""
+    """Whether a file is not an SQLite database, is damaged, or has other tables."""
     return any(words in str(error) for words in ("not a database", "malformed", "no such column"))

@@ -29,7 +29,7 @@ _FUTURES = (("asyncio", "Task"), ("asyncio", "Future"), ("concurrent.futures", "
 
 
 def future_class(value: Any) -> str | None:
-    """The kind of future that a value is; None if it is none."""
+    """The kind of a future; None if the value is not a future."""
     for module, name in _FUTURES:
         kind = getattr(sys.modules.get(module), name, None)
         own = type(value)

@@ -74,7 +74,7 @@ class Deadline:
         self.until = self.used.began + (least if self.is_counted else min(_FIRST, least))
 
     def is_over(self, process: int) -> bool:
-        """Whether a process has used its time. To be called at ``until``, which is then set anew."""
+        """Whether a process has used its time. Call it at ``until``, which it updates."""
         if not self.is_counted:
             self.is_counted, self.used = True, TimeUsed.from_now(below([process]))
             self.until = self.used.began + self.limit.least

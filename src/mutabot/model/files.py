@@ -35,13 +35,13 @@ def _is_file(status: os.stat_result, flags: int) -> bool:
 
 
 def read_file(path: str | os.PathLike[str], most: int = -1) -> bytes:
-    """Read a file, or its first ``most`` bytes. Raises OSError likewise."""
+    """Read a file, or its first ``most`` bytes. Raises OSError if it is not a regular file."""
     with os.fdopen(open_file(path, os.O_RDONLY), "rb") as file:
         return file.read(most)
 
 
 def copy_file(path: str | os.PathLike[str], target: str | os.PathLike[str]) -> None:
-    """Copy a file, but not its holes, which may be larger than any disk. Raises OSError likewise."""
+    """Copy a file without its holes, which may be larger than any disk. Raises OSError as ``read_file``."""
     source = open_file(path, os.O_RDONLY)
     try:
         copy = os.open(target, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_CLOEXEC, 0o600)

@@ -1,4 +1,4 @@
-"""What a campaign tells of each outcome that enters its journal."""
+"""The outcome of a mutant, as a campaign reports it when it enters the journal."""
 
 from __future__ import annotations
 

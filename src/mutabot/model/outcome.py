@@ -35,12 +35,12 @@ class Verdict(StrEnum):
 
     @property
     def is_valid(self) -> bool:
-        """Whether it stands in the denominator of the score."""
+        """Whether it counts in the denominator of the score."""
         return self in VALID
 
     @property
     def is_killed(self) -> bool:
-        """Whether it stands in the numerator of the score."""
+        """Whether it counts in the numerator of the score."""
         return self in KILLED
 
 
@@ -425,7 +425,7 @@ def in_words(outcome: Outcome) -> str:
 
 
 def first_line(text: str | None) -> str:
-    """The first line of a message, or words that say there is none."""
+    """The first line of a message, or a text for an empty message."""
     lines = (text or "").strip().splitlines()
     return lines[0] if lines else "no message"
 

@@ -269,7 +269,7 @@ class Quantity:
         return True
 
     def clipped(self, value: Value) -> Value:
-        """A number, or each number of a vector, as it counts after ``clip``; other values as they are."""
+        """Limit a number, or each number of a vector, by ``clip``; return other values unchanged."""
         if self.clip is None or isinstance(value, str | bytes | bool | None):
             return value
         if hasattr(value, "__len__"):
@@ -380,7 +380,7 @@ class Quantity:
 
     @classmethod
     def map_numbers(cls, value: Value, change: Callable[[Any], float]) -> Value | None:
-        """``change`` applied to a number, or to each number of a vector; None where there is none.
+        """Apply ``change`` to a number, or to each number of a vector; None for other values.
 
         The container's type is kept: lists stay lists, tuples tuples, arrays arrays. An array of whole
         numbers becomes one of floating-point numbers.
@@ -450,7 +450,7 @@ def is_reading_of(reading: Quantity, written: Quantity) -> bool:
 
 
 def is_number(value: Any) -> bool:
-    """Whether a value is a number; a truth value is none."""
+    """Whether a value is a number; booleans are not."""
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 

@@ -233,7 +233,7 @@ def apart(first: float, second: float, turn: float) -> float:
 def to_quaternion(
     values: Any, kind: str, order: str | None, radians: Callable[[float], float]
 ) -> Quaternion | None:
-    """The unit quaternion of an orientation as an API writes it; None if these numbers are none.
+    """The unit quaternion of an orientation as an API writes it; None if the numbers are no orientation.
 
     Args:
         values: the numbers.

@@ -92,7 +92,7 @@ class Rule(ABC):
 
 
 class Need(Enum):
-    """What an operator asks for. Where it is not to be had, the plan leaves its mutants out and says why."""
+    """What an operator requires. Where it is missing, the plan leaves its mutants out, with the reason."""
 
     #: where a written quantity is now (``call.current``): the vocabulary names a reading that tells
     PLACE = auto()
@@ -304,7 +304,7 @@ class Example:
 
 
 def _subject(operation: Operation, variant: str, more: dict[str, Any]) -> Subject:
-    """What an example is of; takes what says so out of its other attributes."""
+    """Return the subject of an example, and remove the attributes that name it."""
     quantities = {one.name: one for one in (*operation.arguments, *operation.result)}
     quantity = quantities[more.pop("quantity", next(iter(quantities)))]
     subject = Subject(operation, quantity=quantity, variant=variant)
@@ -347,7 +347,7 @@ class Operator(Rule):
         return self.needs
 
     def only_reads(self, subject: Subject) -> bool:
-        """Whether all it changes is a value that the program reads: without effect where nobody uses that."""
+        """Whether all it changes is a value that the program reads, without effect where that is unused."""
         return (
             subject.quantity is not None and subject.quantity in subject.read and Need.WAIT not in self.needs
         )

@@ -91,7 +91,7 @@ class CallRecord:
 
     @property
     def away(self) -> str:
-        """Why the mutant changed nothing, if its operator says so."""
+        """Why the mutant changed nothing, if its operator gives a reason."""
         if self.acted or self.received is None:
             return ""
         return self.received.away or (self.performed[-1].away if self.performed else "")

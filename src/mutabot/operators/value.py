@@ -24,6 +24,7 @@ class ValueOperator(Operator):
     """Changes the value of a quantity that a call writes or reads.
 
     One that changes several values of a call has ``subjects`` and ``changes`` of its own, and no ``change``.
+    Raises TypeError, when it is made, for one that has neither.
 
     Class attributes:
         kinds: the kinds of quantities on which it acts, unless ``fits`` says otherwise.
@@ -41,9 +42,13 @@ class ValueOperator(Operator):
     directions: ClassVar[tuple[str, ...]] = ("",)
     takes_any: ClassVar[bool] = False
 
+    def __init__(self) -> None:
+        if type(self).change is ValueOperator.change and type(self).changes is ValueOperator.changes:
+            raise TypeError(f"operator {self.name!r} defines neither change nor changes")
+
     def change(self, value: Value, context: Context) -> Value | None:
         """The new value, or None if not applicable. Raises Unchanged to leave the value alone."""
-        raise NotImplementedError(f"operator {self.name!r} says neither change nor changes")
+        raise NotImplementedError
 
     def fits(self, quantity: Quantity, whole: Subject) -> bool:
         """Whether the operator has something to say about this quantity of a call."""

@@ -30,12 +30,12 @@ FORMAT = 2
 
 
 def dumps(data: Any) -> str:
-    """Valid JSON for any data of ours: numbers that JSON cannot hold become null."""
+    """Return valid JSON of a report's data: numbers that JSON cannot represent become null."""
     return json.dumps(finite(data), indent=2, ensure_ascii=False, default=str)
 
 
 def finite(value: Any, number: Callable[[float], float] = float) -> Any:
-    """Data that JSON can hold: numbers that are none become null, others what ``number`` makes of them."""
+    """Return data that JSON can represent: NaN and infinity become null, ``number`` maps other numbers."""
     if isinstance(value, dict):
         return {str(key): finite(item, number) for key, item in value.items()}
     if isinstance(value, list | tuple):

@@ -171,7 +171,7 @@ def reason_of(result: MutantResult) -> str:
 
 
 def survivor_text(result: MutantResult) -> str:
-    """A survivor in words: what it does, in which rounds it survived, and what became of the world."""
+    """Describe a survivor: what it does, in which rounds it survived, and its effect on the world."""
     return f"{result.mutant.description}: {rounds_text(result)}. {why_alone(result)}"
 
 

@@ -92,7 +92,7 @@ def _incomplete(results: Results) -> str:
 
 
 def _doubtful(results: Results) -> Iterator[str]:
-    """What others did to the journal: nobody who can do that is to decide about an exit code."""
+    """Changes to the journal by other processes, which make its exit code unreliable."""
     if results.set_aside:
         yield (
             f"{in_short(results.set_aside, 5)} in the journal: not written by mutabot, or damaged; "

@@ -115,7 +115,7 @@ class MutantResult:
 
     @property
     def change(self) -> str | None:
-        """What it changed when it first acted, in words, where its story is told; None if not known."""
+        """Describe its first change, in the test whose story is reported; None if not known."""
         outcomes = sorted(self.survived, key=weight_of, reverse=True) or self.outcomes
         return next(filter(None, (change_text(self.mutant, one, self.quantity) for one in outcomes)), None)
 
@@ -192,7 +192,7 @@ class Results:
 
     @property
     def altered(self) -> tuple[str, ...]:
-        """What something else changed in the journal while the campaign ran, and was restored, in words."""
+        """Describe changes by other processes to the journal during the campaign, which were undone."""
         return tuple(self.meta.get(records.ALTERED) or ())
 
     @property
@@ -291,7 +291,7 @@ class Results:
 
     @property
     def needlessly_accepted(self) -> list[str]:
-        """Decisions whose mutants are all killed in every valid round, in words."""
+        """Describe decisions whose mutants are all killed in every valid round."""
         groups: dict[str, list[MutantResult]] = {}
         for one in self.mutants:
             if one.acceptance is not None:
@@ -490,7 +490,7 @@ def _state(journal: JournalReader, shard: records.ShardOf | None, *, is_whole: b
 
 
 def unlooked(results: Iterable[MutantResult]) -> list[str]:
-    """The oracle's readings of which no mutant was noticed, in words; only mutants that were judged count.
+    """Describe readings of the oracle none of whose judged mutants was noticed.
 
     Of a reading with a mutant that is still to be run, as in another shard, nothing is said.
     """

@@ -196,7 +196,7 @@ class _Cells:
         return math.fsum(self.weight(number) * (value - self.rounds[number]) for number, value in row.items())
 
     def variance_of_mutants(self) -> float:
-        """MSm / MR, with the imagined mutants: that of the score if only the mutants were drawn anew."""
+        """MSm / MR, with the imagined mutants: variance of the score if only the mutants were redrawn."""
         mutants, smoothed = self.mutants, self.smoothed
         squares = mutants**2 * math.fsum(self.influence(row) ** 2 for row in self.rows)
         squares += mutants * (self.score - smoothed) ** 2
@@ -214,7 +214,7 @@ class _Cells:
         return variance, max(1.0, variance**2 / spread)
 
     def mean_square_of_rounds(self) -> float:
-        """MSr / MR: that of the score if only the rounds were drawn anew."""
+        """MSr / MR: variance of the score if only the rounds were redrawn."""
         rounds, score = len(self.rounds), self.score
         return math.fsum((share - score) ** 2 for share in self.rounds.values()) / (rounds * (rounds - 1))
 

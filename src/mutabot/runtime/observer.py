@@ -197,7 +197,7 @@ class _Uses(Messages):
         super().__init__(lambda target, finding: None)
 
     def find(self, form: Form, name: str, node: str | None) -> Handler | None:
-        """What looks at a use; None where something is set up, which is told at once."""
+        """Return the observer of a use; None for a set-up, which is reported at once."""
         observer, locator = self._observer, self._locator
         if form not in _PASSING:
             caller = _caller(locator.locate(sys._getframe(1)))

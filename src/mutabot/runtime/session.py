@@ -328,7 +328,7 @@ class Session:
             self.files.change(path, content)
 
     def untracked(self) -> Untracked:
-        """What is done in this context is none of the program's doing."""
+        """Return a context in which calls are not attributed to the program."""
         is_main = threading.get_ident() == self._main_thread  # at every step of a simulator
         return Untracked(self.returns if is_main else None)
 

@@ -325,7 +325,7 @@ class TestHooks:
 
 
 def objects_of_fixtures(item: pytest.Item) -> Iterator[Any]:
-    """What the test's fixtures gave and what lies right in that; the object of its class likewise."""
+    """Return the values of the test's fixtures, its instance, and their direct attributes."""
     given = list(getattr(item, "funcargs", {}).values())
     owner = getattr(getattr(item, "obj", None), "__self__", None)
     for one in given if owner is None else [*given, type(owner), owner]:

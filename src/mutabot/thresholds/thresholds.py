@@ -1,4 +1,4 @@
-"""The thresholds of a campaign: its ladders, what the rounds showed, in words, and which demands do not hold.
+"""The thresholds of a campaign: its ladders, what the rounds showed, and which demands are not met.
 
 Words give brackets, and never a number between them.
 """

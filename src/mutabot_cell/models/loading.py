@@ -12,20 +12,33 @@ import mujoco
 
 from mutabot_cell.errors import BadArgument, BadModel
 from mutabot_cell.geometry import Pose, pose_of
+from mutabot_cell.scene import BASE_POSITION
 
 from .checks import check_chain, check_masses, check_size, check_touch, compiled
 from .lean import ARM_CLASS, collide_as, freeze_inertias, leave_looks_out, strip
 from .limits import JointLimits, Limits
 from .servos import make_servos, servos_of, torque_of
 
+ON_PEDESTAL = Pose(*BASE_POSITION, 0.0, 0.0, 0.0)
+"""Where a base stands unless said otherwise: on a pedestal as high as the published experiment's."""
 
-@dataclass(frozen=True, slots=True)
-class ArmFile:
-    """What a file says of an arm.
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class ArmModel:
+    """An arm without a tool, as a file describes it.
 
     Attributes:
-        name, spec, joints, servos, home, ranges, limits, flange, root, file: as in `RobotModel`.
-        base: where the base stands in the file's world, m and degrees; None where that world is the base.
+        name: of the robot's type.
+        spec: the arm; its world frame is the robot's base frame.
+        joints: names of the joints from the base to the flange; each turns about one axis.
+        servos: names of the position servos of these joints.
+        home: joint angles of the home position, rad.
+        ranges: lowest and highest angle of each joint, rad; infinite for one that turns without end.
+        limits: what the joints may do.
+        flange: name of the site to which tools are fastened; its z axis points away from the arm.
+        base: where the base stands in the world, m and degrees.
+        root: name of its first body in a file that holds more than the robot; "" otherwise.
+        file: that it was read from, for pictures: it may hold meshes that the simulation leaves out.
     """
 
     name: str
@@ -36,9 +49,9 @@ class ArmFile:
     ranges: tuple[tuple[float, float], ...]
     limits: JointLimits
     flange: str
-    root: str
-    base: Pose | None
-    file: Path
+    base: Pose = ON_PEDESTAL
+    root: str = ""
+    file: Path | None = None
 
 
 def read_mjcf(
@@ -48,10 +61,10 @@ def read_mjcf(
     limits: Limits,
     root: str | None,
     without: Sequence[str],
-) -> ArmFile:
+) -> ArmModel:
     """Read an arm from a file in MuJoCo's format; see `RobotModel.from_mjcf`."""
     spec = read(path)
-    base = None
+    base = ON_PEDESTAL
     if root is not None:
         spec, base = _part(spec, root, path)
     for name in without:
@@ -93,9 +106,9 @@ def read_spec(
     tool_site: str,
     home: Sequence[float] | None,
     limits: Limits,
-    base: Pose | None = None,
+    base: Pose = ON_PEDESTAL,
     root: str = "",
-) -> ArmFile:
+) -> ArmModel:
     """Read an arm from a spec that holds nothing else. Changes the spec."""
     flange = flange_of(spec, path, tool_site)
     chain = chain_to(flange.parent, spec)
@@ -120,7 +133,7 @@ def read_spec(
     ranges = tuple(_range(model, name) for name in names)
     _check_home(angles, ranges, names, path)
     check_size(compiled(spec, path), names, angles, tool_site, path)
-    return ArmFile(
+    return ArmModel(
         name=Path(path).stem,
         spec=spec,
         joints=names,

@@ -6,22 +6,15 @@ Lengths in m, angles in rad, torques in Nm, masses in kg.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from os import PathLike
-from pathlib import Path
-
-import mujoco
 
 from mutabot_cell.geometry import Pose
-from mutabot_cell.scene import BASE_POSITION
 
-from .limits import JointLimits, Limits, ToolLimits
-from .loading import ArmFile, read_mjcf
+from .limits import Limits, ToolLimits
+from .loading import ArmModel, read_mjcf
 from .tool import Tool
 from .urdf import read_urdf
-
-ON_PEDESTAL = Pose(*BASE_POSITION, 0.0, 0.0, 0.0)
-"""Where a base stands unless said otherwise: on a pedestal as high as the published experiment's."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,45 +32,24 @@ class SphericalWrist:
     to_flange: float
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class RobotModel:
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class RobotModel(ArmModel):
     """An arm, and the tool at its flange.
 
-    Attributes:
-        name: of the robot's type.
-        spec: the arm without a tool; its world frame is the robot's base frame.
-        joints: names of the joints from the base to the flange; each turns about one axis.
-        servos: names of the position servos of these joints.
-        home: joint angles of the home position, rad.
-        ranges: lowest and highest angle of each joint, rad; infinite for one that turns without end.
-        limits, tool_limits: what joints and tool may do.
-        flange: name of the site to which tools are fastened; its z axis points away from the arm.
+    Attributes, beside those of the arm:
+        tool_limits: what the tool may do.
         payload: what the arm is rated for without a gripper, kg.
-        base: where the base stands in the world, m and degrees.
         tool: what is fastened to the flange, if anything.
         reach: its reach in closed form, for refusals that say by how much; None: the planner finds out.
-        root: name of its first body in a file that holds more than the robot; "" otherwise.
         is_fed_forward: whether the controller gives servos the torques that a motion needs: servos of files
             can be too soft to follow without.
-        file: that it was read from, for pictures: it may hold meshes that the simulation leaves out.
     """
 
-    name: str
-    spec: mujoco.MjSpec
-    joints: tuple[str, ...]
-    servos: tuple[str, ...]
-    home: tuple[float, ...]
-    ranges: tuple[tuple[float, float], ...]
-    limits: JointLimits
     tool_limits: ToolLimits
-    flange: str
     payload: float
-    base: Pose = ON_PEDESTAL
     tool: Tool | None = None
     reach: SphericalWrist | None = None
-    root: str = ""
     is_fed_forward: bool = False
-    file: Path | None = None
 
     @classmethod
     def from_mjcf(
@@ -139,23 +111,9 @@ class RobotModel:
         return cls._of(arm, tool_limits, payload)
 
     @classmethod
-    def _of(cls, arm: ArmFile, tool_limits: ToolLimits | None, payload: float) -> RobotModel:
-        return cls(
-            name=arm.name,
-            spec=arm.spec,
-            joints=arm.joints,
-            servos=arm.servos,
-            home=arm.home,
-            ranges=arm.ranges,
-            limits=arm.limits,
-            tool_limits=tool_limits or ToolLimits(),
-            flange=arm.flange,
-            payload=payload,
-            base=arm.base or ON_PEDESTAL,
-            root=arm.root,
-            is_fed_forward=True,
-            file=arm.file,
-        )
+    def _of(cls, arm: ArmModel, tool_limits: ToolLimits | None, payload: float) -> RobotModel:
+        values = {field.name: getattr(arm, field.name) for field in fields(ArmModel)}
+        return cls(**values, tool_limits=tool_limits or ToolLimits(), payload=payload, is_fed_forward=True)
 
     def with_tool(self, tool: Tool | None) -> RobotModel:
         """Return the arm with `tool` at its flange; None for an arm alone."""

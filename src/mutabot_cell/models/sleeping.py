@@ -29,7 +29,7 @@ def let_sleep(spec: mujoco.MjSpec) -> None:
 
 @contextmanager
 def awake(model: mujoco.MjModel) -> Iterator[None]:
-    """Inside, nothing sleeps, and the places of fixtures are computed anew, else only once."""
+    """A context in which nothing sleeps and the poses of fixtures are recomputed."""
     flags = model.opt.enableflags
     model.opt.enableflags = flags & ~_SLEEP
     try:

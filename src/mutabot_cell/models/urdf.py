@@ -14,7 +14,7 @@ import mujoco
 from mutabot_cell.errors import BadModel
 
 from .limits import Limits
-from .loading import ArmFile, names_of, read_spec
+from .loading import ArmModel, names_of, read_spec
 
 # Names of meshes are paths from the file; links without joints keep their names; looks are left out.
 _COMPILER = (
@@ -29,7 +29,7 @@ def read_urdf(
     home: Sequence[float],
     limits: Limits,
     packages: Mapping[str, str | PathLike[str]],
-) -> ArmFile:
+) -> ArmModel:
     """Read an arm from a URDF file; see `RobotModel.from_urdf`."""
     if not Path(path).is_file():
         raise BadModel(f"there is no file {fspath(path)!r}")

@@ -96,7 +96,7 @@ def _braking_speed(left: float, now: float, period: float) -> float:
 
 
 class Push:
-    """Push with a force for a time, giving way where told.
+    """Push with a force for a time, compliant along the given axes.
 
     Args:
         steps: the joints, at rest.

@@ -1,4 +1,4 @@
-"""Values in words that need no import: plain numbers, texts and sequences by path."""
+"""Descriptions of values that need no import: plain numbers, texts and sequences by path."""
 
 from __future__ import annotations
 

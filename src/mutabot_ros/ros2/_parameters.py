@@ -57,7 +57,7 @@ class _Parameters:
         return {name: self._read(node, whole + name, one) for name, one in original(node, prefix).items()}
 
     def _note(self, node: Any, name: str, value: Any) -> None:
-        """What a declaration gives as the value; a type is none."""
+        """Note the value that a declaration gives; a type is not a value."""
         if value is not None and not isinstance(value, import_module("rclpy.parameter").Parameter.Type):
             self._defaults.setdefault(node, {})[name] = value
 

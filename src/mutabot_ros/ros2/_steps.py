@@ -73,7 +73,7 @@ def future_of(coroutine: Coroutine[Any, Any, Any]) -> Any:
 
 
 def inner_of(future: Any) -> Any:
-    """The future of rclpy itself that one of ours waits for; any other is its own."""
+    """Return rclpy's future behind one of mutabot's; any other future itself."""
     return getattr(future, _INNER, future)
 
 
@@ -114,7 +114,7 @@ class _Driven:
             self._wait(awaited)
 
     def _given_up(self, future: Any) -> None:
-        """The program cancels its future: nobody waits for the one inside."""
+        """Cancel the inner future when the program cancels its own."""
         inner = inner_of(future)
         if future.cancelled() and inner is not future:
             inner.cancel()

@@ -89,7 +89,7 @@ def sees_simulation(module: Mapping[str, Any]) -> bool:
 
 
 def is_decided(name: str) -> bool:
-    """Whether it was decided of a module, by its name, which modules it sees: it is none of the project's."""
+    """Whether the modules that a module sees are fixed by its name: it does not belong to the project."""
     return _decided(name) is not None
 
 

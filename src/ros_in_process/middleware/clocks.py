@@ -205,7 +205,7 @@ class Timer(Waitable):
             self._last_call = self.next_call - self._period
 
     def follow_jump(self) -> None:
-        """Start its period anew when the clock has jumped back behind its last call."""
+        """Restart its period when the clock has jumped back behind its last call."""
         now = self.clock.now()
         if now < self._last_call:
             self._last_call, self.next_call = now, now + self._period

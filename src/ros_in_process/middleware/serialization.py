@@ -170,7 +170,7 @@ def rclpy_serialize(message: Any, kind: type) -> bytes:
 
 
 def rclpy_deserialize(data: bytes, kind: type) -> Any:
-    """The message that some bytes are. Raises RMWError if they are none."""
+    """Read a message from bytes. Raises RMWError if they are invalid."""
     try:
         return _read_message(kind)(_CdrReader(data[4:]))
     except (struct.error, UnicodeDecodeError):

@@ -189,7 +189,7 @@ class Publisher(_Topic):
         return True
 
     def assert_liveliness(self) -> None:
-        """Say that it is alive, and will have to say so again within its lease."""
+        """Assert that it is alive; this must be repeated within its lease."""
         if self.profile.liveliness != MANUAL_BY_TOPIC or self.profile.lease == RMW_DURATION_INFINITE:
             return
         if not self.is_alive:

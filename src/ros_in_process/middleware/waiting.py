@@ -71,7 +71,7 @@ class WaitSet(Destroyable):
         return wait_set
 
     def make_room(self, counts: Any) -> None:
-        """Let so many more be added, as rclpy's `NumberOfEntities` says."""
+        """Make room for more entities, as counted by rclpy's `NumberOfEntities`."""
         for kind in KINDS:
             self._sizes[kind] += getattr(counts, f"num_{kind}s")
 
@@ -87,7 +87,7 @@ class WaitSet(Destroyable):
     add_event = _adder("event")
 
     def wait(self, timeout: int) -> None:
-        """Wait until something is ready, or for so many nanoseconds; for ever if negative."""
+        """Wait until something is ready, or for a number of nanoseconds; for ever if negative."""
         self._require_members()
         self.wait_until(None if timeout < 0 else SCHEDULER.now + timeout, polls=timeout == 0)
 

@@ -184,7 +184,7 @@ class Process:
         SCHEDULER.drop_process(self)
 
     def wait(self, timeout: float | None = None) -> bool:
-        """Wait until it has ended; false if it has not in so many seconds."""
+        """Wait until it has ended, for at most `seconds`; false if it has not."""
         end = None if timeout is None else SCHEDULER.now + round(timeout * SECOND)
         task = SCHEDULER.current
         self._waiting.append(task)

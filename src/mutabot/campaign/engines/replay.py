@@ -30,7 +30,7 @@ def replay(campaign: Campaign, runs: Iterable[MutantRun]) -> Iterator[Outcome]:
 
 
 def run_alone(campaign: Campaign, hindered: Sequence[tuple[Mutant, Outcome]]) -> Iterator[Outcome]:
-    """Run what was hindered once more with nothing of ours beside it. That counts, however it ends."""
+    """Re-run hindered runs with no other task in parallel. These outcomes are final."""
     if not hindered:
         return
     first = {(one.mutant, one.round): one for _, one in hindered}

@@ -338,7 +338,7 @@ def _foresee(rule: Operator, subject: Subject, hits: list[Hit]) -> tuple[_Forese
 def _why_unmet(
     need: Need, subject: Subject, place: Place, original: Original, vocabulary: Vocabulary
 ) -> str | None:
-    """Why what an operator needs is not to be had; None if it is."""
+    """Why a need of an operator is not met; None if it is."""
     match need:
         case Need.ERROR if not _has_raised(original, place):
             return "no call raises in the baseline"

@@ -140,7 +140,7 @@ def _with_commands(
     sides: Sides,
     described: list[tuple[tuple[Case, ...], tuple[Quantity, ...]]],
 ) -> Operation:
-    """The operation with what is said of calls that write: how they are told apart, undone and refused.
+    """Return the operation with the settings of calls that write: how to distinguish, undo and refuse them.
 
     ``described`` are its arguments in each case of their modes.
     """
@@ -185,7 +185,7 @@ def _read_result(
 
 
 def _is_command(table: OperationTable, operation: Operation) -> bool:
-    """Whether the robot does something, unless the vocabulary says so itself."""
+    """Whether the call is a command, unless the vocabulary specifies it."""
     form = operation.named.form if operation.named is not None else None
     patterns, result = operation.patterns, operation.result
     if form is not None and form not in _COMMANDS:

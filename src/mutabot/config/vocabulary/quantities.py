@@ -103,7 +103,7 @@ def in_message(path: Path, root: str | None) -> Path:
 
 
 def bare_path(text: str) -> Path:
-    """The bare path to a field of a message, whose root is that field. Raises ValueError if it is none."""
+    """Return a path to a field of a message, with that field as root. Raises ValueError for other texts."""
     try:
         return Path.parse(text.removeprefix("."), rooted=True)
     except ValueError as error:

@@ -87,7 +87,7 @@ def is_target(text: str) -> bool:
 
 
 def check_target(text: str) -> str:
-    """Return a target, ``module:qualified.name``. Raises ValueError if it is none, saying what is wrong."""
+    """Check a target, ``module:qualified.name``, and return it. Raises ValueError if it is invalid."""
     module, colon, name = text.partition(":")
     odd = next((part for part in (*module.split("."), *name.split(".")) if not is_name(part)), None)
     if text.strip() and not colon:

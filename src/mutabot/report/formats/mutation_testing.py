@@ -86,7 +86,7 @@ def _mutant(result: MutantResult, material: Material) -> dict[str, Any]:
 
 
 def _replacement(mutant: Mutant, material: Material) -> str:
-    """What would stand there: the new text if that is what the mutant is, else what it does, in words."""
+    """The replacement: the new text of a mutant of program text, else a description."""
     text = material.place(mutant.site.span).text
     before, arrow, after = mutant.description.partition(" → ")
     return after if arrow and before == text else mutant.description

@@ -345,7 +345,7 @@ class ProcessWatch:
 
 
 def _why_unseen(event: str, arguments: tuple[Any, ...]) -> str | None:
-    """Why a Python that is being started will not find its way to the campaign; None if nothing says so."""
+    """Why a Python process that is being started cannot join the campaign; None if it can."""
     words = _words(*arguments[:2])
     if not words or not os.path.basename(words[0]).startswith("python"):
         return None
