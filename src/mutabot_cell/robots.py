@@ -15,8 +15,7 @@ from pathlib import Path
 from .errors import BadModel
 from .models.kinova import gen3
 from .models.limits import Limits
-from .models.loading import ON_PEDESTAL
-from .models.robot import RobotModel
+from .models.robot import ON_PEDESTAL, RobotModel
 from .models.robotiq import gripper
 from .models.tool import Tool
 

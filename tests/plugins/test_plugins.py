@@ -76,7 +76,7 @@ BROKEN = {
     ),
     "does not change any value": (
         "late",
-        "from mutabot.operators import ValueOperator\nclass Rule(ValueOperator):\n    name = 'late'",
+        "from mutabot.api.faults import ValueOperator\nclass Rule(ValueOperator):\n    name = 'late'",
         "'late' defines neither change nor changes",
     ),
     "has another name": (

@@ -12,15 +12,11 @@ import mujoco
 
 from mutabot_cell.errors import BadArgument, BadModel
 from mutabot_cell.geometry import Pose, pose_of
-from mutabot_cell.scene import BASE_POSITION
 
 from .checks import check_chain, check_masses, check_size, check_touch, compiled
 from .lean import ARM_CLASS, collide_as, freeze_inertias, leave_looks_out, strip
 from .limits import JointLimits, Limits
 from .servos import make_servos, servos_of, torque_of
-
-ON_PEDESTAL = Pose(*BASE_POSITION, 0.0, 0.0, 0.0)
-"""Where a base stands unless said otherwise: on a pedestal as high as the published experiment's."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -36,7 +32,7 @@ class ArmModel:
         ranges: lowest and highest angle of each joint, rad; infinite for one that turns without end.
         limits: what the joints may do.
         flange: name of the site to which tools are fastened; its z axis points away from the arm.
-        base: where the base stands in the world, m and degrees.
+        base: where the base stands in the file's world, m and degrees; None where that world is the base.
         root: name of its first body in a file that holds more than the robot; "" otherwise.
         file: that it was read from, for pictures: it may hold meshes that the simulation leaves out.
     """
@@ -49,7 +45,7 @@ class ArmModel:
     ranges: tuple[tuple[float, float], ...]
     limits: JointLimits
     flange: str
-    base: Pose = ON_PEDESTAL
+    base: Pose | None = None
     root: str = ""
     file: Path | None = None
 
@@ -64,7 +60,7 @@ def read_mjcf(
 ) -> ArmModel:
     """Read an arm from a file in MuJoCo's format; see `RobotModel.from_mjcf`."""
     spec = read(path)
-    base = ON_PEDESTAL
+    base = None
     if root is not None:
         spec, base = _part(spec, root, path)
     for name in without:
@@ -106,7 +102,7 @@ def read_spec(
     tool_site: str,
     home: Sequence[float] | None,
     limits: Limits,
-    base: Pose = ON_PEDESTAL,
+    base: Pose | None = None,
     root: str = "",
 ) -> ArmModel:
     """Read an arm from a spec that holds nothing else. Changes the spec."""

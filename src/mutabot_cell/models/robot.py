@@ -10,11 +10,15 @@ from dataclasses import dataclass, fields, replace
 from os import PathLike
 
 from mutabot_cell.geometry import Pose
+from mutabot_cell.scene import BASE_POSITION
 
 from .limits import Limits, ToolLimits
 from .loading import ArmModel, read_mjcf
 from .tool import Tool
 from .urdf import read_urdf
+
+ON_PEDESTAL = Pose(*BASE_POSITION, 0.0, 0.0, 0.0)
+"""Where a base stands unless said otherwise: on a pedestal as high as the published experiment's."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +41,7 @@ class RobotModel(ArmModel):
     """An arm, and the tool at its flange.
 
     Attributes, beside those of the arm:
+        base: where the base stands in the world, m and degrees.
         tool_limits: what the tool may do.
         payload: what the arm is rated for without a gripper, kg.
         tool: what is fastened to the flange, if anything.
@@ -45,6 +50,7 @@ class RobotModel(ArmModel):
             can be too soft to follow without.
     """
 
+    base: Pose = ON_PEDESTAL
     tool_limits: ToolLimits
     payload: float
     tool: Tool | None = None
@@ -113,6 +119,7 @@ class RobotModel(ArmModel):
     @classmethod
     def _of(cls, arm: ArmModel, tool_limits: ToolLimits | None, payload: float) -> RobotModel:
         values = {field.name: getattr(arm, field.name) for field in fields(ArmModel)}
+        values["base"] = arm.base or ON_PEDESTAL
         return cls(**values, tool_limits=tool_limits or ToolLimits(), payload=payload, is_fed_forward=True)
 
     def with_tool(self, tool: Tool | None) -> RobotModel:
