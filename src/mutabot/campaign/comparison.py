@@ -11,22 +11,21 @@ import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
-from fnmatch import fnmatchcase
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
+from mutabot.campaign.probe_readings import keys_of, quantities_meant, readings_of, step_text, value_of
 from mutabot.frozen import frozen
-from mutabot.model import Compared, Kind, Operation, Path, Pattern, Probe, Quantity
+from mutabot.model import Compared, Kind, Operation, Pattern, Probe, Quantity
 from mutabot.model.deviation import TOLERANCES, deviation_of
-from mutabot.model.path import Step
 from mutabot.model.quantity import distinct_texts, is_number, value_text
 from mutabot.model.units import apart
 
-if TYPE_CHECKING:
-    from mutabot.model.events import TestEnd
-
+#: greatest difference of two equal numbers where the vocabulary names no probe
+DEFAULT_TOLERANCE = 1e-6
+#: multiples of its tolerance that a difference counts which is not one of numbers
+OTHER_WORLD = 1e9
 #: an operation and the notation of its command
 CommandName = tuple[str, str | None]
-_PARTS = (("w", "x", "y", "z"), ("theta_x", "theta_y", "theta_z"), ("x", "y", "z"))
 
 
 def _angles_of(operations: Sequence[Operation]) -> dict[CommandName, dict[str, Quantity]]:
@@ -43,17 +42,6 @@ def _angles_of(operations: Sequence[Operation]) -> dict[CommandName, dict[str, Q
     }
 
 
-def _angle_between(quantity: Quantity | None, before: Any, after: Any) -> float | None:
-    """Distance between two values of a quantity as orientations or angles; None for other quantities."""
-    if quantity is not None and quantity.is_whole:
-        first, second = quantity.orientation(before), quantity.orientation(after)
-        return quantity.from_unit(first.distance(second), "rad") if first and second else None
-    turn = quantity.full_turn if quantity is not None else None
-    if turn is None or not (is_number(before) and is_number(after)):
-        return None
-    return apart(before, after, turn)
-
-
 def _values_apart(before: Any, after: Any, angles: Mapping[str, Quantity]) -> float:
     """The greatest distance of two sets of values by quantity."""
     if not angles or not isinstance(before, Mapping) or not isinstance(after, Mapping):
@@ -66,114 +54,6 @@ def _values_apart(before: Any, after: Any, angles: Mapping[str, Quantity]) -> fl
     return max(distances, default=0.0)
 
 
-def _value(quantity: Quantity, keys: Sequence[str], values: Mapping[str, Any]) -> Any:
-    return [values[key] for key in keys] if quantity.is_whole else values[keys[0]]
-
-
-def parts_of(name: str, quantity: Quantity, values: Mapping[str, Any]) -> Iterator[Any]:
-    """Return the values of a quantity that a reading of a probe contains."""
-    for one in _meant(name, quantity, values):
-        keys = _keys(name, one, values)
-        if keys and all(key in values for key in keys):
-            yield _value(one, keys, values)
-
-
-def is_pattern(quantity: Quantity) -> bool:
-    """Whether it matches all parts by name, such as ``["*tool"]``; there may be no match."""
-    last = quantity.path.steps[-1].item if quantity.path.steps else None
-    return isinstance(last, str) and "*" in last
-
-
-def _meant(name: str, quantity: Quantity, values: Mapping[str, Any]) -> Iterator[Quantity]:
-    """The quantities that a pattern matches, or the quantity itself if it is no pattern."""
-    if not is_pattern(quantity):
-        yield quantity
-        return
-    *before, last = quantity.path.steps
-    tails = [key[len(name) + 1 :] for key in values if key.startswith(f"{name}.")]
-    owners = [tail.rpartition(".")[0] if quantity.is_whole else tail for tail in tails]
-    for owner in dict.fromkeys(owners):
-        if fnmatchcase(owner, last.item):
-            yield replace(quantity, path=Path(None, (*before, Step(item=owner))))
-
-
-def readings_of(probe: Probe, values: Mapping[str, Any]) -> list[str]:
-    """The probe's names among its values: one for each object."""
-    found: dict[str, None] = {}
-    for key in values:
-        tail = key[len(probe.target) :] if key.startswith(probe.target) else None
-        if tail is not None and (not tail or tail[0] in ".[#"):
-            number = tail[1:].partition(".")[0].partition("[")[0] if tail[:1] == "#" else ""
-            found[f"{probe.target}#{number}" if number else probe.target] = None
-    return list(found)
-
-
-def _keys(name: str, quantity: Quantity, values: Mapping[str, Any]) -> tuple[str, ...]:
-    """The flat values that a quantity consists of, in its order; none if they are not there."""
-    path = quantity.path
-    bounds = path.steps[-1].bounds if path.steps else None
-    steps = path.steps[:-1] if bounds is not None else path.steps
-    base = name + "".join(
-        _step(step.attribute if step.attribute is not None else step.item) for step in steps
-    )
-    if bounds is None and not quantity.is_whole:
-        return (base,)
-    count = 0
-    while f"{base}[{count}]" in values:
-        count += 1
-    if count:
-        indexes = range(count)[slice(*bounds)] if bounds is not None else range(count)
-        return tuple(f"{base}[{index}]" for index in indexes)
-    named: tuple[str, ...] = next(
-        (parts for parts in _PARTS if all(f"{base}.{part}" in values for part in parts)), ()
-    )
-    if len(named) == 4 and quantity.order is not None:
-        named = tuple(quantity.order)
-    return tuple(f"{base}.{part}" for part in named)
-
-
-def _step(item: Any) -> str:
-    return f"[{item}]" if isinstance(item, int) else f".{item}"
-
-
-def _step_text(step: Step) -> str:
-    return str(step) if step.bounds is not None else _step(step.attribute or step.item)
-
-
-#: share of a test's processor time that readings along the way may take, and the seconds that any test may
-_SHARE, _LEAST = 0.01, 0.005
-#: after every how many commands; a coarser one where this takes too long
-_STRIDES = (1, 4, 16, 64)
-#: readings before the first thinning inside
-_FULL = 100
-
-
-def probe_intervals_of(ends: Mapping[tuple[int, str], TestEnd]) -> dict[int, dict[str, int]]:
-    """After every how many commands the probes are read, by round and test; tests without are left out."""
-    read = [end for end in ends.values() if end.reading is not None]
-    if not read or any(end.not_along for end in ends.values()):
-        return {}
-    seconds = min(end.reading for end in read if end.reading is not None)
-    found: dict[int, dict[str, int]] = {}
-    for (round, test), end in ends.items():
-        may_take = max(_LEAST, _SHARE * end.cpu)
-        possible = [one for one in _STRIDES if one <= end.commands]
-        fitting = [one for one in possible if _readings_at(end.commands, one) * seconds <= may_take]
-        if fitting:
-            found.setdefault(round, {})[test] = fitting[0]
-    return found
-
-
-def _readings_at(commands: int, stride: int) -> int:
-    """About how many readings a test has."""
-    moments = commands // stride
-    return moments if moments <= _FULL else _FULL + 50 * (moments // _FULL).bit_length()
-
-
-#: greatest difference of two equal numbers where the vocabulary names no probe
-DEFAULT_TOLERANCE = 1e-6
-#: multiples of its tolerance that a difference counts which is not one of numbers
-OTHER_WORLD = 1e9
 #: where a call's text begins and ends
 _EXTENT = re.compile(r"(:\d+):\d+-\d+:\d+")
 _NO_RETURNS: dict[str, Any] = {"prepared": None, "returned": None}
@@ -221,6 +101,11 @@ class Observation:
     returned: Sequence[Any] | None = ()
     moments: Sequence[Any] | None = ()
 
+    @property
+    def readings(self) -> _Readings:
+        """The probes at its end."""
+        return _Readings(self.probes, self.unread)
+
 
 @frozen
 class Difference:
@@ -262,7 +147,8 @@ def compare(
     ``spread``: how far runs of the original with different seeds are apart; None if that is not known.
     """
     spread = spread or ProbeSpread()
-    found = sorted(_probe_differences(original, mutant, probes), key=lambda one: one.rank(spread.ends))
+    found = list(_probe_differences(original.readings, mutant.readings, probes))
+    found.sort(key=lambda one: one.rank(spread.ends))
     gaps = tuple(
         f"{_short(target)} cannot be read: {mutant.unread[target]}"
         for target in original.unread
@@ -300,7 +186,7 @@ def _on_the_way(
         (one, call)
         for call, before, after in common
         if before != after
-        for one in _probe_differences(Observation(probes=before), Observation(probes=after), probes)
+        for one in _probe_differences(_Readings(before), _Readings(after), probes)
     ]
     worst = max((one.deviation(spread.ways) for one, _ in found), default=0.0)
     told = min(
@@ -348,47 +234,10 @@ class ProbeSpread:
         for other in others:
             pairs = [(ways, before, after) for _, before, after in _common_moments(first, other)]
             for sizes, before, after in [(ends, first.probes, other.probes), *pairs]:
-                sides = Observation(probes=before), Observation(probes=after)
-                for one in _probe_differences(*sides, probes):
+                for one in _probe_differences(_Readings(before), _Readings(after), probes):
                     if math.isfinite(one.size):
                         sizes[one.key] = max(one.size, sizes.get(one.key, 0.0))
         return cls(ends, ways)
-
-
-class _ProbeDifference(NamedTuple):
-    """How far one part of a probe is from the original's.
-
-    Attributes:
-        key: which part.
-        size: the difference, in the unit of the part; infinite if it is not one of numbers.
-        tolerance: difference up to which it counts as the same.
-        unit: of the part, if the vocabulary says it.
-        is_clock: whether it is a time, which is no distance.
-        text: the difference in words.
-    """
-
-    key: str
-    size: float
-    tolerance: float
-    unit: str | None
-    is_clock: bool
-    text: str
-
-    @property
-    def distance(self) -> float:
-        """The difference in multiples of the tolerance."""
-        return min(self.size / self.tolerance, OTHER_WORLD)
-
-    def deviation(self, spread: Mapping[str, float]) -> float:
-        """The difference in units of the original's spread; of clocks, which tell of mere delay, none."""
-        if self.is_clock:
-            return 0.0
-        tolerance = max(self.tolerance, TOLERANCES.get(self.unit or "", 0.0))
-        return min(deviation_of(self.size, spread.get(self.key, 0.0), tolerance), OTHER_WORLD)
-
-    def rank(self, spread: Mapping[str, float]) -> tuple[float, float]:
-        """Lowest for the largest deviation."""
-        return -self.deviation(spread), -self.distance
 
 
 def _same_calls(original: Observation, mutant: Observation) -> int:
@@ -442,96 +291,6 @@ def farthest(comparisons: Sequence[Difference]) -> Difference:
     compared = Compared.together(one.compared for one in comparisons if one.compared is not None)
     way = max((one.way for one in comparisons if one.way is not None), default=None)
     return Difference(together, distance, tuple(lines), gaps, way, compared)
-
-
-def _probe_differences(
-    original: Observation, mutant: Observation, probes: Sequence[Probe]
-) -> Iterator[_ProbeDifference]:
-    unread = original.unread.keys() | mutant.unread.keys()
-    for target in sorted(original.unread.keys() ^ mutant.unread.keys()):
-        text = f"{_short(target)}: {_readable(original, mutant, target)}"
-        yield _ProbeDifference(target, math.inf, 1.0, None, is_clock=False, text=text)
-    done: set[str] = set()
-    for name, quantity in _parts(original.probes, probes):
-        keys = _keys(name, quantity, original.probes)
-        if not keys or not all(key in original.probes and key in mutant.probes for key in keys):
-            continue
-        before, after = (_value(quantity, keys, values) for values in (original.probes, mutant.probes))
-        found = _of_quantity(name, quantity, before, after, _tolerance(keys[0], probes))
-        if found is not None:
-            done.update(keys)
-            yield found
-    for key in dict.fromkeys([*original.probes, *mutant.probes]):
-        if key in done or any(key == target or _lies_below(key, target) for target in unread):
-            continue
-        before, after = original.probes.get(key), mutant.probes.get(key)
-        text = f"{_short(key)}: {_change(before, after)}"
-        size = _distance(before, after)
-        yield _ProbeDifference(key, size, _tolerance(key, probes), None, is_clock=False, text=text)
-
-
-def _of_quantity(
-    name: str, quantity: Quantity, before: Any, after: Any, tolerance: float
-) -> _ProbeDifference | None:
-    """How far a part is apart whose meaning is known; None if its values are compared as any others."""
-    part = f"{name}{quantity.path}"
-    short = _short(f"{name}{''.join(map(_step_text, quantity.path.steps))}")
-    if quantity.kind is Kind.STAMP and is_number(before) and is_number(after):
-        late = f"{abs(after - before):.3g} s {'later' if after > before else 'earlier'}"
-        text = f"the clock {short}: {after:.4g} s instead of {before:.4g} s ({late})"
-        return _ProbeDifference(part, abs(after - before), tolerance, "s", is_clock=True, text=text)
-    angle = _angle_between(quantity, before, after)
-    unit = quantity.unit or ("rad" if angle is not None else None)
-    if angle is not None:
-        shown = " instead of ".join(distinct_texts(after, before, value_text, 4))
-        text = f"{short}: {shown} (turned by {angle:.3g} {unit})"
-        return _ProbeDifference(part, angle, tolerance, unit, is_clock=False, text=text)
-    if not (is_number(before) and is_number(after)):
-        return None
-    text = f"{short}: {_change(before, after)}"
-    return _ProbeDifference(part, _distance(before, after), tolerance, unit, is_clock=False, text=text)
-
-
-def _parts(values: Mapping[str, Any], probes: Sequence[Probe]) -> Iterator[tuple[str, Quantity]]:
-    """The quantities of the readings among some values, with the names of the readings."""
-    for probe in probes:
-        for name in readings_of(probe, values) if probe.result else ():
-            for quantity in probe.result:
-                yield from ((name, one) for one in _meant(name, quantity, values))
-
-
-def _readable(original: Observation, mutant: Observation, target: str) -> str:
-    """How a probe that only one side can read differs."""
-    if target in mutant.unread:
-        return f"cannot be read, as it could be in the original: {mutant.unread[target]}"
-    return f"can be read, as it could not be in the original: {original.unread[target]}"
-
-
-def _tolerance(key: str, probes: Sequence[Probe]) -> float:
-    fitting = [probe for probe in probes if key == probe.target or _lies_below(key, probe.target)]
-    if not fitting:
-        return DEFAULT_TOLERANCE
-    # A tolerance of nothing is meant as "exactly equal".
-    return max(max(fitting, key=lambda probe: len(probe.target)).tolerance, 1e-300)
-
-
-def _lies_below(key: str, target: str) -> bool:
-    return key.startswith(target) and key[len(target)] in ".[#"
-
-
-def _distance(before: Any, after: Any) -> float:
-    """Absolute difference of two numbers or of the worst pair in two lists; infinite if not comparable."""
-    if is_number(before) and is_number(after):
-        if before == after or (math.isnan(before) and math.isnan(after)):
-            return 0.0
-        difference = abs(float(before) - float(after))
-        return math.inf if math.isnan(difference) else difference
-    if isinstance(before, Mapping) and isinstance(after, Mapping):
-        keys = {*before, *after}
-        return max((_distance(before.get(key), after.get(key)) for key in keys), default=0.0)
-    if isinstance(before, list | tuple) and isinstance(after, list | tuple) and len(before) == len(after):
-        return max((_distance(*pair) for pair in zip(before, after, strict=True)), default=0.0)
-    return 0.0 if before == after else math.inf
 
 
 def _first_difference(
@@ -592,20 +351,6 @@ def _returned_difference(original: Observation, mutant: Observation, probes: Seq
     return f"{_event_text(*before[len(after)])} only in the original"
 
 
-def _is_same(before: Any, after: Any, tolerance: float) -> bool:
-    """Whether two values are equal, fractions within the tolerance."""
-    if isinstance(before, Mapping) and isinstance(after, Mapping):
-        same_keys = before.keys() == after.keys()
-        return same_keys and all(_is_same(before[key], after[key], tolerance) for key in before)
-    if isinstance(before, list | tuple) and isinstance(after, list | tuple):
-        return len(before) == len(after) and all(
-            _is_same(*pair, tolerance) for pair in zip(before, after, strict=True)
-        )
-    if is_number(before) and is_number(after) and isinstance(before + after, float):
-        return _distance(before, after) <= tolerance
-    return type(before) is type(after) and bool(before == after)
-
-
 def _returned_text(before: Any, after: Any, tolerance: float) -> str:
     (name, was), (other, is_now) = before, after
     if name != other:
@@ -618,6 +363,187 @@ def _returned_text(before: Any, after: Any, tolerance: float) -> str:
         return f"{name} returned something else"
     path, first, other = _first_part(was[0], is_now[0], tolerance)
     return f"{name} returned {f'{path} ' if path else ''}{_change(first, other)}"
+
+
+def _event_text(name: str, value: Any) -> str:
+    if isinstance(value, Mapping):
+        return f"{name} raised {value['raised']}"
+    return f"{name} returned {value_text(value[0])}"
+
+
+def _place_text(key: str) -> str:
+    """A call's place without its columns: ``sorting.py:118 Arm.move_by``."""
+    return _EXTENT.sub(r"\1", key)
+
+
+class _ProbeDifference(NamedTuple):
+    """How far one part of a probe is from the original's.
+
+    Attributes:
+        key: which part.
+        size: the difference, in the unit of the part; infinite if it is not one of numbers.
+        tolerance: difference up to which it counts as the same.
+        unit: of the part, if the vocabulary says it.
+        is_clock: whether it is a time, which is no distance.
+        text: the difference in words.
+    """
+
+    key: str
+    size: float
+    tolerance: float
+    unit: str | None
+    is_clock: bool
+    text: str
+
+    @property
+    def distance(self) -> float:
+        """The difference in multiples of the tolerance."""
+        return min(self.size / self.tolerance, OTHER_WORLD)
+
+    def deviation(self, spread: Mapping[str, float]) -> float:
+        """The difference in units of the original's spread; of clocks, which tell of mere delay, none."""
+        if self.is_clock:
+            return 0.0
+        tolerance = max(self.tolerance, TOLERANCES.get(self.unit or "", 0.0))
+        return min(deviation_of(self.size, spread.get(self.key, 0.0), tolerance), OTHER_WORLD)
+
+    def rank(self, spread: Mapping[str, float]) -> tuple[float, float]:
+        """Lowest for the largest deviation."""
+        return -self.deviation(spread), -self.distance
+
+
+def _probe_differences(
+    original: _Readings, mutant: _Readings, probes: Sequence[Probe]
+) -> Iterator[_ProbeDifference]:
+    """Yield how far each part of the probes is from the original's, equal ones included."""
+    unread = original.unread.keys() | mutant.unread.keys()
+    for target in sorted(original.unread.keys() ^ mutant.unread.keys()):
+        text = f"{_short(target)}: {_readable(original, mutant, target)}"
+        yield _ProbeDifference(target, math.inf, 1.0, None, is_clock=False, text=text)
+    done: set[str] = set()
+    for name, quantity in _parts(original.values, probes):
+        keys = keys_of(name, quantity, original.values)
+        if not keys or not all(key in original.values and key in mutant.values for key in keys):
+            continue
+        before, after = (value_of(quantity, keys, values) for values in (original.values, mutant.values))
+        found = _of_quantity(name, quantity, before, after, _tolerance(keys[0], probes))
+        if found is not None:
+            done.update(keys)
+            yield found
+    for key in dict.fromkeys([*original.values, *mutant.values]):
+        if key in done or any(key == target or _lies_below(key, target) for target in unread):
+            continue
+        before, after = original.values.get(key), mutant.values.get(key)
+        text = f"{_short(key)}: {_change(before, after)}"
+        size = _distance(before, after)
+        yield _ProbeDifference(key, size, _tolerance(key, probes), None, is_clock=False, text=text)
+
+
+def _of_quantity(
+    name: str, quantity: Quantity, before: Any, after: Any, tolerance: float
+) -> _ProbeDifference | None:
+    """How far a part is apart whose meaning is known; None if its values are compared as any others."""
+    part = f"{name}{quantity.path}"
+    short = _short(f"{name}{''.join(map(step_text, quantity.path.steps))}")
+    if quantity.kind is Kind.STAMP and is_number(before) and is_number(after):
+        late = f"{abs(after - before):.3g} s {'later' if after > before else 'earlier'}"
+        text = f"the clock {short}: {after:.4g} s instead of {before:.4g} s ({late})"
+        return _ProbeDifference(part, abs(after - before), tolerance, "s", is_clock=True, text=text)
+    angle = _angle_between(quantity, before, after)
+    unit = quantity.unit or ("rad" if angle is not None else None)
+    if angle is not None:
+        shown = " instead of ".join(distinct_texts(after, before, value_text, 4))
+        text = f"{short}: {shown} (turned by {angle:.3g} {unit})"
+        return _ProbeDifference(part, angle, tolerance, unit, is_clock=False, text=text)
+    if not (is_number(before) and is_number(after)):
+        return None
+    text = f"{short}: {_change(before, after)}"
+    return _ProbeDifference(part, _distance(before, after), tolerance, unit, is_clock=False, text=text)
+
+
+def _parts(values: Mapping[str, Any], probes: Sequence[Probe]) -> Iterator[tuple[str, Quantity]]:
+    """The quantities of the readings among some values, with the names of the readings."""
+    for probe in probes:
+        for name in readings_of(probe, values) if probe.result else ():
+            for quantity in probe.result:
+                yield from ((name, one) for one in quantities_meant(name, quantity, values))
+
+
+def _readable(original: _Readings, mutant: _Readings, target: str) -> str:
+    """How a probe that only one side can read differs."""
+    if target in mutant.unread:
+        return f"cannot be read, as it could be in the original: {mutant.unread[target]}"
+    return f"can be read, as it could not be in the original: {original.unread[target]}"
+
+
+def _tolerance(key: str, probes: Sequence[Probe]) -> float:
+    fitting = [probe for probe in probes if key == probe.target or _lies_below(key, probe.target)]
+    if not fitting:
+        return DEFAULT_TOLERANCE
+    # A tolerance of nothing is meant as "exactly equal".
+    return max(max(fitting, key=lambda probe: len(probe.target)).tolerance, 1e-300)
+
+
+def _lies_below(key: str, target: str) -> bool:
+    return key.startswith(target) and key[len(target)] in ".[#"
+
+
+def _short(key: str) -> str:
+    """Return a target without its module."""
+    return key.partition(":")[2]
+
+
+@frozen
+class _Readings:
+    """_Readings of probes at one moment.
+
+    Attributes:
+        values: by ``target.part``.
+        unread: why a probe could not be read, by target.
+    """
+
+    values: Mapping[str, Any] = field(default_factory=dict)
+    unread: Mapping[str, str] = field(default_factory=dict)
+
+
+def _angle_between(quantity: Quantity | None, before: Any, after: Any) -> float | None:
+    """Distance between two values of a quantity as orientations or angles; None for other quantities."""
+    if quantity is not None and quantity.is_whole:
+        first, second = quantity.orientation(before), quantity.orientation(after)
+        return quantity.from_unit(first.distance(second), "rad") if first and second else None
+    turn = quantity.full_turn if quantity is not None else None
+    if turn is None or not (is_number(before) and is_number(after)):
+        return None
+    return apart(before, after, turn)
+
+
+def _distance(before: Any, after: Any) -> float:
+    """Absolute difference of two numbers or of the worst pair in two lists; infinite if not comparable."""
+    if is_number(before) and is_number(after):
+        if before == after or (math.isnan(before) and math.isnan(after)):
+            return 0.0
+        difference = abs(float(before) - float(after))
+        return math.inf if math.isnan(difference) else difference
+    if isinstance(before, Mapping) and isinstance(after, Mapping):
+        keys = {*before, *after}
+        return max((_distance(before.get(key), after.get(key)) for key in keys), default=0.0)
+    if isinstance(before, list | tuple) and isinstance(after, list | tuple) and len(before) == len(after):
+        return max((_distance(*pair) for pair in zip(before, after, strict=True)), default=0.0)
+    return 0.0 if before == after else math.inf
+
+
+def _is_same(before: Any, after: Any, tolerance: float) -> bool:
+    """Whether two values are equal, fractions within the tolerance."""
+    if isinstance(before, Mapping) and isinstance(after, Mapping):
+        same_keys = before.keys() == after.keys()
+        return same_keys and all(_is_same(before[key], after[key], tolerance) for key in before)
+    if isinstance(before, list | tuple) and isinstance(after, list | tuple):
+        return len(before) == len(after) and all(
+            _is_same(*pair, tolerance) for pair in zip(before, after, strict=True)
+        )
+    if is_number(before) and is_number(after) and isinstance(before + after, float):
+        return _distance(before, after) <= tolerance
+    return type(before) is type(after) and bool(before == after)
 
 
 def _first_part(before: Any, after: Any, tolerance: float) -> tuple[str, Any, Any]:
@@ -635,22 +561,8 @@ def _first_part(before: Any, after: Any, tolerance: float) -> tuple[str, Any, An
     return "", before, after
 
 
-def _event_text(name: str, value: Any) -> str:
-    if isinstance(value, Mapping):
-        return f"{name} raised {value['raised']}"
-    return f"{name} returned {value_text(value[0])}"
-
-
-def _place_text(key: str) -> str:
-    """A call's place without its columns: ``sorting.py:118 Arm.move_by``."""
-    return _EXTENT.sub(r"\1", key)
-
-
-def _short(key: str) -> str:
-    return key.partition(":")[2]
-
-
 def _change(before: Any, after: Any) -> str:
+    """Return ``after instead of before``, with the difference of numbers."""
     text = " instead of ".join(distinct_texts(after, before, value_text, 4))
     if is_number(before) and is_number(after):
         return f"{text} (off by {abs(float(after) - float(before)):.3g})"

@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.comparison import Observation, TraceCall, compare, probe_intervals_of
+from mutabot.campaign.comparison import Observation, TraceCall, compare
+from mutabot.campaign.probe_readings import probe_intervals_of
 from mutabot.campaign.run import run_campaign
 from mutabot.execution.processes import _template
 from mutabot.model import Outcome, Probe, Verdict, Vocabulary

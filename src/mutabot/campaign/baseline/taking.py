@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
 from mutabot.campaign.baseline.writes import written_through
-from mutabot.campaign.comparison import probe_intervals_of
+from mutabot.campaign.probe_readings import probe_intervals_of
 from mutabot.campaign.request import Progress, Request
 from mutabot.config.mistakes import problem_error
 from mutabot.errors import BaselineError, NothingToDoError

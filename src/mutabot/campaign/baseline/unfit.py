@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
-from mutabot.campaign.comparison import is_pattern, parts_of, readings_of
+from mutabot.campaign.probe_readings import is_pattern, parts_of, readings_of
 from mutabot.config.mistakes import problem_error
 from mutabot.extensions import brought
 from mutabot.model.events import Problem, Remark, TestEnd
