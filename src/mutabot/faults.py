@@ -247,6 +247,10 @@ class FaultProvider(ABC):
         """Whether equal runs with a fault of this operator may end differently."""
         return False
 
+    def is_monotone(self, operator: str) -> bool:
+        """Whether tests that notice a fault of this operator notice all larger ones; if not, each is run."""
+        return True
+
 
 @cache
 def brought_providers() -> tuple[FaultProvider, ...]:

@@ -79,8 +79,8 @@ class Campaign:
         numbers = {test: number for number, test in enumerate(self.baseline.suite(round))}
         return {
             mutant.id: tuple(sorted(numbers[test] for test in self.baseline.tests_reaching(round, mutant)))
-            for mutant in (mutants if self.is_short else ())
-            if mutant.family != CONTROL
+            for mutant in mutants
+            if mutant.family != CONTROL and (self.is_short or self.baseline.is_of_tests(mutant))
         }
 
     def task(self, mutant: Mutant, round: int, tests: tuple[str, ...], *, stop: bool = True) -> Task:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from mutabot.campaign.baseline.seeds import record_more_seeds
 from mutabot.campaign.engines.engine import run_trials
+from mutabot.campaign.faults.providers import provider
 from mutabot.campaign.plan import shuffled
 from mutabot.config.options import in_words
 from mutabot.errors import plural
@@ -123,12 +124,19 @@ def _run_ladders(
         return found
 
     always = demanded_of(ladders, request.configuration.demands, request.vocabulary)
+    whole_ladders = {name: those for name, those in ladders.items() if _is_whole(those)}
+    always |= {name: tuple(one.magnitude or 0.0 for one in those) for name, those in whole_ladders.items()}
     count = search_ladders(ladders, run, rounds=request.rounds, seed=request.seed, always=always)
     whole = request.rounds * sum(map(len, ladders.values()))
     campaign.progress.note(
         f"thresholds: {plural(len(ladders), 'ladder')} in {plural(request.rounds, 'round')} took "
         f"{plural(count, 'run')}; all their magnitudes would have taken {whole}"
     )
+
+
+def _is_whole(ladder: Sequence[Mutant]) -> bool:
+    """Whether all magnitudes of a ladder are run, since a larger one may be missed where a smaller is not."""
+    return not provider(ladder[0].provider).is_monotone(ladder[0].operator)
 
 
 def in_order(

@@ -242,7 +242,8 @@ def judge(campaign: Campaign, run: Run) -> Outcome:
         looked=_looked(run, baseline) if verdict is Verdict.SURVIVED else (),
         executed=_executed(run, end, baseline, is_of_suite=end is None and verdict.is_killed),
     )
-    outcome = replace(outcome, confirmed=False if _lacks_tests(run, outcome) else None)
+    is_short = not baseline.is_of_tests(run.mutant) and _lacks_tests(run, outcome)
+    outcome = replace(outcome, confirmed=False if is_short else None)
     return _compared(campaign, outcome, run) if verdict is Verdict.SURVIVED else outcome
 
 

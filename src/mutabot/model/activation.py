@@ -61,6 +61,7 @@ class Activation:
         awaits: what must be there before the fault is made: ``AT_ONCE``, ``FIRST_TEST``, ``FIRST_TICK`` or
             the name of a module, which has then been imported. Processes below the tests await it likewise.
         identity, fatal: the controls at the place of the mutant; None for those that any fault has.
+        is_of_tests: whether nothing is left of the fault after a test: only tests that reach it judge it.
     """
 
     EACH_TEST = (TEST,)
@@ -72,6 +73,7 @@ class Activation:
     awaits: str = FIRST_TEST
     identity: Activation | None = None
     fatal: Activation | None = None
+    is_of_tests: bool = False
 
     @staticmethod
     def at_time(seconds: float) -> Key:

@@ -191,8 +191,13 @@ class Baseline(Original):
         return tuple(self.reaching.get((round, Place.of(mutant)), ()))
 
     def tests_judging(self, round: int, mutant: Mutant) -> tuple[str, ...]:
-        """The tests that can notice a mutant, in their order: all from the first on that reaches it."""
+        """The tests that can notice a mutant, in their order: all from the first on that reaches it.
+
+        Of a fault of which nothing is left after a test, those that reach it.
+        """
         reaching, suite = set(self.tests_reaching(round, mutant)), self.suite(round)
+        if self.is_of_tests(mutant):
+            return tuple(test for test in suite if test in reaching)
         first = next((number for number, test in enumerate(suite) if test in reaching), len(suite))
         return suite[first:]
 
@@ -208,6 +213,10 @@ class Baseline(Original):
     def is_apart(self, mutant: Mutant) -> bool:
         """Return whether a mutant needs a process of its own, as it is active before any point to fork at."""
         return not self.faults.active(mutant).keys
+
+    def is_of_tests(self, mutant: Mutant) -> bool:
+        """Return whether only tests that reach a mutant judge it."""
+        return mutant.family != CONTROL and self.faults.active(mutant).is_of_tests
 
     def is_early(self, mutant: Mutant) -> bool:
         """Whether a mutant may act before any test begins."""

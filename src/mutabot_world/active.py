@@ -1,0 +1,151 @@
+"""A disturbance in the processes of the tests."""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Callable
+from contextlib import suppress
+from random import Random
+from typing import Any, NamedTuple
+
+from mutabot.api.faults import ActiveFault
+
+from .change import NumberChange, Undo, change_at
+from .patching import live, resolve, wrap
+
+
+class WorldFault(ActiveFault):
+    """One parameter of the world, disturbed by one magnitude.
+
+    A function of ``apply`` is called with the world and the change, and by name with ``names``, ``random``
+    and the parameter's options. It raises LookupError if the world has nothing of these names. What it
+    returns, if anything, takes the disturbance away.
+    """
+
+    def start_test(self, test: str, random: Random) -> None:
+        """Wait for the worlds of the test, or for the moment in it."""
+        self._key, self._undo, self._missing = random.random(), list[Undo](), ""
+        self._disturbed: dict[int, _Disturbed] = {}
+        self._earlier, self._has_made = list[Any](), False
+        if test != self.mutant.site.span.file:
+            return
+        moment = self.data["moment"]
+        match moment["kind"]:
+            case "made":
+                # those that are there may be of the test, or left of others: that is known at its end
+                with suppress(LookupError):
+                    self._earlier = [one for one in live(self.data["of"]) if self._disturb(one, is_told=False)]
+                for reference in self.data["of"]:
+                    self._wrap(reference, after=lambda _, world: self._meet(world))
+            case "call":
+                self._wrap(moment["call"], before=_Nth(int(moment["number"]), self._disturb_all))
+            case "while":
+                holds = resolve(moment["condition"])[2]
+                self._wrap(moment["call"], before=lambda *_, **__: self._follow(holds))
+
+    def reach(self, key: tuple[Any, ...]) -> None:
+        """The moment has come."""
+        if self.context.test == self.mutant.site.span.file:
+            self._disturb_all()
+
+    def end_test(self) -> None:
+        """Take everything away, the last first."""
+        if self._earlier and not self._has_made:
+            self.acts()
+        self._earlier.clear()
+        for world in [*self._disturbed]:
+            self._let_go(world)
+        while self._undo:
+            self._undo.pop()()
+        if self._missing and not self.evidence.acted:
+            self.evidence.hits += 1
+            self.evidence.away[self._missing] = 1
+
+    def _wrap(self, reference: str, **what: Any) -> None:
+        try:
+            self._undo.append(wrap(reference, self.raising, **what))
+        except LookupError as error:
+            self._missing = str(error)
+
+    def _disturb_all(self, *_: object, **__: object) -> None:
+        with suppress(LookupError):  # what makes worlds is not there: the one who waits for it says so
+            for world in live(self.data["of"]):
+                self._disturb(world)
+
+    def _follow(self, holds: Any) -> None:
+        """Disturb each world while the condition holds, and no longer."""
+        with suppress(LookupError):
+            for world in live(self.data["of"]):
+                if holds(world):
+                    self._disturb(world)
+                elif id(world) in self._disturbed:
+                    self._let_go(id(world))
+
+    def _meet(self, world: Any) -> None:
+        """The test has made a world: those that were there before are of other tests."""
+        self._earlier.clear()
+        self._has_made = True
+        self._disturb(world)
+
+    def _disturb(self, world: Any, *, is_told: bool = True) -> bool:
+        """Disturb a world, once; return whether it is disturbed now."""
+        known = self._disturbed.get(id(world))
+        if known is not None and known.world() is world:
+            return True
+        change = NumberChange(self.data["change"], self.data["amount"])
+        try:
+            before, after, undo = self._changed(world, change)
+        except LookupError as error:
+            self._missing = str(error.args[0]) if error.args else str(error)
+            return False
+        # whether it is taken away again matters within the test alone: no other test has this fault
+        is_taken_away = self.data["moment"]["kind"] == "while"
+        self._disturbed[id(world)] = _Disturbed(_reference(world), undo if is_taken_away else None)
+        if is_told:
+            self.acts(_plain(before), _plain(after))
+        return True
+
+    def _changed(self, world: Any, change: NumberChange) -> tuple[Any, Any, Undo | None]:
+        """Change the world; return the number before and after, if it is one, and what takes it away."""
+        if self.data["path"]:
+            return change_at(world, self.data["path"], change)
+        function = resolve(self.data["apply"])[2]
+        random = Random(f"{self._key}:{len(self._disturbed)}")
+        result = function(world, change, names=self.data["names"], random=random, **self.data["options"])
+        return None, None, result if callable(result) else None
+
+    def _let_go(self, world: int) -> None:
+        undo = self._disturbed.pop(world).undo
+        if undo is not None:
+            undo()
+
+
+class _Disturbed(NamedTuple):
+    """A world that is disturbed, and what takes that away; to keep one alive would be a disturbance too."""
+
+    world: Callable[[], Any]
+    undo: Undo | None
+
+
+def _reference(world: Any) -> Callable[[], Any]:
+    try:
+        return weakref.ref(world)
+    except TypeError:  # objects of C code mostly allow none
+        return lambda: world
+
+
+class _Nth:
+    """Calls a function before the n-th call of another one."""
+
+    def __init__(self, number: int, then: Any) -> None:
+        self._left, self._then = number, then
+
+    def __call__(self, *_: object, **__: object) -> None:
+        self._left -= 1
+        if not self._left:
+            self._then()
+
+
+def _plain(value: Any) -> Any:
+    """A number for reports; of anything else nothing."""
+    return float(value) if isinstance(value, int | float) or getattr(value, "shape", None) == () else None

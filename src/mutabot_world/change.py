@@ -1,0 +1,93 @@
+"""What is done to a number, and to one at the end of a path of attributes and items."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+_STEP = re.compile(r"\.?([A-Za-z_]\w*)|\[(-?\d+)\]|\[[\"']([^\"']+)[\"']\]")
+
+#: takes a disturbance away
+Undo = Callable[[], None]
+
+
+class NothingThereError(LookupError):
+    """The world has nothing of the name that a parameter means."""
+
+
+@dataclass(frozen=True, slots=True)
+class NumberChange:
+    """What becomes of a number.
+
+    Attributes:
+        kind: ``offset``, ``scale`` or ``set``.
+        amount: with its sign: what is added; what part of it is added; or what it becomes.
+    """
+
+    kind: str
+    amount: float
+
+    def __call__(self, value: Any) -> Any:
+        """Return the changed number, or array."""
+        if self.kind == "scale":
+            return value * (1.0 + self.amount)
+        return value + self.amount if self.kind == "offset" else value * 0 + self.amount
+
+    @property
+    def factor(self) -> float:
+        """By what a whole is multiplied. Raises ValueError for a change that is no scale."""
+        if self.kind != "scale":
+            raise ValueError(
+                f'only a parameter with change = "scale" has a factor, and this is {self.kind!r}'
+            )
+        return 1.0 + self.amount
+
+
+def change_at(world: Any, path: str, change: NumberChange) -> tuple[Any, Any, Undo]:
+    """Change a number of a world.
+
+    Args:
+        world: where the path begins.
+        path: ``simulation.model.opt.gravity[2]``.
+        change: what becomes of it.
+
+    Returns it before and after, and what takes the change away. Raises NothingThereError.
+    """
+    *way, last = _steps(path)
+    owner = world
+    for name, item in way:
+        owner = _get(owner, name, item, path)
+    before = _get(owner, *last, path)
+    before = before.copy() if hasattr(before, "copy") else before
+    after = change(before)
+    _set(owner, *last, after)
+    return before, after, lambda: _set(owner, *last, before)
+
+
+def _steps(path: str) -> list[tuple[str, Any]]:
+    found, position = list[tuple[str, Any]](), 0
+    while position < len(path):
+        step = _STEP.match(path, position)
+        if step is None:
+            raise ValueError(f"path {path!r} makes no sense from {path[position:]!r} on")
+        name, number, key = step.groups()
+        found.append((name or "", int(number) if number is not None else key))
+        position = step.end()
+    return found
+
+
+def _get(owner: Any, name: str, item: Any, path: str) -> Any:
+    try:
+        return getattr(owner, name) if name else owner[item]
+    except (AttributeError, LookupError, TypeError) as error:
+        what = f"{type(owner).__name__} has no {name or f'[{item!r}]'} (path {path!r})"
+        raise NothingThereError(what) from error
+
+
+def _set(owner: Any, name: str, item: Any, value: Any) -> None:
+    if name:
+        setattr(owner, name, value)
+    else:
+        owner[item] = value

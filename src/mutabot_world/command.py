@@ -1,0 +1,164 @@
+"""``mutabot world``: what became of the disturbances of the last campaign."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from contextlib import closing
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from mutabot.api.reports import CommandContext, Results, UsageError
+
+from .judged import Tolerances, WorldLadder, ladders, suites
+from .sizes import amount
+
+_AMOUNT = re.compile(r"(\d+(?:\.\d+)?) ?(m|mm|deg|rad)")
+#: what a recording measures in
+_OWN = {"mm": ("m", 0.001), "rad": ("deg", 57.29577951308232)}
+_LEGEND = "· lived with   ! suffered unseen   ▒ some rounds notice   █ all notice   ? passed, end not known"
+
+_Tolerance = Annotated[
+    list[str] | None,
+    typer.Option("--tolerance", metavar="SIZE", help="How far things may end apart, such as '5 mm'."),
+]
+_PageFile = Annotated[
+    Path | None, typer.Option("--html", metavar="FILE", help="Write the tables as a page, with recordings.")
+]
+
+
+def world(
+    context: CommandContext, tolerance: _Tolerance = None, html: _PageFile = None, json: bool = False
+) -> None:
+    """Show how large a disturbance of the world the tests notice, and which ones they miss.
+
+    Disturbances that are suffered unseen come first: all tests pass, and the world ends otherwise.
+    """
+    limits = _tolerances(tolerance or ())
+    results = context.results()
+    found = ladders(results, limits)
+    if not found:
+        raise UsageError("the last campaign disturbed no world: `mutabot run --family world` does")
+    if html is not None:
+        _write(context, results, found, html)
+    if json:
+        told = {"parameters": _data(suites(found)), "tests": _data(found)}
+        context.print_json({"state": results.state, "rounds": results.rounds, **told})
+    else:
+        for line in lines(found):
+            context.print(line)
+
+
+def _tolerances(texts: Sequence[str]) -> Tolerances:
+    """Read tolerances. Raises UsageError."""
+    found: dict[str, float] = {}
+    for text in texts:
+        read = _AMOUNT.fullmatch(text.strip())
+        if read is None:
+            raise UsageError(f"--tolerance {text!r}: a number with one of the units m, mm, deg, rad")
+        unit, factor = _OWN.get(read[2], (read[2], 1.0))
+        found[unit] = float(read[1]) * factor
+    return found
+
+
+def lines(found: Sequence[WorldLadder]) -> list[str]:
+    """Return both tables and what was suffered unseen, as lines for a terminal."""
+    whole = suites(found)
+    told = ["What the tests notice, suffered unseen first", ""]
+    told += _table(
+        ("parameter", "tried", "magnitudes", "unseen at", "noticed from", "by"),
+        [(*_name(one), one.bar, _sizes(one.unseen, one), _noticed(one), _by(one)) for one in whole],
+    )
+    told += ["", f"  {_LEGEND}", ""]
+    told += [f"  {one.sentence[0].upper()}{one.sentence[1:]}." for one in whole if one.ends]
+    if any(one.unseen for one in whole):
+        told += ["", "Suffered unseen: all tests pass, and the world ends otherwise", ""]
+        told += [f"  {one.parameter} {one.direction}: {one.finding}" for one in whole if one.unseen]
+    told += ["", "How robust the program is: up to which size the task is done", ""]
+    told += _table(
+        ("parameter", "tried", "lived with up to"), [(*_name(one), _robust(one)) for one in whole if one.ends]
+    )
+    if len({one.tests for one in found}) > 1:
+        told += ["", "By test", ""]
+        rows = [(one.parameter + one.direction, one.bar, one.tests[0]) for one in _loose_first(found)]
+        told += _table(("parameter", "magnitudes", "test"), rows)
+    unknown = [one for one in whole if not one.ends]
+    if unknown:
+        told += ["", "Nothing is known of", ""]
+        told += [f"  {one.parameter} {one.direction}: {one.why_unknown}" for one in unknown]
+    return told
+
+
+def _loose_first(found: Sequence[WorldLadder]) -> list[WorldLadder]:
+    return sorted((one for one in found if one.ends), key=lambda one: (not one.unseen, one.parameter))
+
+
+def _name(one: WorldLadder) -> tuple[str, str]:
+    sign = {"+": " +", "-": " −"}.get(one.direction, "")
+    sizes = sorted(one.found)
+    return f"{one.parameter}{sign}", f"{sizes[0]:g} … {amount(sizes[-1], one.unit)}"
+
+
+def _sizes(sizes: Sequence[float], one: WorldLadder) -> str:
+    if not sizes:
+        return "–"
+    last = amount(sizes[-1], one.unit)
+    return last if len(sizes) == 1 else f"{sizes[0]:g} … {last}"
+
+
+def _noticed(one: WorldLadder) -> str:
+    if not one.ends:
+        return "not known"
+    return "never" if one.noticed_from is None else amount(one.noticed_from, one.unit)
+
+
+def _by(one: WorldLadder) -> str:
+    """Who notices at the threshold: a check of the tests, or something that stopped the program."""
+    if one.noticed_from is None:
+        return ""
+    rounds = one.found[one.noticed_from].values()
+    stops = [each.is_stop for tests in rounds for each in tests.values() if each.end.value == "noticed"]
+    return "check" if not any(stops) else "exception" if all(stops) else "check, exception"
+
+
+def _robust(one: WorldLadder) -> str:
+    return "not even the least" if one.robust_to is None else amount(one.robust_to, one.unit)
+
+
+def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
+    widths = [max(len(row[n]) for row in (head, *rows)) for n in range(len(head))]
+    padded = ([cell.ljust(width) for cell, width in zip(row, widths, strict=True)] for row in (head, *rows))
+    return [f"  {'  '.join(cells).rstrip()}" for cells in padded]
+
+
+def _data(found: Sequence[WorldLadder]) -> list[dict[str, Any]]:
+    """Return ladders as plain data."""
+    return [
+        {
+            "parameter": one.parameter,
+            "direction": one.direction,
+            "unit": one.unit,
+            "tests": list(one.tests),
+            "magnitudes": sorted(one.found),
+            "ends": {f"{size:g}": str(one.end(size)) for size in sorted(one.found)},
+            "noticed_from": one.noticed_from,
+            "unseen": one.unseen,
+            "lived_with_up_to": one.robust_to,
+            "sentence": one.sentence,
+            "finding": one.finding,
+        }
+        for one in found
+    ]
+
+
+def _write(context: CommandContext, results: Results, found: Sequence[WorldLadder], path: Path) -> None:
+    from .page import page  # noqa: PLC0415  # few ask for it
+
+    with closing(context.recordings()) as recordings:
+        text = page(results, found, recordings)
+    try:
+        path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise UsageError(f"--html {path}: {error.strerror or error}") from None

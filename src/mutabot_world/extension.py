@@ -1,0 +1,20 @@
+"""What this package brings to mutabot."""
+
+from __future__ import annotations
+
+from mutabot.api.faults import Described, Extension
+
+PROVIDER, FAMILY = "world", "world"
+
+EXTENSION = Extension(
+    interface=2,
+    faults={PROVIDER: "mutabot_world.provider:WorldFaults"},
+    tables={"world": "mutabot_world.tables:WorldTable"},
+    commands={
+        "world": Described(
+            "mutabot_world.command:world",
+            "Show how large a disturbance of the world the tests notice, and which ones they miss.",
+            before="results",
+        )
+    },
+)

@@ -1,0 +1,79 @@
+"""Reads the parameters that a project has: those of its configuration, and those of files."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterable, Iterator
+from fnmatch import fnmatchcase
+from importlib.util import find_spec
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from mutabot.api.reports import UsageError
+
+from .tables import ParameterFile, ParameterTable, WorldTable
+
+
+def parameters_of(table: WorldTable, root: Path) -> list[ParameterTable]:
+    """The parameters of a configuration, those of files first.
+
+    Raises UsageError for a file that cannot be read, for two parameters of one name, and for a name that is
+    to be taken and is none.
+    """
+    found = [one for name in table.parameters for one in _of_file(name, root)]
+    kept = [one for one in found if not table.only or _is_named(one.name, table.only)]
+    unused = [one for one in table.only if not any(_is_named(other.name, [one]) for other in found)]
+    if unused:
+        known = ", ".join(one.name for one in found) or "there are none"
+        raise UsageError(f"world.only: no parameter is named {unused[0]!r}; the files have: {known}")
+    kept += _with_maker(table.parameter, table.of, "the configuration")
+    names = [one.name for one in kept]
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice is not None:
+        raise UsageError(f"two parameters of the world are named {twice!r}")
+    return kept
+
+
+def _of_file(name: str, root: Path) -> Iterator[ParameterTable]:
+    path = _path(name, root)
+    try:
+        read = ParameterFile.model_validate(tomllib.loads(path.read_text(encoding="utf-8")))
+    except OSError as error:
+        raise UsageError(f"world.parameters: {name} cannot be read: {error.strerror or error}") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise UsageError(f"world.parameters: {name} is not valid TOML: {error}") from None
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        place = ".".join(str(part + 1 if isinstance(part, int) else part) for part in first["loc"])
+        raise UsageError(f"{name}: {place}: {first['msg']}") from None
+    return _with_maker(read.parameter, read.of, name)
+
+
+def _with_maker(
+    found: Iterable[ParameterTable], makers: tuple[str, ...], where: str
+) -> Iterator[ParameterTable]:
+    for one in found:
+        if not (one.of or makers):
+            does_not = f"parameter {one.name!r} does not say what makes its world"
+            raise UsageError(f'{where}: {does_not}: of = ["module:Class"]')
+        yield one if one.of else one.model_copy(update={"of": makers})
+
+
+def _path(name: str, root: Path) -> Path:
+    """The file that a name means: one of the project, or ``package:file`` of an installed package."""
+    package, is_shipped, file = name.partition(":")
+    if not is_shipped:
+        return root / name
+    try:
+        spec = find_spec(package)
+    except (ImportError, ValueError):
+        spec = None
+    for folder in (spec.submodule_search_locations or ()) if spec is not None else ():
+        if (found := Path(folder, file)).is_file():
+            return found
+    raise UsageError(f"world.parameters: there is no file {file!r} in a package {package!r}")
+
+
+def _is_named(name: str, patterns: Iterable[str]) -> bool:
+    return any(fnmatchcase(name, one) for one in patterns)

@@ -1,0 +1,257 @@
+"""What became of disturbances: whether the tests noticed them, and whether the task was done nevertheless.
+
+Two questions, which one number never answers together. A disturbance that no test notices is *lived with* if
+the world ended as it does without, and *suffered unseen* if it did not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Any
+
+from mutabot.api.reports import MutantResult, Results, Verdict
+
+from .extension import PROVIDER
+from .sizes import amount
+
+#: of a test whose recordings say nothing, how many times its tolerance a probe may be off
+_ONE = 1.0
+
+
+class WorldEnd(StrEnum):
+    """How a disturbance ended. Of several tests or rounds the first says how they ended together."""
+
+    NOTICED = "noticed"
+    UNSEEN = "suffered unseen"
+    #: all tests pass, and nothing tells how the world ended
+    PASSED = "passed"
+    LIVED = "lived with"
+    #: it disturbed nothing, or nobody knows
+    UNKNOWN = "not known"
+
+
+#: differences at the end that count as none, by unit; beside those that the vocabulary and the original give
+Tolerances = Mapping[str, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """One disturbance in one round.
+
+    Attributes:
+        end: how it ended.
+        story: what happened, in a sentence; empty if nothing is to be said.
+        is_stop: whether something else than a check noticed it, such as a protective stop.
+    """
+
+    end: WorldEnd
+    story: str = ""
+    is_stop: bool = False
+
+
+def judged(outcome: Any, tolerances: Tolerances) -> Judged:
+    """Return what became of a disturbance in a round, from its outcome."""
+    told = outcome.told.story if outcome.told is not None else ""
+    if outcome.verdict.is_killed:
+        said = f"{outcome.exception.rpartition(':')[2]}: {outcome.message}" if outcome.exception else ""
+        first = (said or outcome.message or "").split("\n")[0]
+        return Judged(
+            WorldEnd.NOTICED, "; ".join(filter(None, (told, first))), str(outcome.by or "") != "check"
+        )
+    if outcome.verdict is not Verdict.SURVIVED:
+        why = next(iter(outcome.away), None) or outcome.message or str(outcome.verdict)
+        return Judged(WorldEnd.UNKNOWN, why.split("\n")[0])
+    apart = [one for each in outcome.diverged for one in each.apart if not one.is_value]
+    if apart:
+        is_off = any(one.final > _tolerance(one, tolerances) for one in apart)
+        return Judged(WorldEnd.UNSEEN if is_off else WorldEnd.LIVED, told)
+    if outcome.indistinguishable or (outcome.distance is not None and outcome.distance <= _ONE):
+        return Judged(WorldEnd.LIVED, told)
+    if outcome.distance is None:
+        return Judged(WorldEnd.PASSED, next(iter(outcome.gaps), "no probe tells how the world ended"))
+    return Judged(WorldEnd.UNSEEN, told or next(iter(outcome.divergence), ""))
+
+
+def _tolerance(one: Any, tolerances: Tolerances) -> float:
+    return tolerances[one.unit] if one.unit in tolerances else max(one.tolerance, one.spread)
+
+
+@dataclass(slots=True)
+class WorldLadder:
+    """One parameter disturbed in one direction, in one test or in all of them.
+
+    Attributes:
+        parameter: its name.
+        direction: ``+``, ``-``, or empty.
+        unit: of the magnitudes.
+        tests: node ids of the tests.
+        found: by magnitude, rising, and round, what became of it in each test.
+        texts: the disturbance in words, by magnitude.
+        numbers: the mutants' numbers, by magnitude and test.
+    """
+
+    parameter: str
+    direction: str
+    unit: str | None
+    tests: tuple[str, ...]
+    found: dict[float, dict[int, dict[str, Judged]]] = field(default_factory=dict)
+    texts: dict[float, str] = field(default_factory=dict)
+    numbers: dict[tuple[float, str], int] = field(default_factory=dict)
+
+    def end(self, size: float) -> WorldEnd:
+        """How a magnitude ended: noticed only if it was in every round, unseen if it was in any."""
+        rounds = [of_tests(each.values()) for each in self.found[size].values()]
+        known = [one for one in rounds if one is not WorldEnd.UNKNOWN]
+        if not known:
+            return WorldEnd.UNKNOWN
+        others = [one for one in known if one is not WorldEnd.NOTICED]
+        return min(others, key=[*WorldEnd].index) if others else WorldEnd.NOTICED
+
+    def is_sometimes_noticed(self, size: float) -> bool:
+        """Whether some rounds notice a magnitude, and others do not."""
+        ends = {of_tests(each.values()) for each in self.found[size].values()} - {WorldEnd.UNKNOWN}
+        return WorldEnd.NOTICED in ends and len(ends) > 1
+
+    @property
+    def ends(self) -> dict[float, WorldEnd]:
+        """How each magnitude ended, rising; those of which nothing is known are left out."""
+        ends = {size: self.end(size) for size in sorted(self.found)}
+        return {size: end for size, end in ends.items() if end is not WorldEnd.UNKNOWN}
+
+    @property
+    def noticed_from(self) -> float | None:
+        """The magnitude from which on all are noticed in every round; None if there is none."""
+        found = None
+        for size, end in reversed(self.ends.items()):
+            if end is not WorldEnd.NOTICED:
+                break
+            found = size
+        return found
+
+    @property
+    def missed(self) -> list[float]:
+        """The magnitudes that some round does not notice."""
+        return [size for size, end in self.ends.items() if end is not WorldEnd.NOTICED]
+
+    @property
+    def unseen(self) -> list[float]:
+        """The magnitudes that are suffered unseen in some round."""
+        return [size for size, end in self.ends.items() if end is WorldEnd.UNSEEN]
+
+    @property
+    def robust_to(self) -> float | None:
+        """The magnitude up to which all are lived with; None if not even the smallest is."""
+        found = None
+        for size, end in self.ends.items():
+            if end is not WorldEnd.LIVED:
+                break
+            found = size
+        return found
+
+    @property
+    def bar(self) -> str:
+        """One sign per magnitude."""
+        signs = {
+            WorldEnd.NOTICED: "█",
+            WorldEnd.UNSEEN: "!",
+            WorldEnd.PASSED: "?",
+            WorldEnd.LIVED: "·",
+            WorldEnd.UNKNOWN: " ",
+        }
+        ends = ((size, self.end(size)) for size in sorted(self.found))
+        return "".join("▒" if self.is_sometimes_noticed(size) else signs[end] for size, end in ends)
+
+    def story(self, size: float, end: WorldEnd) -> tuple[str, str]:
+        """What happened at a magnitude where it ended so, and in which test; empty texts if nobody says."""
+        for round in sorted(self.found[size]):
+            for test, one in self.found[size][round].items():
+                if one.end is end and one.story:
+                    return one.story, test
+        return "", ""
+
+    @property
+    def why_unknown(self) -> str:
+        """Why nothing is known of it; empty if something is."""
+        if self.ends:
+            return ""
+        rounds = (tests for each in self.found.values() for tests in each.values())
+        return next(filter(None, (one.story for tests in rounds for one in tests.values())), "not run")
+
+    @property
+    def sentence(self) -> str:
+        """What the tests notice, in a sentence."""
+        if not self.ends:
+            return f"nothing is known of {self.parameter}: {self.why_unknown}"
+        first, largest, missed = self.noticed_from, max(self.ends), self.missed
+        if first is None:
+            told = [size for size, end in self.ends.items() if end is WorldEnd.NOTICED]
+            beside = f", though they notice {self._amount(told[0])}" if told else ""
+            return f"your tests do not notice {self.texts[largest]}, the most that was tried{beside}"
+        if not missed:
+            return f"your tests notice {self.texts[first]}, the least that was tried"
+        return f"your tests notice {self.texts[first]}, not one of {self._amount(missed[-1])}"
+
+    @property
+    def finding(self) -> str:
+        """What is suffered unseen, in a sentence; empty if nothing is."""
+        if not self.unseen:
+            return ""
+        least, most = self.unseen[0], self.unseen[-1]
+        sizes = self._amount(least) if least == most else f"{self._amount(least)} to {self._amount(most)}"
+        story, test = self.story(most, WorldEnd.UNSEEN)
+        where = f" ({test.rpartition('::')[2]}, mutant {self.numbers[most, test]})" if test else ""
+        return f"suffered unseen at {sizes}{f': {story}' if story else ''}{where}"
+
+    def _amount(self, size: float) -> str:
+        return amount(size, self.unit)
+
+
+def of_tests(found: Iterable[Judged]) -> WorldEnd:
+    """How a disturbance ended in a round, from how it did in each test."""
+    ends = {one.end for one in found}
+    return next((end for end in WorldEnd if end in ends), WorldEnd.UNKNOWN)
+
+
+def ladders(results: Results, tolerances: Tolerances) -> list[WorldLadder]:
+    """Return a ladder for each parameter, direction and test, in the order of the plan."""
+    found: dict[tuple[str, str, str], WorldLadder] = {}
+    for one in results.graded:
+        mutant = one.mutant
+        if mutant.provider != PROVIDER:
+            continue
+        test, name = mutant.site.span.file, mutant.site.text
+        ladder = found.setdefault(
+            (name, mutant.direction, test), WorldLadder(name, mutant.direction, mutant.unit, (test,))
+        )
+        _add(ladder, one, test, tolerances)
+    return list(found.values())
+
+
+def _add(ladder: WorldLadder, result: MutantResult, test: str, tolerances: Tolerances) -> None:
+    size = result.mutant.magnitude or 0.0
+    ladder.texts[size] = result.mutant.description
+    ladder.numbers[size, test] = result.mutant.number
+    rounds = ladder.found.setdefault(size, {})
+    for outcome in result.outcomes:
+        rounds.setdefault(outcome.round, {})[test] = judged(outcome, tolerances)
+
+
+def suites(found: Sequence[WorldLadder]) -> list[WorldLadder]:
+    """Return a ladder for each parameter and direction: what all tests together notice.
+
+    Those come first that are suffered unseen, the loosest of them before others.
+    """
+    whole: dict[tuple[str, str], WorldLadder] = {}
+    for one in found:
+        key = one.parameter, one.direction
+        before = whole.get(key) or WorldLadder(one.parameter, one.direction, one.unit, ())
+        whole[key] = before
+        before.tests += one.tests
+        before.texts |= one.texts
+        before.numbers |= one.numbers
+        for size, rounds in one.found.items():
+            for round, tests in rounds.items():
+                before.found.setdefault(size, {}).setdefault(round, {}).update(tests)
+    return sorted(whole.values(), key=lambda one: (not one.unseen, one.noticed_from is not None))

@@ -1,0 +1,93 @@
+"""Puts a function around another one, and finds the objects that it made."""
+
+from __future__ import annotations
+
+import gc
+import inspect
+from collections.abc import Callable, Iterator
+from importlib import import_module
+from typing import Any
+
+from .change import Undo
+
+#: called before the function, with its arguments
+Before = Callable[..., object]
+#: called after the function, with its first argument (of a method, the object) and its result
+After = Callable[[Any, Any], object]
+#: marks an exception as one of the function's own, and returns it
+Own = Callable[[BaseException], BaseException]
+
+
+def resolve(reference: str) -> tuple[Any, str, Any]:
+    """Return the owner, the last name, and the object of ``module:Class.method``.
+
+    Raises LookupError if there is none.
+    """
+    module, _, path = reference.partition(":")
+    *way, last = path.split(".")
+    try:
+        owner: Any = import_module(module)
+        for name in way:
+            owner = getattr(owner, name)
+        return owner, last, getattr(owner, last)
+    except (ImportError, AttributeError) as error:
+        raise LookupError(f"there is no {reference}: {error}") from error
+
+
+def wrap(reference: str, own: Own, *, before: Before | None = None, after: After | None = None) -> Undo:
+    """Let something be called before or after a function, a method, or the making of a class's objects.
+
+    ``own``: what the function itself raises, it raises still. Returns what takes it away again. Raises
+    LookupError.
+    """
+    owner, last, found = resolve(reference)
+    is_class = isinstance(found, type)
+    if is_class:
+        owner, last, found = found, "__init__", found.__init__
+    kept = inspect.getattr_static(owner, last)
+    is_inherited = isinstance(owner, type) and last not in vars(owner)
+    depth = 0
+
+    def around(*arguments: Any, **named: Any) -> Any:
+        nonlocal depth
+        if before is not None and not depth:
+            before(*arguments, **named)
+        depth += 1
+        try:
+            result = found(*arguments, **named)
+        except BaseException as error:
+            own(error)
+            raise
+        finally:
+            depth -= 1
+        if after is not None and not depth:
+            after(arguments[0] if arguments else None, arguments[0] if is_class else result)
+        return result
+
+    around.__wrapped__ = found  # type: ignore[attr-defined]  # as functools.wraps does
+    around.__name__ = getattr(found, "__name__", last)
+    is_static = isinstance(kept, staticmethod) or (isinstance(owner, type) and not inspect.isroutine(kept))
+    setattr(owner, last, staticmethod(around) if is_static and not is_class else around)
+
+    def undo() -> None:
+        if is_inherited:
+            delattr(owner, last)
+        else:
+            setattr(owner, last, kept)
+
+    return undo
+
+
+def live(references: list[str]) -> Iterator[Any]:
+    """Yield the objects of these classes that are alive, each once; functions have none."""
+    kinds = tuple(found for one in references if isinstance(found := resolve(one)[2], type))
+    if not kinds:
+        return
+    seen: set[int] = set()
+    for holder in gc.get_objects():
+        # those that Python's collector does not know are held by others
+        held = [holder] if isinstance(holder, kinds) else gc.get_referents(holder)
+        for one in held:
+            if isinstance(one, kinds) and id(one) not in seen:
+                seen.add(id(one))
+                yield one

@@ -1,0 +1,119 @@
+"""Plans disturbances of the world: one mutant for each test, parameter, direction and magnitude."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, replace
+from fnmatch import fnmatchcase
+
+from mutabot.api.faults import (
+    Activation,
+    FaultProvider,
+    Original,
+    Planned,
+    PlannedMutant,
+    Project,
+    Rule,
+    Site,
+)
+
+from .extension import FAMILY, PROVIDER
+from .files import parameters_of
+from .sizes import amount, in_si
+from .tables import ParameterTable, WorldTable
+
+ACTIVE = "mutabot_world.active:WorldFault"
+
+
+class Disturb(Rule):
+    """A parameter of the simulated world is other than it should be.
+
+    Where: tests in which a simulated world is made.
+
+    Stands for: {parameters}.
+    """
+
+    name = "disturb"
+    family = FAMILY
+    has_sizes = True
+
+
+class WorldFaults(FaultProvider):
+    """Disturbances of the simulated world."""
+
+    name = PROVIDER
+    families = (FAMILY,)
+    location = "parameter"
+
+    def rules(self) -> Sequence[Rule]:
+        """The one operator, whatever the parameter."""
+        return [Disturb()]
+
+    def is_monotone(self, operator: str) -> bool:
+        """False: less friction may let a box slip into place where a little less lets it fall."""
+        return False
+
+    def plan(self, project: Project, original: Original) -> Planned:
+        """A mutant for each test, parameter, direction and magnitude."""
+        table = project.tables.get("world") or WorldTable()
+        tests = dict.fromkeys(test for each in original.tests for test in each)
+        planned = Planned()
+        for parameter in parameters_of(table, project.root):
+            for test in tests:
+                if parameter.tests and not any(fnmatchcase(test, one) for one in parameter.tests):
+                    continue
+                reached = [
+                    round
+                    for round, each in enumerate(original.tests)
+                    if test in each and _reaches(parameter, project, original.simulated(round, test))
+                ]
+                site = Site.of_parameter(test, parameter.name)
+                planned.mutants += self._ladder(parameter, site, _why_not(parameter, project, reached))
+                for round in reached:
+                    planned.reach(round, site, [test])
+        return planned
+
+    def _ladder(self, parameter: ParameterTable, site: Site, reason: str | None) -> Iterator[PlannedMutant]:
+        moment, unit = parameter.moment, parameter.measure
+        key = Activation.at_time(moment.number) if moment.kind == "time" else Activation.EACH_TEST
+        awaited = parameter.of[0].partition(":")[0]
+        for way in parameter.ways:
+            for size in parameter.ladder:
+                text = f"{_words(parameter, way).format(amount(size, unit))}{moment.text}"
+                variant = f"{way}{size:g}{'%' if unit == 'percent' else unit or ''}"
+                made = self.mutant(Disturb(), site, text, variant=variant, magnitude=size, unit=unit)
+                data = _data(parameter, -size if way == "-" else size)
+                active = Activation(ACTIVE, data, (key,), awaited, is_of_tests=True)
+                yield PlannedMutant(replace(made, direction=way), reason, does=data, active=active)
+
+
+def _data(parameter: ParameterTable, size: float) -> dict[str, object]:
+    """What the disturbance gets in the processes of the tests; paths take sizes as they are written."""
+    is_written = parameter.path is not None and parameter.change != "scale"
+    told = {name: getattr(parameter, name) for name in ("path", "apply", "names", "options", "change")}
+    return {
+        **told,
+        "of": list(parameter.of),
+        "amount": size if is_written else in_si(size, parameter.measure),
+        "moment": asdict(parameter.moment),
+    }
+
+
+def _words(parameter: ParameterTable, way: str) -> str:
+    """How a sentence calls a disturbance in a direction, with braces for its magnitude."""
+    sign = {"+": "+", "-": "−"}.get(way, "")
+    return (parameter.less if way == "-" else parameter.more) or f"{parameter.name} {sign}{{}}"
+
+
+def _why_not(parameter: ParameterTable, project: Project, reached: Sequence[int]) -> str | None:
+    if parameter.moment.kind == "time" and project.vocabulary.clock is None:
+        return "the vocabulary names no clock"
+    return None if reached else "the test does not simulate so long"
+
+
+def _reaches(parameter: ParameterTable, project: Project, simulated: float) -> bool:
+    """Whether a test with so many simulated seconds gets to the moment; without any, it has no world."""
+    if project.vocabulary.clock is None:
+        return True
+    moment = parameter.moment
+    return simulated > 0.0 and (moment.kind != "time" or simulated >= moment.number)

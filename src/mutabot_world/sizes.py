@@ -1,0 +1,37 @@
+"""Magnitudes of disturbances: their units, and what they are in those of the SI."""
+
+from __future__ import annotations
+
+from mutabot.api.values import Kind, Path, Quantity
+
+#: of one of these each unit is a multiple
+_SI = ("m", "rad", "s", "fraction", "m/s", "rad/s", "N", "Nm", "kg", "K", "Pa", "Hz", "V", "A")
+
+
+def check_unit(unit: str | None) -> None:
+    """Raises ValueError for a unit that does not exist."""
+    if unit is not None:
+        in_si(1.0, unit)
+
+
+def in_si(size: float, unit: str | None) -> float:
+    """Return a magnitude in m, rad, s, kg, N and so on; a part of the whole for percent.
+
+    Raises ValueError for a unit that does not exist.
+    """
+    if unit is None:
+        return size
+    for own in _SI:
+        try:
+            found = Quantity("", Path(), Kind.POSITION, unit=own).from_unit(size, unit)
+            return float(f"{found:.12g}")  # 5 mm are 0.005 m, and not 0.005000000000000001
+        except ValueError:  # it measures something else
+            continue
+        except KeyError:
+            break
+    raise ValueError(f"{unit!r} is not a unit of disturbances; such as mm, deg, ms, kg, N, percent")
+
+
+def amount(size: float, unit: str | None) -> str:
+    """``0.4 kg``, ``5 %``, ``3``."""
+    return f"{size:g} {'%' if unit == 'percent' else unit}" if unit else f"{size:g}"
