@@ -185,6 +185,9 @@ def motion(
         request = context.request_again(results, jobs)
         with context.progress() as progress:
             said = list(_film(request, result, shown, video, progress))
+        if video.suffix.lower() == ".mp4":
+            context.keep_film(results, result.mutant.id, video, shown.round, shown.test)
+            said.append("`mutabot report --html` shows it in the mutant's page")
         context.tell(f"mutabot: {line}" for line in said)
 
 
@@ -203,6 +206,5 @@ def _film(
             ended=(original.ended, other.ended),
         )
         problems = dict.fromkeys([*original.problems, *other.problems])
-        progress.stage("video")
         video = module("pictures.video")
-        yield from video.show(file, shown, (original.film, other.film), list(problems))
+        yield from video.show(file, shown, (original.film, other.film), list(problems), progress)

@@ -7,12 +7,15 @@ from __future__ import annotations
 
 import ctypes.util
 import os
+import threading
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from math import ceil
 from pathlib import Path
 
 from mutabot.api.processes import Result, Task
-from mutabot.api.reports import CampaignRun, MutantResult, RecordedPaths, UsageError
+from mutabot.api.reports import CampaignRun, MutantResult, Progress, RecordedPaths, UsageError
 
 from .pictures.film import Film
 
@@ -20,6 +23,9 @@ from .pictures.film import Film
 _WRITER = "mutabot_motion.pictures.film:FilmWriter"
 #: wall-clock seconds that a picture may take, beside those of the test; pictures per simulated second
 _PER_PICTURE, _RATE = 4.0, 25.0
+#: s between two looks at how far a film is
+_LOOK = 1.0
+_SIDES = ("original", "mutant")
 #: what draws without a screen, the better first, with the library that it needs
 _GRAPHICS = (("egl", "EGL"), ("osmesa", "OSMesa"))
 
@@ -76,19 +82,50 @@ def film(
     planned = campaign.task(mutant, round, leading, stop=False)
     more = _PER_PICTURE * _RATE * (baseline.simulated(round, test) + 1.0)
     choose_graphics()  # for what is filmed alone
-    campaign.progress.stage("film", 2)
     found = {}
-    for done in campaign.executor.run(_tasks(planned, test, more, folder)):
-        found[done.task.key] = _take(done, test)
-        campaign.progress.advance(f"{done.task.key}: {found[done.task.key].ended}")
+    with followed(campaign.progress, folder, baseline.simulated(round, test)):
+        for done in campaign.executor.run(_tasks(planned, test, more, folder)):
+            found[done.task.key] = _take(done, test)
     return found["original"], found["mutant"]
+
+
+@contextmanager
+def followed(progress: Progress, folder: Path, seconds: float) -> Iterator[None]:
+    """Let a step of the progress be each simulated second that is filmed, of both sides.
+
+    What the pictures show is known here only from their files: these are looked at now and then.
+    """
+    total, is_over = 2 * ceil(seconds), threading.Event()
+    progress.stage("film, simulated seconds", total)
+    told = 0
+
+    def follow(until: int = 0) -> None:
+        nonlocal told
+        ends = {name: Film(folder / f"{name}.film").end for name in _SIDES}
+        line = ", ".join(f"{name} {end:.0f} s" for name, end in ends.items() if end)
+        for _ in range(told, max(until, min(total - 1, int(sum(ends.values()))))):
+            told += 1
+            progress.advance(line)
+
+    def watch() -> None:
+        while not is_over.wait(_LOOK):
+            follow()
+
+    watcher = threading.Thread(target=watch, name="mutabot-film", daemon=True)
+    watcher.start()
+    try:
+        yield
+    finally:
+        is_over.set()
+        watcher.join()
+    follow(total)
 
 
 def _tasks(planned: Task, test: str, more: float, folder: Path) -> Iterator[Task]:
     """Yield the mutant's task for both sides, with ``more`` seconds for the pictures of the test."""
     limit = planned.deadlines[test].with_more(more, more)
     deadlines = {**planned.deadlines, test: limit}
-    for name in ("original", "mutant"):
+    for name in _SIDES:
         job = planned.job.filmed(test, str(folder / f"{name}.film"), _WRITER)
         if name == "original":
             job = replace(job, mutant=None, instrumentation=None)

@@ -19,6 +19,7 @@ from mutabot.report.terminal.campaign import print_results, print_summary
 from mutabot.report.terminal.console import leave_pipe, make_console, print_section
 from mutabot.report.terminal.progress import Bar, Lines, make_progress
 from mutabot.report.texts import portable
+from mutabot.results.films import KeptFilm, keep_film
 from mutabot.results.gate import Decision, decide
 from mutabot.results.results import Results
 from mutabot.results.stored import StoredEvidence
@@ -57,6 +58,20 @@ class CommandContext:
     def recordings(self) -> StoredEvidence:
         """Open what was recorded in the last campaign, to be closed. Raises JournalError."""
         return StoredEvidence(self.journal)
+
+    def keep_film(self, results: Results, mutant: str, file: Path, round: int, test: str) -> None:
+        """Keep a copy of a film of a mutant, which pages of the campaign show.
+
+        Args:
+            results: of the campaign.
+            mutant: its id.
+            file: the film: H.264 in MP4.
+            round: which, from 0.
+            test: node id.
+
+        Raises UsageError if it cannot be kept.
+        """
+        keep_film(self.journal, results.meta, mutant, KeptFilm(file, round, test))
 
     def keep_suggestions(
         self,

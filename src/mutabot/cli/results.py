@@ -20,6 +20,7 @@ from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.mutant import print_mutant
 from mutabot.report.terminal.thresholds import print_thresholds
 from mutabot.report.texts import Cleaner, portable
+from mutabot.results.films import kept_films
 from mutabot.results.results import Results
 from mutabot.results.suggested import kept_suggestions
 from mutabot.thresholds.thresholds import thresholds_of
@@ -132,7 +133,9 @@ def _write_pages(context: CommandContext, folder: Path, campaign: Results, root:
     name = Path(root).name if root else ""
     with closing(context.recordings()) as evidence:
         suggestions = kept_suggestions(context.journal, campaign.meta)
-        written = write_folder(folder, Contents(campaign, name, evidence, Cleaner(root), suggestions))
+        films = kept_films(context.journal, campaign.meta)
+        contents = Contents(campaign, name, evidence, Cleaner(root), suggestions, films)
+        written = write_folder(folder, contents)
     context.tell([f"mutabot: open {written.page} in a browser ({written.size / 1e6:.1f} MB in its folder)"])
     if written.without:
         context.tell([f"mutabot: {written.without} recordings had no room; their pages say so"])

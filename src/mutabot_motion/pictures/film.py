@@ -108,6 +108,11 @@ class Film:
         """When its pictures were taken, s."""
         return [head[0] for head, _ in self._heads()]
 
+    @property
+    def end(self) -> float:
+        """When its last picture was taken so far, s; 0 without any."""
+        return max(self.times, default=0.0)
+
     def pictures(self) -> Iterator[Picture]:
         """All of them, one after the other."""
         before = b""

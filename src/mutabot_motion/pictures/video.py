@@ -15,7 +15,7 @@ from typing import Any
 import av
 from PIL import Image
 
-from mutabot.api.reports import UsageError
+from mutabot.api.reports import Progress, UsageError
 from mutabot_motion.pictures.film import Film
 from mutabot_motion.shown import Shown
 from mutabot_motion.sights import written_whole
@@ -31,12 +31,15 @@ _HELD = 1.5
 _GIF_RATE, _GIF_MOST, _GIF_WIDTH = 10, 200, 720
 
 
-def show(file: Path, shown: Shown, films: tuple[Film, Film], problems: Sequence[str]) -> list[str]:
+def show(
+    file: Path, shown: Shown, films: tuple[Film, Film], problems: Sequence[str], progress: Progress
+) -> list[str]:
     """Write a video of both films; where pictures are missing, of both paths, drawn.
 
     Args:
         films: of the original and of the mutant.
         problems: why pictures are missing, as far as it is known.
+        progress: has a step per picture of the video.
 
     Returns what is to be said about it, one line each. Raises UsageError if there is nothing to show.
     """
@@ -48,7 +51,7 @@ def show(file: Path, shown: Shown, films: tuple[Film, Film], problems: Sequence[
         sides = _drawn(shown, notes[0])
         notes[0] += "; the paths are drawn instead"
     write = write_gif if file.suffix.lower() == ".gif" else write_video
-    seconds = write(file, Frames(shown, sides))
+    seconds = write(file, Frames(shown, sides), progress)
     size = file.stat().st_size
     return [*notes, f"{file}: {seconds:.1f} s, {size / 1e6:.1f} MB"]
 
@@ -74,7 +77,7 @@ def _why_no_pictures(problems: Sequence[str]) -> str:
     )
 
 
-def write_video(file: Path, frames: Frames) -> float:
+def write_video(file: Path, frames: Frames, progress: Progress) -> float:
     """Write a video; of one that is not finished nothing is left. Returns how long it is, s."""
     count = 0
     frame: Any = av.VideoFrame
@@ -82,21 +85,28 @@ def write_video(file: Path, frames: Frames) -> float:
         stream = video.add_stream("libx264", rate=RATE, options={"crf": "21", "preset": "veryfast"})
         stream.width, stream.height = frames.size
         stream.pix_fmt = "yuv420p"
-        for time in _moments(frames.end, frames.speed):
+        moments = [*_moments(frames.end, frames.speed)]
+        progress.stage("video", len(moments))
+        for time in moments:
             video.mux(stream.encode(frame.from_image(frames.at(time))))
             count += 1
+            progress.advance()
         video.mux(stream.encode(None))
     return count / RATE
 
 
-def write_gif(file: Path, frames: Frames) -> float:
+def write_gif(file: Path, frames: Frames, progress: Progress) -> float:
     """Write an animation that is repeated; of one that is not finished nothing is left.
 
     A long one has fewer pictures per second. Returns how long it is, s.
     """
     seconds = frames.end / frames.speed
     count = max(2, min(_GIF_MOST, int(seconds * _GIF_RATE) + 1))
-    pictures = [_indexed(frames.at(number * frames.end / (count - 1))) for number in range(count)]
+    progress.stage("video", count)
+    pictures = []
+    for number in range(count):
+        pictures.append(_indexed(frames.at(number * frames.end / (count - 1))))
+        progress.advance()
     each = round(100 * seconds / (count - 1)) * 10  # the format counts in hundredths of a second
     lasting = [*[each] * (count - 1), round(1000 * _HELD)]
     with written_whole(file) as part:

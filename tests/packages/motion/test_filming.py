@@ -97,6 +97,9 @@ def test_original_and_mutant_are_filmed_and_the_feed_makes_no_mutants(
     with av.open("a.mp4") as video:
         assert next(video.decode(video=0)).width > 2 * 480
     assert [path.name for path in tmp_path.glob("*.mp4")] == ["a.mp4"]
+    assert "film, simulated seconds" in err
+    assert main(["report", "--html", "report"]) == 0
+    assert Path("report", "data", "films", f"{skip}.mp4").read_bytes() == Path("a.mp4").read_bytes()
 
 
 def test_what_the_user_has_chosen_to_draw_with_stays(monkeypatch: pytest.MonkeyPatch) -> None:

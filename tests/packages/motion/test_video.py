@@ -10,6 +10,7 @@ import pytest
 
 from mutabot.errors import UsageError
 from mutabot.evidence.paths import RecordedPaths
+from mutabot_motion.filming import followed
 from mutabot_motion.pictures.film import Film, FilmWriter
 from packages.motion.sample import recording, shown
 
@@ -23,6 +24,29 @@ from mutabot_motion.pictures.video import show, write_video  # noqa: E402
 from mutabot_motion.sights import check  # noqa: E402
 
 RATE = 5
+
+
+class Counted:
+    """Progress that counts."""
+
+    def __init__(self) -> None:
+        self.stages: list[tuple[str, int | None]] = []
+        self.steps = 0
+
+    def stage(self, text: str, total: int | None = None) -> None:
+        self.stages.append((text, total))
+
+    def mutant_ended(self, end: Any) -> None:
+        pass
+
+    def advance(self, line: str | None = None) -> None:
+        self.steps += 1
+
+    def note(self, text: str) -> None:
+        pass
+
+
+SILENT = Counted()
 
 
 @pytest.fixture(autouse=True)
@@ -57,7 +81,7 @@ def test_a_film_is_shown_as_it_was_at_each_time(tmp_path: Path) -> None:
 def test_a_video_is_one_that_browsers_play_and_lasts_as_long_as_the_longer_side(tmp_path: Path) -> None:
     file = tmp_path / "a.mp4"
     films = film(tmp_path / "a", 16, 60), film(tmp_path / "b", 6, 160)
-    said = show(file, shown(), films, [])
+    said = show(file, shown(), films, [], SILENT)
     facts, frames = frames_of(file)
     assert facts == ("h264", "yuv420p", RATE)
     assert len(frames) == int(3.0 * RATE) + 1 + int(1.5 * RATE), "1.5 s are shown in 3 s"
@@ -68,7 +92,7 @@ def test_a_video_is_one_that_browsers_play_and_lasts_as_long_as_the_longer_side(
 
 def test_a_gif_is_as_long_as_the_longer_side_and_is_repeated(tmp_path: Path) -> None:
     file = tmp_path / "a.gif"
-    said = show(file, shown(), (film(tmp_path / "a", 16, 60), film(tmp_path / "b", 6, 160)), [])
+    said = show(file, shown(), (film(tmp_path / "a", 16, 60), film(tmp_path / "b", 6, 160)), [], SILENT)
     with Image.open(file) as opened:
         lasting, shades = [], []
         for number in range(opened.n_frames):
@@ -87,7 +111,7 @@ def test_a_gif_is_as_long_as_the_longer_side_and_is_repeated(tmp_path: Path) -> 
 def test_a_long_gif_has_fewer_pictures_per_second(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(video, "_GIF_MOST", 7)
     file = tmp_path / "a.gif"
-    show(file, shown(), (film(tmp_path / "a", 16, 60), film(tmp_path / "b", 6, 160)), [])
+    show(file, shown(), (film(tmp_path / "a", 16, 60), film(tmp_path / "b", 6, 160)), [], SILENT)
     with Image.open(file) as opened:
         assert opened.n_frames == 7
         assert opened.info["duration"] == 500
@@ -115,7 +139,7 @@ def test_a_side_of_another_size_is_fitted_in(tmp_path: Path) -> None:
 
 def test_without_pictures_the_paths_are_drawn_and_why_is_said(tmp_path: Path) -> None:
     file, none = tmp_path / "a.mp4", Film(tmp_path / "none")
-    said = show(file, shown(), (none, none), [])
+    said = show(file, shown(), (none, none), [], SILENT)
     assert said[0].startswith("no simulator gives pictures: name one by `feed.camera`")
     assert said[0].endswith("the paths are drawn instead")
     assert len(frames_of(file)[1]) == 4 * RATE + 1 + int(1.5 * RATE)
@@ -127,21 +151,25 @@ def test_without_pictures_the_paths_are_drawn_and_why_is_said(tmp_path: Path) ->
 def test_with_nothing_to_show_no_file_is_left(lacking: dict[str, Any], tmp_path: Path) -> None:
     none = Film(tmp_path / "none")
     with pytest.raises(UsageError, match=r"nothing to make a video of: no GL .*libegl1 or libosmesa6"):
-        show(tmp_path / "a.mp4", shown(**lacking), (none, none), ["no GL"])
+        show(tmp_path / "a.mp4", shown(**lacking), (none, none), ["no GL"], SILENT)
     assert list(tmp_path.iterdir()) == []
 
 
 def test_a_mutant_in_which_nothing_differs_is_drawn_as_the_original(tmp_path: Path) -> None:
     none = Film(tmp_path / "none")
     same = shown(mutant=None, story="", apart=None)
-    said = show(tmp_path / "a.mp4", same, (none, none), ["the process died"])
+    said = show(tmp_path / "a.mp4", same, (none, none), ["the process died"], SILENT)
     assert "the process died" in said[0]
     assert (tmp_path / "a.mp4").is_file()
 
 
 def test_a_video_that_is_interrupted_leaves_nothing_and_an_earlier_one_as_it_was(tmp_path: Path) -> None:
     file = tmp_path / "a.mp4"
-    write_video(file, Frames(shown(), (Drawn(RecordedPaths(recording())), Drawn(RecordedPaths(recording())))))
+    write_video(
+        file,
+        Frames(shown(), (Drawn(RecordedPaths(recording())), Drawn(RecordedPaths(recording())))),
+        Counted(),
+    )
     before = file.read_bytes()
 
     class Interrupted:
@@ -157,7 +185,7 @@ def test_a_video_that_is_interrupted_leaves_nothing_and_an_earlier_one_as_it_was
             return Drawn(RecordedPaths(recording())).at(time)
 
     with pytest.raises(KeyboardInterrupt):
-        write_video(file, Frames(shown(), (Interrupted(), Drawn(RecordedPaths(recording())))))
+        write_video(file, Frames(shown(), (Interrupted(), Drawn(RecordedPaths(recording())))), Counted())
     assert file.read_bytes() == before
     assert [one.name for one in tmp_path.iterdir()] == ["a.mp4"]
 
@@ -211,3 +239,20 @@ def test_texts_of_any_length_and_script_find_room(tmp_path: Path) -> None:
         (Drawn(RecordedPaths(recording())), Drawn(RecordedPaths(recording()))),
     )
     assert [frames.at(time).size for time in islice((0.0, 1.2, 2.0), 3)] == [frames.size] * 3
+
+
+@pytest.mark.parametrize("name", ["a.mp4", "a.gif"])
+def test_each_picture_of_a_video_is_a_step_of_its_progress(tmp_path: Path, name: str) -> None:
+    progress = Counted()
+    films = film(tmp_path / "a", 16, 60), film(tmp_path / "b", 6, 160)
+    show(tmp_path / name, shown(), films, [], progress)
+    assert progress.stages == [("video", progress.steps)]
+    assert progress.steps > 5
+
+
+def test_how_far_a_film_is_counts_the_simulated_seconds_of_both_sides(tmp_path: Path) -> None:
+    progress = Counted()
+    with followed(progress, tmp_path, 1.4):
+        film(tmp_path / "original.film", 12, 60)
+    assert progress.stages == [("film, simulated seconds", 4)]
+    assert progress.steps == 4

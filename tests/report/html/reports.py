@@ -37,13 +37,14 @@ EVIL = (
 _TIMES = [0.1 * number for number in range(100)]
 
 
-def recording(*, off: float = 0.0, name: str = "box") -> Recording:
+def recording(*, off: float = 0.0, name: str = "box", has_arm: bool = False) -> Recording:
     """A tool that goes along a curve and a box; from 5 s on both are ``off`` m beside it."""
-    tool, box = array("f"), array("f")
+    tool, box, arm = array("f"), array("f"), array("f")
     for time in _TIMES:
         y = 0.02 * time * time * 0.1 + (off if time >= 5 else 0.0)
         tool.extend((0.1 * time, y, 0.5, 1.0, 0.0, 0.0, 0.0))
         box.extend((0.1 * time, y, 0.4))
+        arm.extend((0.0, 0.0, 0.0, 0.0, 0.0, 0.5, 0.1 * time, y, 0.5))
     calls = [
         RecordedCall(0.0, 2.0, "robot:Arm.move_by", "mission.py:3", None, {"dx": 0.2}, {}),
         RecordedCall(
@@ -61,6 +62,7 @@ def recording(*, off: float = 0.0, name: str = "box") -> Recording:
         {
             "tool": Track("tool", TrackKind.POSE, tool),
             name: Track(name, TrackKind.POINT, box, size=(0.1, 0.1, 0.1)),
+            **({"arm": Track("arm", TrackKind.LINE, arm, radii=(0.05, 0.05, 0.05))} if has_arm else {}),
         },
         (Block(name, (0.5, 0.0, 0.0), (1.0, 1.0, 0.1)),),
         moments,
@@ -70,7 +72,9 @@ def recording(*, off: float = 0.0, name: str = "box") -> Recording:
     )
 
 
-def campaign(folder: Path, *, name: str = "box", **options: Any) -> tuple[Path, mutabot.StoredCampaign]:
+def campaign(
+    folder: Path, *, name: str = "box", has_arm: bool = False, **options: Any
+) -> tuple[Path, mutabot.StoredCampaign]:
     """A journal with recordings of one survivor, and what is read of it."""
     apart = (
         Apart("box", "m", 5.0, 0.2, 5.0, 0.2, 0.2, 0.001),
@@ -88,8 +92,9 @@ def campaign(folder: Path, *, name: str = "box", **options: Any) -> tuple[Path, 
     )
     journal = samples.write_journal(folder / "journal.sqlite", outcomes=outcomes, **options)
     with Recordings.to_write(journal, 10_000_000) as kept:
-        kept.add(ORIGINAL, 1, samples.TEST, Rank.ORIGINAL, to_bytes(recording(name=name)))
-        kept.add(samples.SKIP.id, 1, samples.TEST, Rank.SURVIVOR, to_bytes(recording(off=0.2, name=name)))
+        kept.add(ORIGINAL, 1, samples.TEST, Rank.ORIGINAL, to_bytes(recording(name=name, has_arm=has_arm)))
+        mutant = to_bytes(recording(off=0.2, name=name, has_arm=has_arm))
+        kept.add(samples.SKIP.id, 1, samples.TEST, Rank.SURVIVOR, mutant)
     return journal, mutabot.open(journal)
 
 

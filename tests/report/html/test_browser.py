@@ -250,6 +250,46 @@ def test_the_paths_fill_the_view_and_names_stay_whole(browser: Any, plain: Path,
     page.close()
 
 
+def test_the_robot_is_drawn_and_has_no_curves(browser: Any, tmp_path: Path) -> None:
+    page = browser.new_page(viewport={"width": 1280, "height": 900})
+    visit = Visit(page, reports.plain(tmp_path, has_arm=True))
+    visit.open("#/mutant/2")
+    scene = page.locator("canvas.scene")
+    scene.wait_for()
+    visit.settled()
+    whole = scene.evaluate("(one) => one.toDataURL()")
+    page.get_by_label("robot", exact=True).uncheck()
+    visit.settled()
+    assert scene.evaluate("(one) => one.toDataURL()") != whole
+    names = page.locator("figure.chart strong").all_text_contents()
+    assert "tool x" in names
+    assert not [name for name in names if name.startswith("arm")]
+    assert visit.wrong == []
+    page.close()
+
+
+def test_j_and_k_lead_from_survivor_to_survivor_of_the_source(browser: Any, tmp_path: Path) -> None:
+    page = browser.new_page(viewport={"width": 1280, "height": 900})
+    # another survivor of this file
+    outcomes = tuple(
+        replace(one, mutant=samples.REVERSE.id) if one.mutant == samples.NEGATE.id else one
+        for one in samples.OUTCOMES
+        if one.mutant != samples.REVERSE.id
+    )
+    visit = Visit(page, reports.plain(tmp_path, outcomes=outcomes))
+    visit.open("#/source/mission.py")
+    wanted = page.locator(".line.wanted")
+    wanted.wait_for()
+    seen = [wanted.get_attribute("id")]
+    for key in "jjkk":
+        page.keyboard.press(key)
+        seen.append(wanted.get_attribute("id"))
+    first, last = (f"L{one.site.span.line}" for one in (samples.SKIP, samples.REVERSE))
+    assert seen == [first, last, last, first, first]
+    assert visit.wrong == []
+    page.close()
+
+
 def test_files_are_a_tree_with_the_scores_of_the_overview(browser: Any, tmp_path: Path) -> None:
     page = browser.new_page()
     moved = "cell/arm/mission.py"

@@ -15,6 +15,7 @@ from mutabot.errors import UsageError
 from mutabot.journal.files import REPORT_MARK
 from mutabot.report.html import folder as folders
 from mutabot.report.html.folder import check_folder
+from mutabot.results.films import KeptFilm
 from mutabot.results.suggested import Suggestion
 from report.html import reports
 from results import samples
@@ -118,3 +119,20 @@ def test_the_wheel_holds_what_shows_the_pages() -> None:
     wanted = {f"mutabot/report/html/assets/{file.name}" for file in assets.iterdir()}
     assert len(wanted) > 10
     assert wanted <= packed
+
+
+def test_a_film_lies_beside_the_page_and_one_that_finds_no_room_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    journal, stored = reports.campaign(tmp_path)
+    film = tmp_path / "a.mp4"
+    film.write_bytes(b"a film")
+    films = {samples.SKIP.id: KeptFilm(film, 0, samples.TEST)}
+    made = reports.write(tmp_path / "report", journal, stored, lambda one: replace(one, films=films))
+    name = f"data/films/{samples.SKIP.number}.mp4"
+    assert (made.page.parent / name).read_bytes() == b"a film"
+    assert name in data(made.page)
+    monkeypatch.setattr(folders, "FILMS_LIMIT", 3)
+    made = reports.write(tmp_path / "report", journal, stored, lambda one: replace(one, films=films))
+    assert not [*made.page.parent.rglob("*.mp4")]
+    assert '"size":6' in data(made.page)

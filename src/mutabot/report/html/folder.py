@@ -7,6 +7,7 @@ points: what a straight line in time keeps within half a millimetre is left out.
 from __future__ import annotations
 
 import json
+import shutil
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.resources import files
@@ -26,6 +27,7 @@ from mutabot.report.document import data_of, finite
 from mutabot.report.terminal.console import mark_of
 from mutabot.report.texts import acceptance_text, effect_text, mapped, place_text, state_of, telling
 from mutabot.results.divergence import weight_of
+from mutabot.results.films import KeptFilm
 from mutabot.results.results import MutantResult, Results, killing_tests, unlooked
 from mutabot.results.stored import StoredEvidence
 from mutabot.results.suggested import Suggestion
@@ -50,6 +52,8 @@ _MARK_TEXT = "A report of mutabot: open index.html. `mutabot report --html` repl
 _PAGE, _ASSETS, _DATA = "index.html", "assets", "data"
 #: bytes that all data may take; recordings make room
 LIMIT = 23_000_000
+#: bytes that all films may take beside the data
+FILMS_LIMIT = 40_000_000
 
 
 def campaign_data(campaign: Results, name: str) -> dict[str, Any]:
@@ -125,6 +129,7 @@ class Contents:
         evidence: its recordings.
         clean: makes texts of recordings fit to leave the machine.
         suggestions: what was suggested for its survivors, by their ids.
+        films: films of its mutants, by their ids.
     """
 
     campaign: Results
@@ -132,6 +137,7 @@ class Contents:
     evidence: StoredEvidence
     clean: Callable[[str], str]
     suggestions: Mapping[str, Suggestion] = field(default_factory=dict)
+    films: Mapping[str, KeptFilm] = field(default_factory=dict)
 
 
 def check_folder(folder: Path) -> None:
@@ -159,7 +165,10 @@ def write_folder(folder: Path, contents: Contents, limit: int = LIMIT) -> Writte
             clear(folder / name)  # of a link the link alone, since it leads out of the folder
             if name == REPORT_MARK:
                 (folder / name).write_text(_MARK_TEXT, encoding="utf-8")
-        for path in (folder / _ASSETS, *(folder / _DATA / name for name in ("mutants", "originals"))):
+        for path in (
+            folder / _ASSETS,
+            *(folder / _DATA / name for name in ("mutants", "originals", "films")),
+        ):
             path.mkdir(parents=True)
         without = _write_data(folder / _DATA, contents, limit)
         for one in files(__package__).joinpath(_ASSETS).iterdir():
@@ -177,9 +186,10 @@ def _write_data(folder: Path, contents: Contents, limit: int) -> int:
     sources = [[file, text] for file, text in campaign.sources.items()]
     used = (folder / "campaign.js").write_bytes(script("campaign", campaign_data(campaign, contents.name)))
     used += (folder / "sources.js").write_bytes(script("sources", sources))
+    films = _copy_films(folder / "films", contents)
     for result in campaign.mutants:
         number = result.mutant.number
-        page = mutant_page(result, contents.suggestions.get(result.mutant.id))
+        page = mutant_page(result, contents.suggestions.get(result.mutant.id), films.get(result.mutant.id))
         file = folder / "mutants" / f"{number}.js"
         used += file.write_bytes(script(f"mutant {number}", page))
     recorded = Recorded(contents.evidence, contents.clean)
@@ -195,6 +205,25 @@ def _write_data(folder: Path, contents: Contents, limit: int) -> int:
     for index, original in enumerate(recorded.originals.values()):
         (folder / "originals" / f"{index}.js").write_bytes(script(f"original {index}", original))
     return lacking
+
+
+def _copy_films(folder: Path, contents: Contents) -> dict[str, dict[str, Any]]:
+    """Copy what finds room, the worst survivors' first; what pages say of each, by the mutant's id."""
+    found: dict[str, dict[str, Any]] = {}
+    left = FILMS_LIMIT
+    for result in contents.campaign.worst_first:
+        film = contents.films.get(result.mutant.id)
+        if film is None:
+            continue
+        size = film.file.stat().st_size
+        facts = {"round": film.round, "test": contents.clean(film.test), "size": size}
+        if size <= left:
+            left -= size
+            name = f"{result.mutant.number}.mp4"
+            shutil.copyfile(film.file, folder / name)
+            facts["file"] = f"{_DATA}/films/{name}"
+        found[result.mutant.id] = facts
+    return found
 
 
 def _recordings(recorded: Recorded, results: Iterable[MutantResult], limit: int) -> dict[int, list[Any]]:
@@ -337,18 +366,27 @@ def _differences(numbers: Sequence[int]) -> list[int]:
 _NOTHING: tuple[Any, ...] = (None, (), [], {}, "")
 
 
-def mutant_page(result: MutantResult, suggestion: Suggestion | None = None) -> dict[str, Any]:
+def mutant_page(
+    result: MutantResult, suggestion: Suggestion | None = None, film: Mapping[str, Any] | None = None
+) -> dict[str, Any]:
     """Return all but the recordings: the mutant of the results document, without what is empty.
 
     Args:
         suggestion: what was suggested for it; None if nothing was looked for.
+        film: what the page says of its film; None if there is none.
     """
     number, diverged = telling(result) or (0, None)
     place = place_text(result, number, diverged) if diverged is not None and diverged.example else ""
     check = (
         data_of.facts(suggestion, "code test notes") if suggestion is not None and suggestion.code else None
     )
-    return {**told(data_of(result)), "change": result.change, "told": place, "suggestion": check}
+    return {
+        **told(data_of(result)),
+        "change": result.change,
+        "told": place,
+        "suggestion": check,
+        "film": film,
+    }
 
 
 def told(value: Any) -> Any:

@@ -4,7 +4,7 @@
   const { h, address, here } = mutabot;
   const PAGES = [["", "Overview"], ["mutants", "Mutants"], ["source", "Source"], ["tests", "Tests"], ["operators", "Operators"]];
   const KEYS = [
-    ["/", "search the mutants"], ["j, k", "next and previous mutant of the list"], ["Enter", "open it"],
+    ["/", "search the mutants"], ["j, k", "next and previous mutant of the list, or survivor of the source"], ["Enter", "open it"],
     ["n, p", "on a mutant's page: the next and the previous one of the list; with Shift the next and the previous survivor in the source"],
     ["[, ]", "on a mutant's page: a tenth of a second back and on; with Shift a second"], ["Space", "play and pause, on the 3D view"],
     ["← → ↑ ↓", "on the 3D view: turn it"], ["+ − 0", "on the 3D view: nearer, farther, as at first"],

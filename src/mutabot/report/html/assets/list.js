@@ -117,7 +117,7 @@
     };
     const letters = new Set(shown.flatMap((one) => [...one.ends]));
     return h("div", null, h("table", { class: "mutants" },
-      h("thead", null, h("tr", null, head("number", "no.", "n"), head("place", "place"), head("operator", "operator"), h("th", { scope: "col" }, "fault and result"),
+      h("thead", { "data-label": "sort by" }, h("tr", null, head("number", "no.", "n"), head("place", "place"), head("operator", "operator"), h("th", { scope: "col" }, "fault and result"),
         head("status", "rounds"), head("killed", "killed", "n"), head("deviation", "deviation", "n", "largest deviation, in units of the original's own spread"))),
       body(shown)), marks.legend(letters));
   }

@@ -62,7 +62,7 @@
 
   function draw(holder, one, page, stops) {
     const { seen, events } = robot(one, page, stops);
-    holder.replaceChildren(seen, suggestion(page), h("div", { class: "columns" }, excerpt(one, page), facts(one, page)),
+    holder.replaceChildren(seen, film(page.film), suggestion(page), h("div", { class: "columns" }, excerpt(one, page), facts(one, page)),
       events, looked(one, page), rounds(one, page));
   }
 
@@ -133,6 +133,15 @@
     }
     show(0);
     return { seen: section, events };
+  }
+
+  /** The film that was made of it, where it found room. */
+  function film(found) {
+    if (!found) return "";
+    const where = `round ${found.round + 1} · ${found.test.replace(/^.*::/, "")}`;
+    return h("section", { class: "film", "aria-labelledby": "film" }, h("div", { class: "head" }, h("h2", { id: "film" }, "Film"), h("p", { class: "hint" }, where)),
+      found.file ? h("video", { src: found.file, controls: true, loop: true, muted: true, playsinline: true, preload: "metadata", "aria-label": `Original and mutant beside each other, ${where}` })
+        : h("p", { class: "hint" }, `The film of ${(found.size / 1e6).toFixed(1)} MB had no room in this report.`));
   }
 
   function nothingRecorded(one, page) {

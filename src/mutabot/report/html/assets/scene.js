@@ -19,7 +19,7 @@
     const ROBOT = Symbol("robot");
     const shown = new Set([...things.flat().map((one) => one.name), ROBOT]);
     const bounds = boundsOf(things.flat(), blocks);
-    const home = { yaw: -1.05, pitch: 0.42, distance: 1.15 * bounds.radius / FIELD, target: bounds.centre };
+    const home = { yaw: yawBeside(robots[robots.length - 1], clock.time), pitch: 0.42, distance: 1.15 * bounds.radius / FIELD, target: bounds.centre };
     const view = { ...home };
     const some = (one, most) => one.rows.filter((_, index) => index % Math.ceil(one.rows.length / most) === 0);
     const points = [...things.flat().flatMap((one) => some(one, 200)), ...robots.flat().flatMap((one) => some(one, 40).flatMap(pointsOf))];
@@ -43,6 +43,7 @@
       const camera = cameraOf(view, width, height);
       drawBlocks(pen, camera, blocks, colours);
       if (shown.has(ROBOT)) worlds.forEach((world, index) => robot(pen, camera, robots[index], blocks, clock.time, world, index < worlds.length - 1));
+      nameBlocks(pen, camera, blocks, colours);
       worlds.forEach((world, index) => things[index].filter((one) => shown.has(one.name)).forEach((one) => path(pen, camera, one, world, blocks, clock.time, colours)));
       worlds.forEach((world, index) => things[index].filter((one) => shown.has(one.name)).forEach((one) => body(pen, camera, one, world, clock.time, colours, index)));
       if (worlds.length > 1) things[1].filter((one) => shown.has(one.name)).forEach((one) => ghost(pen, camera, things[0].find((other) => other.name === one.name), one, worlds[0].ink(), clock.time, colours));
@@ -107,6 +108,17 @@
         h("input", { type: "checkbox", checked: true, onchange: (event) => { if (event.target.checked) shown.add(name); else shown.delete(name); draw(); } }), name === ROBOT ? "robot" : name))) : null);
     const stop = () => { watch.disconnect(); removeEventListener("theme", draw); paper.removeEventListener("change", paint); };
     return { canvas, controls, stop };
+  }
+
+  const YAW = -1.05, ASIDE = 1.1;
+  /** From where an arm is seen from its side, its tool in front; without one, or with several, the usual. */
+  function yawBeside(lines, time) {
+    const row = lines.length && at(lines[0], time);
+    if (!row) return YAW;
+    const [x, y] = [row[row.length - 3] - row[0], row[row.length - 2] - row[1]];
+    if (Math.hypot(x, y) < 0.1) return YAW;
+    const off = (yaw) => Math.abs(Math.atan2(Math.sin(yaw - YAW), Math.cos(yaw - YAW)));
+    return [ASIDE, -ASIDE].map((by) => Math.atan2(y, x) + by).sort((one, other) => off(one) - off(other))[0];
   }
 
   function boundsOf(tracks, blocks) {
@@ -192,9 +204,12 @@
   function drawBlocks(pen, camera, blocks, colours) {
     const sorted = [...blocks].sort((one, other) => camera.project(other.centre)[2] - camera.project(one.centre)[2]);
     for (const one of sorted) box(pen, camera, one.centre, one.half, UPRIGHT, { fill: colours.block, alpha: 1, edge: colours.edge, edgeAlpha: 1, width: 1 });
+  }
+
+  function nameBlocks(pen, camera, blocks, colours) {
     pen.font = colours.small;
     pen.textAlign = "center";
-    for (const one of sorted) {
+    for (const one of blocks) {
       const [x, y] = camera.project(plus(one.centre, [0, 0, one.half[2]]));
       const { clientWidth: width, clientHeight: height } = pen.canvas;
       if (x > 0 && x < width && y > 0 && y < height) write(pen, label(one.name), x, y + 4, colours.muted, colours);

@@ -1,8 +1,9 @@
 /* The program's text with its mutants in the margin, and survivors under their lines. */
 "use strict";
 (() => {
-  const { h, address, empty, marks } = mutabot;
-  const MARKS = 7;
+  const { h, address, count, empty, marks } = mutabot;
+  const MARKS = 4;
+  let opened = null; // an address that is drawn again, with newer data, stays where the reader is
   const LETTER = (one) => one.status === "killed" ? (one.ends.includes("C") ? "C" : "X") : marks.STATUS[one.status];
 
   mutabot.views.set("source", (body, parts, asked) => {
@@ -13,6 +14,9 @@
     const holder = h("div", null, h("p", { class: "wait" }, "The source is being read …"));
     body.append(mutabot.fileTree(campaign, file), holder);
     let gone = false;
+    const stops = [];
+    const isNew = opened !== location.hash;
+    opened = location.hash;
     mutabot.load("sources", "data/sources.js").then((sources) => {
       if (gone) return;
       const text = new Map(sources).get(file);
@@ -21,10 +25,45 @@
           h("a", { href: address(["mutants"], { file }) }, "the list"), ".")
         : code(file, text, campaign.mutants.filter((one) => one.file === file)));
       const wanted = asked.line && document.getElementById(`L${asked.line}`);
-      if (wanted) { wanted.classList.add("wanted"); wanted.scrollIntoView({ block: "center" }); }
+      if (wanted) { wanted.classList.add("wanted"); if (isNew) wanted.scrollIntoView({ block: "center" }); }
+      stops.push(survivors(holder, wanted, isNew));
     }, (error) => { holder.replaceChildren(empty("The source cannot be shown.", error.message)); });
-    return () => { gone = true; };
+    return () => { gone = true; stops.forEach((stop) => stop()); opened = location.hash === opened ? opened : null; };
   });
+
+  /** What leads from survivor to survivor, by buttons or keys; the page opens at the first one that differs visibly. */
+  function survivors(holder, wanted, isNew) {
+    const lines = [...holder.querySelectorAll(".line:has(.alive)")];
+    const bar = holder.querySelector(".walk");
+    if (!lines.length || !bar) return () => {};
+    let now = wanted ? lines.indexOf(wanted) : lines.findIndex((line) => line.classList.contains("has-survivor"));
+    if (now < 0 && !wanted) now = 0;
+    const where = h("span", { role: "status" });
+    const button = (name, by, key) => h("button", { type: "button", "aria-keyshortcuts": key, title: `key ${key}`, onclick: () => go(by) }, name);
+    function tell() {
+      where.textContent = now < 0 ? count(lines.length, "line with survivors", "lines with survivors") : `Survivors in line ${lines[now].id.slice(1)}, ${now + 1} of ${lines.length}`;
+      holder.querySelectorAll(".wanted").forEach((line) => line.classList.remove("wanted"));
+      if (now >= 0) lines[now].classList.add("wanted"); else if (wanted) wanted.classList.add("wanted");
+    }
+    function go(by) {
+      const behind = lines.findIndex((line) => wanted && Number(line.id.slice(1)) > Number(wanted.id.slice(1)));
+      const from = now >= 0 ? now : (behind < 0 ? lines.length : behind) - (by > 0 ? 1 : 0);
+      now = Math.max(0, Math.min(lines.length - 1, from + by));
+      tell();
+      lines[now].scrollIntoView({ block: "center" });
+    }
+    const keys = (event) => {
+      if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || event.target.closest("input:not([type=checkbox]), select, dialog")) return;
+      if (event.key === "j" || event.key === "k") { go(event.key === "j" ? 1 : -1); event.preventDefault(); }
+      const link = event.key === "Enter" && event.target === document.body && now >= 0 && lines[now].querySelector(".alive a");
+      if (link) link.click();
+    };
+    addEventListener("keydown", keys);
+    bar.append(h("span", { class: "steps-beside" }, where, button("↑ Previous", -1, "k"), button("↓ Next", 1, "j")));
+    tell();
+    if (isNew && !wanted && now > 0) lines[now].scrollIntoView({ block: "center" });
+    return () => removeEventListener("keydown", keys);
+  }
 
   function code(file, text, mutants) {
     const byLine = new Map();
@@ -32,7 +71,7 @@
     const box = h("div", { class: "code", role: "list", "aria-label": `${file}, line by line` });
     coloured(file, text.replace(/\n$/, "")).forEach((line, index) => box.append(row(file, line, index + 1, byLine.get(index + 1) || [])));
     const toggle = h("label", { class: "toggle" }, h("input", { type: "checkbox", checked: true, onchange: (event) => { box.classList.toggle("bare", !event.target.checked); } }), "Survivors under their lines");
-    return h("div", null, h("p", { class: "told" }, toggle), box, marks.legend(new Set(mutants.map(LETTER))),
+    return h("div", null, h("div", { class: "told walk" }, toggle), box, marks.legend(new Set(mutants.map(LETTER))),
       mutants.some((one) => one.survives && one.indistinguishable) ? h("p", { class: "hint" }, "Outlined: survived, and nothing that was compared differs from the original.") : "");
   }
 
