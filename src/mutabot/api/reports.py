@@ -7,41 +7,25 @@ from typing import TYPE_CHECKING
 from mutabot.lazy import lazily
 
 if TYPE_CHECKING:
-    from mutabot.campaign.again import CampaignRun
-    from mutabot.campaign.request import Progress
-    from mutabot.cli.context import CommandContext
-    from mutabot.errors import MutabotError, UsageError
-    from mutabot.evidence.paths import RecordedPaths
-    from mutabot.model.outcome import Verdict
-    from mutabot.report.html.pages import ReportPages
-    from mutabot.results.results import MutantResult, Results
+    from mutabot.campaign.again import CampaignRun as CampaignRun
+    from mutabot.campaign.request import Progress as Progress
+    from mutabot.cli.context import CommandContext as CommandContext
+    from mutabot.errors import MutabotError as MutabotError
+    from mutabot.errors import UsageError as UsageError
+    from mutabot.evidence.paths import RecordedPaths as RecordedPaths
+    from mutabot.model.outcome import Verdict as Verdict
+    from mutabot.report.html.pages import ReportPages as ReportPages
+    from mutabot.results.results import MutantResult as MutantResult
+    from mutabot.results.results import Results as Results
 
-__all__ = [
-    "CampaignRun",
-    "CommandContext",
-    "MutabotError",
-    "MutantResult",
-    "Progress",
-    "RecordedPaths",
-    "ReportPages",
-    "Results",
-    "UsageError",
-    "Verdict",
-]
 _HOMES = {
     "mutabot.campaign.again": ("CampaignRun",),
     "mutabot.campaign.request": ("Progress",),
     "mutabot.cli.context": ("CommandContext",),
-    "mutabot.errors": (
-        "MutabotError",
-        "UsageError",
-    ),
+    "mutabot.errors": ("MutabotError", "UsageError"),
     "mutabot.evidence.paths": ("RecordedPaths",),
     "mutabot.model.outcome": ("Verdict",),
     "mutabot.report.html.pages": ("ReportPages",),
-    "mutabot.results.results": (
-        "MutantResult",
-        "Results",
-    ),
+    "mutabot.results.results": ("MutantResult", "Results"),
 }
 __getattr__, __dir__ = lazily(__name__, _HOMES)
