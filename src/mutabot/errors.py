@@ -220,7 +220,7 @@ def nearest_name(name: str, known: Iterable[str]) -> str | None:
 
 
 def unknown_name_text(kind: str, name: str, known: Iterable[str], nearest: str | None = None) -> str:
-    """One sentence for a name that does not exist: the nearest one, or all there are."""
+    """A message for a name that does not exist: it suggests the nearest name, or lists all."""
     known = sorted(set(known))
     shown = shortened(name, _LONGEST_NAME)
     nearest = nearest or nearest_name(name, known)

@@ -264,7 +264,7 @@ def told_to_processes() -> dict[str, dict[str, str]]:
 
 
 def use(parts: Mapping[str, Mapping[str, str]]) -> None:
-    """In a process of the tests: these parts, as the controller found them, are all there are."""
+    """Use only these parts, which the controller has found, in a process of the tests."""
     _Told.parts = {
         kind: {name: ExtensionPart(name, reference, _package(reference)) for name, reference in told.items()}
         for kind, told in parts.items()

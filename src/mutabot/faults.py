@@ -109,7 +109,7 @@ class PlannedMutant:
 
     @property
     def as_left_out(self) -> LeftOut:
-        """As the plan lists it if it is left out."""
+        """Its entry in the plan's list of mutants that are left out."""
         return LeftOut(self.mutant.id, self.mutant.description, self.reason or "")
 
 
@@ -192,7 +192,7 @@ class FaultProvider(ABC):
         return not set(self.families).isdisjoint(project.families)
 
     def rules(self) -> Sequence[Rule]:
-        """Its operators, as lists, documentation and reports show them."""
+        """Its operators, for lists, documentation and reports."""
         return ()
 
     def mutant(

@@ -46,7 +46,7 @@ class SharedMemory:
 
     @classmethod
     def share(cls) -> None:
-        """Before the first fork: what is forked from this process from now on shares a memory with it.
+        """Create the memory that processes forked from this one share. Call it before the first fork.
 
         Where there is not enough memory, nothing is shared.
         """

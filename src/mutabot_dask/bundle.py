@@ -148,7 +148,7 @@ class Forecast:
 
     @classmethod
     def of(cls, request: Request) -> Forecast:
-        """That of a project. Raises UsageError where git cannot tell what it tracks."""
+        """Make the bundle of a project. Raises UsageError if git cannot list its files."""
         return cls(Shipment.of(request))
 
     @property

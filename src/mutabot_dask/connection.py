@@ -134,7 +134,7 @@ class ClusterConnection:
         return address_in(Path(self._settings.address)) if self._settings.is_file else self._settings.address
 
     def _meet(self) -> None:
-        """Let the workers that are there say who they are. Raises UsageError if one does not fit."""
+        """Ask the connected workers for their versions. Raises UsageError if one does not match."""
         if self._local is not None:
             return
         until = time.monotonic() + _INTRODUCTION

@@ -130,7 +130,7 @@ class WorkerSession:
             self._workers = None
 
     def _fault(self, result: Result) -> str | None:
-        """What went wrong that has nothing to do with the mutant, as far as one can tell."""
+        """Return a failure of this machine rather than of the mutant; None if none is known."""
         full = next((one.message for one in result.ends if one.message and _FULL.search(one.message)), None)
         if full is not None:
             return full.splitlines()[0]

@@ -1,4 +1,4 @@
-"""Nothing that workers send is unpickled here: what Dask would unpickle becomes words.
+"""Keep Dask from unpickling what workers send: descriptions take its place.
 
 Dask's client unpickles results, exceptions, the types of results, and warnings of workers. Its option
 ``deserializers`` does not close this: messages on the stream from the scheduler, parts that a message marks

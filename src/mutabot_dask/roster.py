@@ -75,12 +75,12 @@ class Roster:
 
     @property
     def usable(self) -> list[str]:
-        """Those that may become so, or are."""
+        """Return workers that are usable or may become so."""
         return [address for address, worker in self._workers.items() if worker.refused is None]
 
     @property
     def is_settled(self) -> bool:
-        """Whether all that are there have said who they are."""
+        """Whether all connected workers have reported their versions."""
         return not self._asked and all(one.is_known or one.refused for one in self._workers.values())
 
     @property

@@ -45,7 +45,7 @@ class Ground:
 
 @dataclass(frozen=True, slots=True)
 class WorkUnit:
-    """One task, on its ground.
+    """A task with the settings that all tasks of a campaign share.
 
     ``ticket`` is what the answer must bear: who was not given the unit does not know it.
     """

@@ -1,4 +1,4 @@
-"""One plain run of the tests, watched: the calls that the program really makes."""
+"""Observe the calls that a program makes in one run of its tests."""
 
 from __future__ import annotations
 

@@ -220,7 +220,7 @@ def propose(
 
 
 def without_doubles(calls: Sequence[WatchedCallable]) -> list[WatchedCallable]:
-    """Without methods of whatever has them where the robot's own was seen: a mock of it is one."""
+    """Remove methods of any object where the robot's own method was seen, as a mock is one."""
     owned = {
         call.name
         for call in calls

@@ -121,7 +121,7 @@ class _FeedProgress:
         self.steps, self.ended = 0, ""
 
     def show_on(self, progress: Progress) -> None:
-        """From now on there is something to show on the terminal."""
+        """Show progress on the terminal, too."""
         self.progress = progress
         self.mutant_ended = progress.mutant_ended  # of no use to the page, which has it from the journal
 
@@ -135,7 +135,7 @@ class _FeedProgress:
         self.tell()
 
     def advance(self, line: str | None = None) -> None:
-        """One step is done."""
+        """Count one more step."""
         if self.progress is not None:
             self.progress.advance(line)
         self._line = ReportPages.legible(line or "")
@@ -162,7 +162,7 @@ class _FeedProgress:
         self.tell()
 
     def tell(self) -> None:
-        """Tell the state as it is now."""
+        """Send the current state to the feed."""
         with self._lock:
             left = self.left
             state: dict[str, Any] = {

@@ -210,7 +210,7 @@ class _Server(ThreadingHTTPServer):
             raise
 
     def process_request_thread(self, request: Any, client_address: Any) -> None:
-        """In that thread."""
+        """Handle a request in a thread of its own."""
         try:
             super().process_request_thread(request, client_address)
         finally:
@@ -221,7 +221,7 @@ class _Server(ThreadingHTTPServer):
 
 
 class _BoundedRequest(io.RawIOBase):
-    """What a browser sends, as far as it comes in time and is not too much; then it ends."""
+    """The request of a browser, limited in time and size."""
 
     def __init__(self, connection: socket.socket) -> None:
         self._connection = connection

@@ -38,7 +38,7 @@ class _FileTopics:
         self._shown, self._context = shown, context
 
     def log(self) -> None:
-        """In the order of their times, as readers like it best."""
+        """Write messages in the order of their times."""
         found = [line for side, recorded in self._shown.sides for line in self._lines(side, recorded)]
         for time, channel, message in [*self._scene(), *sorted(found, key=lambda line: line[0])]:
             channel.log(message, log_time=round(time * 1e9))
@@ -136,7 +136,7 @@ def _path(recorded: RecordedPaths, name: str, colour: Any) -> Any:
 
 
 def _pose(row: Sequence[float]) -> Any:
-    """That in a row of a track."""
+    """Return the pose in a row of a track."""
     return messages.Pose(position=_vector(row[:3]), orientation=_turn(row))
 
 

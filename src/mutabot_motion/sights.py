@@ -39,7 +39,7 @@ Sight = Callable[[Shown], str]
 
 
 def sights_of(home: Path, *, rerun: bool, rrd: Path | None, mcap: Path | None) -> Iterator[Sight]:
-    """Those that are asked for, before anything is read. Raises UsageError for one that cannot be done here.
+    """Return the requested views. Raises UsageError for a view that is not available here.
 
     ``home``: the project's folder of mutabot, for a file that the user does not name.
     """

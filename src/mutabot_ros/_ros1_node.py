@@ -57,7 +57,7 @@ class Given:
         return self._bound.arguments.get(argument)
 
     def change(self, **values: Any) -> None:
-        """Give others in their place; ``...`` leaves an argument as it is."""
+        """Replace arguments; ``...`` leaves one unchanged."""
         self._bound.arguments.update((key, value) for key, value in values.items() if value is not ...)
 
     def settings(self, **names: str) -> dict[str, Any]:

@@ -137,7 +137,7 @@ def same_program(one: str, other: str) -> bool:
 
 
 def shortened(text: str) -> str:
-    """One line of limited length."""
+    """Return a text as one line of limited length."""
     text = " ".join(text.split())
     return text if len(text) <= TEXT_LIMIT else text[: TEXT_LIMIT - 1] + "…"
 

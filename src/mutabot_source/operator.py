@@ -88,7 +88,7 @@ class TextExample:
 
 
 def each(program: str, texts: str) -> tuple[str, ...]:
-    """The same program with each of several texts, set apart by commas, in the place of ``{}``."""
+    """Return a program with each of several texts, separated by commas, in place of ``{}``."""
     return tuple(program.format(text) for text in texts.split(", "))
 
 

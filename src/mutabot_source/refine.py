@@ -1,4 +1,4 @@
-"""From alternatives to mutants; and after the baseline, only what fits the types that were seen."""
+"""Make mutants of alternatives, after the baseline only of those that fit the observed types."""
 
 from __future__ import annotations
 

@@ -73,7 +73,7 @@ class CampaignRun(Campaign):
     def of_original(
         request: Request, rounds: Iterable[int], progress: Progress
     ) -> Iterator[Iterator[Result]]:
-        """Run the suite on the original in these rounds (from 0), whatever comes of it.
+        """Run the suite on the original in these rounds (from 0), also if tests fail.
 
         Gives the results as they come; ``task.key`` is the round. Leaving the context ends all processes.
         """

@@ -33,7 +33,7 @@ SURVIVORS = 1 / 3
 
 
 def earlier_decision(journal: Journal) -> bool | None:
-    """What was decided in the campaign that this one goes on with; None if that had come to its end."""
+    """Return the decision of the campaign that this one continues; None if that one was complete."""
     return journal.meta().get(CONFIRMATION) if journal.finished != "complete" else None
 
 

@@ -139,7 +139,7 @@ class CampaignEvidence:
         return None if original is None else (original, RecordedPaths(from_bytes(data)), data)
 
     def scattering(self, tests: Iterable[str]) -> set[str]:
-        """Those of the tests that have no stable end: the original ends far apart with different seeds."""
+        """Return the tests without a stable end: with other seeds the original ends far from it."""
         try:
             return set() if self.is_lost else {test for test in tests if self._spread(test).scatters}
         except (JournalError, *UNFIT):  # the recordings were spoiled: the next one that is taken says so

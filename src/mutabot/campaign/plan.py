@@ -58,7 +58,7 @@ def draw(mutants: Sequence[Mutant], seed: int, sample: Sample) -> tuple[list[Mut
 
 
 def shuffled(mutants: Iterable[Mutant], salt: str) -> list[Mutant]:
-    """In an order that each mutant's place depends on by its own id only."""
+    """Shuffle mutants: the rank of each depends on its own id only."""
     return sorted(mutants, key=lambda one: blake2b(f"{salt}:{one.id}".encode(), digest_size=16).digest())
 
 

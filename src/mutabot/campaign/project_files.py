@@ -130,7 +130,7 @@ def is_name_of_project(name: str) -> bool:
 
 
 def _above(root: Path, repository: Path | None) -> Iterator[Path]:
-    """In folders above the project, what tells pytest how to run; in a repository only what git tracks."""
+    """Pytest's configuration files in folders above the project; in a repository only tracked files."""
     for folder in root.parents[:-1] if repository != root else ():
         there = [folder / name for name in _OF_PYTEST if (folder / name).is_file()]
         if there and repository is not None:

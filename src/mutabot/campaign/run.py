@@ -221,7 +221,7 @@ def _disk_errors_named(request: Request) -> Iterator[None]:
 def _write_beginning(
     campaign: Campaign, journal: Journal, results: Sequence[Result], plan: Plan, whole: Plan
 ) -> None:
-    """From here on the journal is that of this campaign."""
+    """Replace the journal's earlier campaign by this one."""
     request, note = campaign.request, campaign.progress.note
     journal.begin(_meta(request))
     if journal.moved is not None:

@@ -23,7 +23,7 @@ _WILD = re.compile(r"[*?]")
 
 
 def refuse_typos(request: Request) -> None:
-    """Raise SelectionError for words that cannot fit a mutant of this project, whatever its plan is."""
+    """Raise SelectionError for words that cannot match any mutant of this project."""
     sources = (*request.configuration.program, *request.configuration.oracle)
     files = program_files(request.root, sources)
     names = [*registry.names(), *known_families(), *(role.value for role in Role)]

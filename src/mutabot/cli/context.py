@@ -106,7 +106,7 @@ class CommandContext:
         self.print_bytes(f"{text}\n".encode(sys.stdout.encoding or "utf-8", errors="replace"))
 
     def print_bytes(self, data: bytes) -> None:
-        """Print bytes as they are, in UTF-8 whatever the terminal has."""
+        """Print bytes unchanged, in UTF-8 for any encoding of the terminal."""
         try:
             sys.stdout.flush()
             sys.stdout.buffer.write(data)

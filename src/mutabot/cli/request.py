@@ -1,4 +1,4 @@
-"""From the options of the command line and the configuration to what a campaign is asked to do."""
+"""Make the request for a campaign of the command line's options and the configuration."""
 
 from __future__ import annotations
 

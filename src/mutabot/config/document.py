@@ -93,7 +93,7 @@ class Document:
 
 
 def _extremes(data: Any) -> Iterator[tuple[KeyPath, str]]:
-    """What is too deep, too long or too large, whatever it stands for."""
+    """Find what is nested too deeply, too long or too large."""
     left: list[tuple[KeyPath, Any]] = [((), data)]
     while left:
         place, value = left.pop()
@@ -189,7 +189,7 @@ def key_lines(text: str) -> dict[KeyPath, int]:
 
 
 def _read(text: str) -> dict[str, Any] | None:
-    """What a statement says; None if it goes on."""
+    """Parse a statement; None if it is not complete."""
     try:
         return tomllib.loads(text)
     except (ValueError, RecursionError):

@@ -246,7 +246,7 @@ def _check_file(name: str) -> None:
 
 
 def _check_end(end: events.TestEnd, sites: set[int]) -> None:
-    """What a test ended like, as far as its fields are of no fixed type."""
+    """Check the fields of a test's end whose types are not fixed."""
     if end.outcome not in _OUTCOMES:
         raise ValueError(f"{end.outcome[:_SHOWN_NAME]!r} is not an outcome of a test")
     if end.example is not None and len(end.example) != 2:

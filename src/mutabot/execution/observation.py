@@ -1,4 +1,4 @@
-"""Runs a suite once as it is, and watches the calls of the program and of its tests."""
+"""Run a suite once without changes, and watch the calls of the program and of its tests."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def observe(
     result: type[T],
     limit: float,
 ) -> Observed[T]:
-    """Run a suite once as it is, and watch the calls of the program and of its tests.
+    """Run a suite once without changes, and watch the calls of the program and of its tests.
 
     Args:
         root: the project.

@@ -178,7 +178,7 @@ class Spawned:
         self._process.terminate()
 
     def end(self) -> int:
-        """End it, and whatever it left behind, if it has not ended yet; returns its exit code."""
+        """End it with all that it left behind, if it still runs; return its exit code."""
         self.kill()
         try:
             return self._process.wait(_PATIENCE)
@@ -218,11 +218,11 @@ class EventStream:
         os.set_blocking(self.bell, False)
 
     def read(self, *, is_last: bool = False) -> list[Event]:
-        """The events that are there by now; ``is_last``: all processes are gone."""
+        """Return the events written so far; ``is_last``: all processes have ended."""
         return self._with_forks(SESSION, self.own(is_last=is_last))
 
     def own(self, *, is_last: bool = False) -> list[Event]:
-        """Those of the process itself, with the ends of its forks."""
+        """The events of the process itself, with the ends of its forks."""
         with contextlib.suppress(BlockingIOError):
             os.read(self.bell, 1 << 21)  # more than what a pipe holds
         return self._reader.read(is_last=is_last)

@@ -133,7 +133,7 @@ def _end(pid: int, entry: bytes) -> bool:
 
 
 def remove_folder(folder: Path) -> None:
-    """Remove a folder with all that is in it, as far as its owner can."""
+    """Remove a folder and its content, where its owner has the rights."""
     for _ in range(2):  # the second time all folders are open
         with suppress(RecursionError, OSError):
             shutil.rmtree(folder, ignore_errors=True)

@@ -259,7 +259,7 @@ class Executor(Protocol):
         """Results in the order in which tasks end. Tasks are taken from the iterable as places free up."""
 
     def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Event]]:
-        """The same, with each event as it comes.
+        """Yield results and events as they come.
 
         A task whose job forks is a fork parent: the executor gives it and its forks the tokens by which
         they share its places with the other tasks. A task that is ``alone`` has nothing beside it.

@@ -324,7 +324,7 @@ class Workers:
                 yield from self._finish(worker)
 
     def _patience(self) -> float | None:
-        """Seconds until something is to be looked at, whatever happens; None if nothing is."""
+        """Seconds until the next check that is due without an event; None if there is none."""
         if any(worker.has_ended for worker in self._workers):
             return 0.0  # a fork server may have told so while it was asked for something else
         until = min((worker.deadline.until for worker in self._workers), default=None)
@@ -395,7 +395,7 @@ class _Worker:
         return self.deadline.is_over(self.process.pid)
 
     def expire(self) -> None:
-        """Its time is up: end the process group."""
+        """End the process group, whose time is up."""
         deadline = self.deadline
         self.result.hindered, self.result.is_starved = deadline.hindered, deadline.is_starved
         self.result.overdue = deadline.overdue(self.result.running)

@@ -144,7 +144,7 @@ def connect_to_read(path: Path) -> sqlite3.Connection:
 
 
 def _generation(path: Path, log: Path) -> tuple[tuple[int, int], bytes]:
-    """As long as it is the same, all that is written into the file is in the log as well: copies fit."""
+    """The log's generation: while it is unchanged, copies of the log match the file."""
     found = path.lstat()
     return (found.st_dev, found.st_ino), read_file(log, _HEAD) if log.exists() else b""
 
@@ -163,7 +163,7 @@ def stamps(path: Path) -> list[tuple[int, int, int, int] | None]:
 
 
 def write_anew(copy: sqlite3.Connection, path: Path) -> None:
-    """Make a file of all that is in a database, and put it in the place of whatever is there."""
+    """Write all of a database to a file, replacing whatever is there."""
     new = path.with_name(f"{path.name}.new")
     clear(new)
     try:

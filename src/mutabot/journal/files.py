@@ -52,7 +52,7 @@ BESIDE = ("", "-wal", "-shm", "-journal")
 
 
 def clear(path: Path) -> None:
-    """Remove what lies there, whatever it is; of a link the link alone."""
+    """Remove a file, folder or link; not what a link leads to."""
     if path.is_dir() and not path.is_symlink():
         shutil.rmtree(path)
     else:

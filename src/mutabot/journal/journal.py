@@ -130,7 +130,7 @@ class Journal(JournalReader):
 
     @classmethod
     def keep_original(cls, path: Path, kept: KeptBaseline) -> None:
-        """Keep runs of the original for campaigns to come, and change nothing else that is there."""
+        """Keep runs of the original for later campaigns, and leave the rest of the journal unchanged."""
         with cls.amend(path) as journal:
             if journal._is_new:
                 journal.set_meta(NONE_YET_KEY, True)
@@ -208,7 +208,7 @@ class Journal(JournalReader):
         self._put("control", control.control, _dump(control))
 
     def set_original(self, kept: KeptBaseline) -> None:
-        """Write down runs of the original in the place of those that are there, whole or not at all."""
+        """Replace the stored runs of the original, in one transaction."""
         with self._transaction():
             self._write("DELETE FROM original")
             self._put("original", "", _dump(replace(kept, runs=())), b"")

@@ -49,7 +49,7 @@ class JournalReader:
 
     @staticmethod
     def open(path: Path, *, of_campaign: bool = True) -> JournalReader:
-        """Open an existing journal, as it is now. It may be written meanwhile.
+        """Open the current state of an existing journal, which may be written meanwhile.
 
         ``of_campaign``: whether there must be more in it than a baseline.
         """
@@ -152,7 +152,7 @@ class JournalReader:
         return self._all("outcome", Outcome, f"WHERE rowid IN ({LAST}) ORDER BY rowid")
 
     def rounds_known(self) -> dict[str, int]:
-        """In how many rounds each mutant has an outcome; those without any are missing."""
+        """Count the rounds in which each mutant has an outcome; mutants without any are missing."""
         return dict(self._rows("SELECT mutant, count(DISTINCT round) FROM outcome GROUP BY mutant"))
 
     def reused(self) -> set[tuple[str, int]]:
@@ -170,7 +170,7 @@ class JournalReader:
         return self.kept() | self._kept_in("outcome", f"rowid IN ({LAST})")
 
     def row(self, mutant: str, round: int) -> Kept | None:
-        """One of those that were ``found``, with its data; None if it holds what no outcome can."""
+        """Return one of the rows ``found``, with its data; None for an invalid row."""
         for table in ("outcome", "kept"):
             rows = self._rows(
                 f"SELECT verdict, data, key FROM {table} WHERE mutant = ? AND round = ? AND key != '' "

@@ -93,7 +93,7 @@ class Recordings:
 
     @classmethod
     def to_read(cls, journal: Path, *, copied: bool = False) -> Recordings | None:
-        """Those of this journal; None if there are none. ``copied``: as they are now, whatever comes."""
+        """Open the recordings of a journal to read; None if there are none. ``copied``: a copy of them."""
         path = recordings_path(journal)
         if not os.path.lexists(path):
             return None

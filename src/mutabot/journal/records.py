@@ -256,7 +256,7 @@ class Drawing:
     strata: tuple[Stratum, ...]
 
     def stratum(self, family: str, role: str) -> Stratum | None:
-        """That of a family in a role."""
+        """The stratum of a family in a role."""
         return next((one for one in self.strata if (one.family, one.role) == (family, role)), None)
 
 
@@ -382,7 +382,7 @@ class Flaky:
 
 
 def run_short(outcomes: Iterable[Outcome], seed: int) -> list[Outcome]:
-    """Those that were found without some tests, or were before the whole suite was asked, in random order.
+    """Outcomes found without some tests, also if confirmed by the whole suite since, in random order.
 
     The order depends on the seed and each outcome's mutant and round only, so the first of them are a random
     sample, whatever becomes of the others.

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @cache
 def front_ends() -> tuple[FrontEnd, ...]:
-    """All of them; Python is the last, since the frames of an interpreter are Python's as well.
+    """All front ends; Python is last, since an interpreter's frames are Python's as well.
 
     Raises ExtensionError for one of a package that cannot be loaded.
     """
@@ -25,7 +25,7 @@ def front_ends() -> tuple[FrontEnd, ...]:
 
 
 def front_end_of(file: str) -> FrontEnd:
-    """That of a file's language, by how the file ends; files of no known language are taken for Python."""
+    """The front end for a file, by its suffix; Python's for unknown suffixes."""
     name = file.lower()
     return next((one for one in front_ends() if name.endswith(one.suffixes)), front_ends()[-1])
 

@@ -38,7 +38,7 @@ def at_test(test: str) -> Key:
 
 
 def of_kind(keys: Iterable[Key], kind: str) -> list[Key]:
-    """Those of the keys that are of this kind."""
+    """Return the keys of this kind."""
     return [key for key in keys if key[0] == kind]
 
 
@@ -96,14 +96,14 @@ class Activation:
 
     @classmethod
     def of_call(cls, place: Place) -> Activation:
-        """Of a mutant of the calls at a place."""
+        """The activation of a mutant of the calls at a place."""
         key = cls.at_call(place.site.span, place.operation, place.pattern)
         own = cls(CALL_FAULT, keys=(key,), awaits=cls.AT_ONCE)
         return cls(CALL_FAULT, keys=(key,), awaits=cls.AT_ONCE, identity=own, fatal=own)
 
     @classmethod
     def of_text(cls, place: int, index: int) -> Activation:
-        """Of an alternative in the program text, by the number of its place and its index there."""
+        """The activation of an alternative in the program text, by its place's number and its index there."""
         own, identity, fatal = (
             cls(TEXT_FAULT, (place, one), (at_text(place, one),), cls.AT_ONCE)
             for one in (index, IDENTITY, FATAL)

@@ -47,7 +47,7 @@ def to_data(value: Any) -> Any:
 
 
 def shallow(value: Any) -> dict[str, Any]:
-    """The fields of a dataclass that are not None, as they are."""
+    """The fields of a dataclass that are not None, with their values unchanged."""
     kind: Any = type(value)
     names = _names(kind) or ()
     return {name: item for name in names if (item := getattr(value, name)) is not None}
@@ -181,7 +181,7 @@ _SURROGATE = "\\ud"
 
 
 def printable(text: str) -> str:
-    """The text with ``\\udcff`` in the place of what is no character; any other text as it is."""
+    """Write what is no character as ``\\udcff``; return any other text unchanged."""
     try:
         text.encode()
     except UnicodeEncodeError:

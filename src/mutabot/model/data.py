@@ -87,7 +87,7 @@ def _data_of(value: Any, depth: int) -> Any:
 
 
 def _items(value: Any, base: Any, depth: int) -> Any:
-    """The items of a list or tuple; the very object where they are all as they are."""
+    """Convert the items of a list or tuple; return the same object if none changes."""
     given, found = list(base.__iter__(value)), []
     for item in given if depth > 0 else (UNKNOWN,):
         found.append(_data_of(item, depth - 1))
@@ -150,7 +150,7 @@ def _made(make: Callable[[Any], Any], value: Any, given: Any) -> Any:
 
 
 def fields_of(value: Any) -> dict[str, Any] | None:
-    """The fields of a dataclass or named tuple as they are stored; None for anything else."""
+    """The stored fields of a dataclass or named tuple; None for anything else."""
     kind: Any = type(value)
     if issubclass(kind, tuple):
         names = getattr(kind, "_fields", None)

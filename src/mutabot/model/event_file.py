@@ -58,7 +58,7 @@ def seal(text: bytes, number: int, name: str, key: str) -> bytes:
 
 
 class EventReader:
-    """Read the events of one process, as far as they have been written.
+    """Read the events that one process has written so far.
 
     Args:
         path: the file.

@@ -342,7 +342,7 @@ class ForkEnded(Event):
 
 @frozen
 class Unforked(Event):
-    """It was not safe to fork at the first hit, in this test: these mutants need a process of their own.
+    """These mutants need a process of their own: it was not safe to fork at the first hit in this test.
 
     The test is empty before any.
     """

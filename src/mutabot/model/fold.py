@@ -1,4 +1,4 @@
-"""From the events of several processes to the record of a test.
+"""Combine the events of several processes into the record of a test.
 
 The same functions serve the test process, which must know whether a test decides about its mutant, and the
 controller, if the test process did not get that far.
@@ -297,7 +297,7 @@ def _with_deeds(end: events.TestEnd, records: Sequence[ChildRecord]) -> events.T
 
 
 def _with_ends(end: events.TestEnd, records: Sequence[ChildRecord], known: Known) -> events.TestEnd:
-    """What became of the processes, as far as it decides about the test."""
+    """Add what the ends of the processes decide about the test."""
     raised = [one.raised for one in records if one.raised is not None]
     failure = end.failure or next((one.failure for one in raised if one.failure is not None), None)
     exceeded = next((one.exceeded for one in records if one.exceeded is not None), None)

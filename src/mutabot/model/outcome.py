@@ -223,7 +223,7 @@ class Compared:
 
     @classmethod
     def together(cls, parts: Iterable[Compared]) -> Compared:
-        """Of several tests."""
+        """Add up what was compared in several tests."""
         parts = list(parts)
         return cls(
             sum(part.calls for part in parts),
@@ -345,7 +345,7 @@ class Outcome:
 
     @property
     def told(self) -> Diverged | None:
-        """The test that says most about it: reports tell its story; None if nothing recorded differs."""
+        """The test that says most about it, whose story reports show; None if no recording differs."""
         return max(self.diverged, key=lambda one: one.rank, default=None)
 
     @property

@@ -74,7 +74,7 @@ _PER_SECOND = 0.1
 
 
 def own_ladder(quantity: Quantity) -> Magnitudes | None:
-    """Of faults in the quantity's own measure; None where neither the vocabulary nor its kind says."""
+    """The magnitudes of faults in the quantity's own measure; None if none are defined for it."""
     # orientations as a whole are angles; plain numbers have no measure
     unit = "rad" if quantity.is_whole else quantity.unit
     measure = dimension_of(unit) if unit is not None else None
@@ -87,7 +87,7 @@ def own_ladder(quantity: Quantity) -> Magnitudes | None:
 
 
 def ladder_in(quantity: Quantity | None, measure: Dimension) -> Magnitudes:
-    """Of faults measured in time, or in a share of the value."""
+    """The magnitudes of faults measured in time, or as a share of the value."""
     told = _told(quantity) if quantity is not None else None
     if told is not None and told.unit is not None and dimension_of(told.unit) is measure:
         return told
@@ -95,7 +95,7 @@ def ladder_in(quantity: Quantity | None, measure: Dimension) -> Magnitudes:
 
 
 def per_second(quantity: Quantity) -> Magnitudes | None:
-    """Of faults that grow with time, by the second."""
+    """The magnitudes of faults that grow with time, per second."""
     own = own_ladder(quantity)
     if own is None:
         return None

@@ -65,7 +65,7 @@ _START = re.compile(r"^(#+|[-+=]+)(?=\s|$)|^(\d+)([.)])(?=\s|$)")
 
 
 def escaped(text: str) -> str:
-    """A text as one line of Markdown that shows it as it is, wherever it stands."""
+    """Return a text as one line of Markdown that shows it unchanged, in any place."""
     line = one_line(text).replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
     line = _SPECIAL.sub(r"\\\1", line)
     # no link is made of an address that a program wrote

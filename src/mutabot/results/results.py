@@ -65,7 +65,7 @@ class MutantResult:
 
     @property
     def survived(self) -> list[Outcome]:
-        """Those in which every test that reaches it passed."""
+        """The outcomes in which every test that reaches it passed."""
         return [one for one in self.outcomes if one.verdict is Verdict.SURVIVED]
 
     @property
@@ -265,7 +265,7 @@ class Results:
         return self.sources.get(file)
 
     def reached_by(self, mutant: Mutant) -> tuple[str, ...]:
-        """Node ids of the tests that reach a mutant in any round, as far as the journal says."""
+        """Node ids of the tests that reach a mutant in any round, according to the journal."""
         return self.reaching.at(mutant.site.id)
 
     @property
@@ -337,7 +337,7 @@ class Results:
 
 
 def killing_tests(outcome: Outcome) -> list[tuple[str, By | None]]:
-    """The tests that noticed a mutant, as far as they are known, and by what."""
+    """The known tests that noticed a mutant, and what noticed it."""
     if not outcome.verdict.is_killed:
         return []
     first = [(outcome.test, outcome.by)] if outcome.test is not None else []
@@ -588,7 +588,7 @@ class Encoder:
 
 @cache
 def _words(line: str) -> tuple[tuple[str, tuple[str, ...], str], ...]:
-    """Of each word its key, its path and what is made of the value there."""
+    """Parse a line of facts: for each word the key, the path and the conversion."""
     found: list[tuple[str, tuple[str, ...], str]] = []
     for word in line.split():
         if word.startswith("*"):

@@ -73,7 +73,7 @@ def _last_line(text: str) -> str:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_load_initial_conftests(early_config: Any) -> None:
-    """Before any of the user's code is imported."""
+    """Start to observe, before any of the user's code is imported."""
     folder = os.environ.pop(VARIABLE, None)
     if folder is None:
         return

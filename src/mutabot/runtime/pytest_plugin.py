@@ -11,7 +11,7 @@ import pytest
 
 
 def _import_us_unrewritten() -> None:
-    """From now on pytest does not rewrite modules of mutabot that are imported.
+    """Keep pytest from rewriting mutabot's own modules when they are imported.
 
     It would rewrite the asserts of everything in a plugin's distribution, and parse each module anew in
     every process, as none may write bytecode beside the sources.
@@ -48,7 +48,7 @@ _plain_round: PlainRound | None = None
 
 
 def pytest_addoption(parser: pytest.Parser, pluginmanager: pytest.PytestPluginManager) -> None:
-    """Before pytest loads other plug-ins: if there is a job, keep out those that it cannot do with."""
+    """Block plug-ins that a job cannot run with, before pytest loads them."""
     if JOB_VARIABLE not in os.environ:
         return
     if pluginmanager.is_blocked("cacheprovider"):
@@ -61,7 +61,7 @@ def pytest_addoption(parser: pytest.Parser, pluginmanager: pytest.PytestPluginMa
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)
 def pytest_load_initial_conftests(early_config: pytest.Config) -> Generator[None, Any, Any]:
-    """Before any of the user's code is imported: wake up if there is a job."""
+    """Prepare the job, if there is one, before any of the user's code is imported."""
     global _hooks, _plain_round  # noqa: PLW0603  # pytest knows this module, not an object of ours
     if JOB_VARIABLE in os.environ and _hooks is None:
         # tests that start pytest themselves must not find the job again
@@ -231,7 +231,7 @@ class PlainRound:
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Generator[None, Any, Any]:
-        """One test, its fixtures included."""
+        """Run one test with its fixtures."""
         seeds.seed_all(self.seed_of(node_id(item)))
         return (yield)
 

@@ -27,7 +27,7 @@ def seed_all(seed: int) -> None:
 
 @contextmanager
 def seeded_apart(seed: int) -> Iterator[None]:
-    """Seed for the time of a block, then go on with the generators as they were before.
+    """Seed the generators for a block, and restore their states afterwards.
 
     Fixtures shared by several tests draw from their own seed: what they draw must not depend on which
     test happens to need them first.

@@ -1,4 +1,4 @@
-"""One session inside: the job at hand, what stands in the program for it, and its tests in turn."""
+"""A session in the process of the tests: its job, what is hooked into the program, and its tests."""
 
 from __future__ import annotations
 
@@ -152,7 +152,7 @@ class Session:
         return mutants + ([self.job.mutant] if self.job.mutant is not None else [])
 
     def _see_calls(self) -> None:
-        """See calls where they are written, of whatever stands in the place of an operation."""
+        """Intercept calls at their sites, of anything that takes the place of an operation."""
         called = [one for one in self._adapters if one.operation.kind in (None, "methods")]
         self.standing = Standing(called, self.callables, self.locator, self._sees_itself)
         self._tell_standing()
@@ -269,7 +269,7 @@ class Session:
             self.fork_parent.reach(*(at_text(place, index) for index in indexes))
 
     def become(self, mutant: Mutant, activation: Activation) -> None:
-        """In a process that was just forked: be this mutant."""
+        """Become this mutant, in a process that was just forked."""
         self.fork_parent, self.is_fork = None, True
         if self.meter is not None:
             self.meter.go_on_in_copy()

@@ -133,7 +133,7 @@ class SessionHooks:
             self.session.grow(ForkParent(job.forking, tests, pipe, self._files, *more))
 
     def _become(self, mutant: Mutant, folder: str) -> None:
-        """In a process that was just forked: go on as this mutant."""
+        """Continue as this mutant, in a process that was just forked."""
         assert self.session.fork_parent is not None
         self.tests.start_clocks(is_new=True)
         self.tests.left_out = self.job.left_out(mutant.id)
@@ -236,7 +236,7 @@ class SessionHooks:
         return result
 
     def _take_on(self, session: pytest.Session, home: str, descriptor: int) -> None:
-        """In a copy of a server: become the session of a job."""
+        """Become the session of a job, in a copy of a fork server."""
         self._server = None
         job = read_job(home)
         self._make_private(job, home)
@@ -250,7 +250,7 @@ class SessionHooks:
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Item, nextitem: pytest.Item | None) -> bool | None:
-        """In place of running a test that is left out: take down what ends with it."""
+        """Tear down fixtures that end with a test that is left out, instead of running it."""
         if node_id(item) not in self.tests.left_out:
             return None
         item.session._setupstate.teardown_exact(nextitem)

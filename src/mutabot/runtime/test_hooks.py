@@ -165,7 +165,7 @@ class TestHooks:
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Generator[None, Any, Any]:
-        """One test, its fixtures included."""
+        """Run one test with its fixtures."""
         session, test = self.session, node_id(item)
         self.units.start_test()
         if self.fork is not None:
@@ -237,7 +237,7 @@ class TestHooks:
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_teardown(self) -> Generator[None, Any, Any]:
-        """Before fixtures take the world down: take the probes."""
+        """Read the probes before fixtures tear the world down."""
         self.units.end_call()
         self._reading = self.session.take_probes()
         return (yield)

@@ -134,7 +134,7 @@ class LadderRound:
 
     @classmethod
     def of(cls, number: int, sizes: Sequence[float], outcomes: Mapping[float, Outcome]) -> LadderRound:
-        """From the planned magnitudes, rising, and the outcomes of those that were run."""
+        """Make it of the planned magnitudes, rising, and the outcomes of those that were run."""
         bracket = bracket_of({size: seen(one) for size, one in outcomes.items()})
         if any(one.verdict is Verdict.NOT_COVERED for one in outcomes.values()):
             bracket = Bracket(low=sizes[-1])  # what no test reaches, none reaches at any magnitude
@@ -277,12 +277,12 @@ class Ladder:
 
     @property
     def half_from(self) -> float:
-        """From here on at least half of the rounds notice it; infinite if they do not."""
+        """The magnitude from which at least half of the rounds notice it; infinite if there is none."""
         return self.highs[math.ceil(len(self.highs) / 2) - 1]
 
     @property
     def all_from(self) -> float:
-        """From here on all rounds notice it; infinite if they do not."""
+        """The magnitude from which all rounds notice it; infinite if there is none."""
         return self.highs[-1]
 
     @property
@@ -292,7 +292,7 @@ class Ladder:
 
     @property
     def share_shown(self) -> float | None:
-        """Of further rounds at least this share notices it from ``all_from`` on; None if there is none."""
+        """The least share of further rounds that notice it from ``all_from`` on; None if there is none."""
         return share_noticed(len(self.counted)) if math.isfinite(self.all_from) else None
 
     @property

@@ -84,7 +84,7 @@ class LadderSearch:
     def _guard(
         self, round: int, row: Mapping[LadderStep, MagnitudeResult], left: set[LadderStep]
     ) -> set[LadderStep]:
-        """One magnitude more, the first time that nothing else is left to ask."""
+        """Ask for one more magnitude, the first time that no other is left."""
         if round in self._guards or not left:
             return set()
         self._guards.add(round)

@@ -71,7 +71,7 @@ def _apart(ladder: Ladder) -> str:
 
 
 def _noticed(ladder: Ladder) -> Iterator[tuple[int, str]]:
-    """In how many rounds it is noticed from where: the first of them, half of them, all."""
+    """Describe from which magnitude the first, half and all of the rounds notice it."""
     highs = [high for high in ladder.highs if math.isfinite(high)]
     wanted = {highs[0], highs[-1], ladder.half_from} if highs else set()
     for high in sorted(one for one in wanted if math.isfinite(one)):
@@ -105,7 +105,7 @@ def _smallest(ladder: Ladder, high: float) -> str:
 
 
 def _all(ladder: Ladder) -> str:
-    """Of how many rounds something holds that holds of all."""
+    """Describe how many rounds are meant, for what holds in all of them."""
     total = len(ladder.counted)
     return f" (all {total} rounds)" if total > 1 else " (1 round)"
 

@@ -211,7 +211,7 @@ def _function(raw: Any) -> Any:
 
 
 def _written(annotation: Any) -> str:
-    """An annotation as it is written."""
+    """Return an annotation as written."""
     if annotation is inspect.Parameter.empty:
         return ""
     if isinstance(annotation, str):

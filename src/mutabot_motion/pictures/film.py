@@ -114,7 +114,7 @@ class Film:
         return max(self.times, default=0.0)
 
     def pictures(self) -> Iterator[Picture]:
-        """All of them, one after the other."""
+        """Yield all pictures in order."""
         before = b""
         for (at, height, width, size), file in self._heads():
             before = _differing(zlib.decompress(file.read(size)), before)

@@ -50,7 +50,7 @@ class _Actions:
         self.is_over = False
 
     def end(self) -> None:
-        """From now on nothing is hooked any more."""
+        """Remove all hooks."""
         self.is_over = True
 
     def make(

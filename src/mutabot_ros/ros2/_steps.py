@@ -28,7 +28,7 @@ class FutureAnswer:
         return self.future.result()
 
     def then(self, go_on: Callable[[Any], None]) -> None:
-        """Go on as soon as it is there."""
+        """Continue when the future is done."""
         future = self.future
         schedule = future._schedule_or_invoke_done_callbacks
 

@@ -49,11 +49,10 @@ class _BinaryOperator(ConventionalOperator):
 
 
 class ArithmeticReplacement(_BinaryOperator):
-    """Replaces ``+ - * / // % **``."""
+    """An arithmetic operator becomes each of the others, or the operation one of its operands."""
 
     name = "AOR"
     rank = 20
-    summary = "An arithmetic operator becomes each of the others, or the operation one of its operands."
     signs: ClassVar = {
         ast.Add: ("add", "+"),
         ast.Sub: ("sub", "-"),
@@ -81,11 +80,10 @@ class ArithmeticReplacement(_BinaryOperator):
 
 
 class LogicalReplacement(_BinaryOperator):
-    """Replaces ``&``, ``|`` and ``^``."""
+    """A bitwise operator becomes each of the others, or the operation one of its operands."""
 
     name = "LOR"
     rank = 60
-    summary = "A bitwise operator becomes each of the others, or the operation one of its operands."
     signs: ClassVar = {ast.BitAnd: ("and", "&"), ast.BitOr: ("or", "|"), ast.BitXor: ("xor", "^")}
     needs = "bits"
     examples: ClassVar[tuple[TextExample, ...]] = (
@@ -107,11 +105,10 @@ class LogicalReplacement(_BinaryOperator):
 
 
 class ShiftReplacement(_BinaryOperator):
-    """Replaces ``<<`` and ``>>``."""
+    """A shift goes the other way, or is left out."""
 
     name = "SOR"
     rank = 50
-    summary = "A shift goes the other way, or is left out."
     signs: ClassVar = {ast.LShift: ("left", "<<"), ast.RShift: ("right", ">>")}
     needs = "integer"
     keeps_right = False
@@ -123,11 +120,10 @@ class ShiftReplacement(_BinaryOperator):
 
 
 class AssignmentReplacement(ConventionalOperator):
-    """Replaces ``+=`` and its like."""
+    """An augmented assignment becomes another one of its kind, or a plain assignment."""
 
     name = "ASR"
     rank = 70
-    summary = "An augmented assignment becomes another one of its kind, or a plain assignment."
     examples: ClassVar[tuple[TextExample, ...]] = (
         TextExample("x += y\n", each("x {}\n", "-= y, *= y, /= y, //= y, %= y, **= y, = y")),
         TextExample("x <<= 1\n", ("x >>= 1\n", "x = 1\n"), kinds={"x <<= 1": "integer"}),

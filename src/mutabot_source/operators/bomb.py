@@ -24,11 +24,10 @@ _STATEMENTS = (
 
 
 class Bomb(ConventionalOperator):
-    """Replaces a statement by one that raises."""
+    """A statement raises as soon as it is reached: does any test get there, and would it notice?"""
 
     name = "BSR"
     rank = 110
-    summary = "A statement raises as soon as it is reached: does any test get there, and would it notice?"
     examples: ClassVar[tuple[TextExample, ...]] = (
         TextExample("move(x)\n", ("Bomb()\n",)),
         TextExample("while x:\n    move(x)\n", ("Bomb()\n", "while x:\n    Bomb()\n")),

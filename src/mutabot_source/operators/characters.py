@@ -49,11 +49,10 @@ class _Characters(ConventionalOperator):
 
 
 class DropCharacter(_Characters):
-    """Leaves a character out."""
+    """A character of a text argument is left out."""
 
     name = "drop-character"
     rank = 120
-    summary = "A character of a text argument is left out."
     examples: ClassVar[tuple[TextExample, ...]] = (
         TextExample("send('up')\n", ("send('p')\n", "send('u')\n")),
         TextExample("send(up)\n", note="only texts that stand in the call"),
@@ -66,11 +65,10 @@ class DropCharacter(_Characters):
 
 
 class DoubleCharacter(_Characters):
-    """Writes a character twice."""
+    """A character of a text argument is there twice."""
 
     name = "double-character"
     rank = 130
-    summary = "A character of a text argument is there twice."
     examples: ClassVar[tuple[TextExample, ...]] = (
         TextExample("send('up')\n", ("send('uup')\n", "send('upp')\n")),
         TextExample("send(f'up/{x}')\n", note="not in formatted texts"),
@@ -82,11 +80,10 @@ class DoubleCharacter(_Characters):
 
 
 class ReplaceCharacter(_Characters):
-    """Writes another character of the same sort."""
+    """A character of a text argument is another one: a digit for a digit, a letter for a letter."""
 
     name = "replace-character"
     rank = 140
-    summary = "A character of a text argument is another one: a digit for a digit, a letter for a letter."
     examples: ClassVar[tuple[TextExample, ...]] = (
         TextExample("send('up5')\n", ("send('np5')\n", "send('ul5')\n", "send('up8')\n")),
         TextExample("send('')\n", note="an empty text has no characters"),
@@ -100,11 +97,10 @@ class ReplaceCharacter(_Characters):
 
 
 class SwapCharacters(_Characters):
-    """Swaps two neighbours."""
+    """Two neighbouring characters of a text argument change places."""
 
     name = "swap-characters"
     rank = 150
-    summary = "Two neighbouring characters of a text argument change places."
     examples: ClassVar[tuple[TextExample, ...]] = (
         TextExample("send('up')\n", ("send('pu')\n",)),
         TextExample("send('aa')\n", note="equal neighbours"),

@@ -19,11 +19,10 @@ from mutabot_source.operator import (
 
 
 class ConditionalReplacement(ConventionalOperator):
-    """Replaces ``and`` and ``or``; drops operands."""
+    """A condition's and becomes or, xor, one of its operands, always true, or always false."""
 
     name = "COR"
     rank = 40
-    summary = "A condition's and becomes or, xor, one of its operands, always true, or always false."
     examples: ClassVar[tuple[TextExample, ...]] = (
         TextExample("z = x and y\n", each("z = {}\n", "x or y, (not x) != (not y), x, y, False, True")),
         TextExample(
@@ -86,11 +85,10 @@ _SIGNS = {**_ORDERS, **_IDENTITIES, **_MEMBERSHIPS}
 
 
 class RelationalReplacement(ConventionalOperator):
-    """Replaces each operator of a comparison, and the comparison by a truth value."""
+    """A comparison becomes each of the others, or always true, or always false."""
 
     name = "ROR"
     rank = 30
-    summary = "A comparison becomes each of the others, or always true, or always false."
     examples: ClassVar[tuple[TextExample, ...]] = (
         TextExample("z = x < y\n", each("z = {}\n", "x <= y, x > y, x >= y, x == y, x != y, False, True")),
         TextExample(

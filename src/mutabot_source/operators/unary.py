@@ -18,11 +18,10 @@ from mutabot_source.operator import (
 
 
 class Absolute(ConventionalOperator):
-    """abs, negAbs and failOnZero around arithmetic values."""
+    """An arithmetic value becomes its absolute value, the negative of that, or raises if it is zero."""
 
     name = "ABS"
     rank = 10
-    summary = "An arithmetic value becomes its absolute value, the negative of that, or raises if it is zero."
     examples: ClassVar[tuple[TextExample, ...]] = (
         TextExample("y = x\n", ("y = abs(x)\n", "y = -abs(x)\n", "y = failOnZero(x)\n")),
         TextExample(
@@ -48,11 +47,10 @@ _CONDITIONS = ast.Compare | ast.BoolOp
 
 
 class UnaryInsertion(ConventionalOperator):
-    """Puts ``-``, ``~`` or ``not`` in front of a value of the right type."""
+    """A value gets a minus, a bitwise or a logical not in front, whichever its type takes."""
 
     name = "UOI"
     rank = 80
-    summary = "A value gets a minus, a bitwise or a logical not in front, whichever its type takes."
     examples: ClassVar[tuple[TextExample, ...]] = (
         TextExample("y = 0.2\n", ("y = -0.2\n",)),
         TextExample("y = x\n", ("y = -x\n",)),
@@ -87,11 +85,10 @@ class UnaryInsertion(ConventionalOperator):
 
 
 class UnaryDeletion(ConventionalOperator):
-    """Drops ``-``, ``+``, ``~`` and ``not``."""
+    """A unary minus, plus, bitwise or logical not is left out."""
 
     name = "UOD"
     rank = 90
-    summary = "A unary minus, plus, bitwise or logical not is left out."
     examples: ClassVar[tuple[TextExample, ...]] = (
         TextExample("y = -0.2\n", ("y = 0.2\n",)),
         TextExample("if not held: ...\n", ("if held: ...\n",)),

@@ -14,12 +14,11 @@ from mutabot_source.operator import ConventionalOperator, Draft, Surroundings, S
 
 
 class VariableReplacement(ConventionalOperator):
-    """Replaces a variable by each other one of the same type that is in scope."""
+    """A variable becomes another one in scope that had a value of the same type."""
 
     name = "SVR"
     rank = 100
     asks_variables = True
-    summary = "A variable becomes another one in scope that had a value of the same type."
     examples: ClassVar[tuple[TextExample, ...]] = (
         TextExample("move(x)\n", ("move(y)\n", "move(z)\n"), variables={"x": ("y", "z")}),
         TextExample(

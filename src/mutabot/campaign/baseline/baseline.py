@@ -50,7 +50,7 @@ class PlantedFaults:
 
     @classmethod
     def of(cls, planned: Mapping[str, Planned]) -> PlantedFaults:
-        """Of what each provider made of a baseline."""
+        """Index what each provider made of a baseline."""
         made = cls()
         for provider, found in planned.items():
             made.texts += found.texts
@@ -233,7 +233,7 @@ class Baseline(Original):
                 self.reach(round, place, None if place in one.early else frozenset(tests))
 
     def reach(self, round: int, place: Place, tests: Collection[str] | None) -> None:
-        """These tests reach a place in a round; None: what stands there is there for all tests."""
+        """Note that these tests reach a place in a round; None for a place that affects all tests."""
         here = [test for test in self.tests[round] if tests is None or test in tests]
         aside = [test for where, test in self.unstable if where == round and (tests is None or test in tests)]
         self.reaching[round, place] = sorted(here, key=lambda test: cost(self.ends[round, test]))

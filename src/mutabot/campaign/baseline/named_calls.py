@@ -132,7 +132,7 @@ def _calls(nodes: Sequence[ast.AST], scope: _CallScope) -> Iterator[tuple[ast.Ca
 
 
 class _Origins:
-    """Where the names of a file come from, as far as its text says."""
+    """Find where the names of a file come from, by its text alone."""
 
     def __init__(self, tree: ast.Module, file: str) -> None:
         self.file = file

@@ -145,7 +145,7 @@ class _Suite:
         self.progress.note(str(remark))
 
     def _note_unread(self, result: Result) -> None:
-        """Of single tests: what no result had in them is no mistake, others may well read it."""
+        """Turn problems of results that were not read into remarks, where only single tests are run."""
         unread = [one for one in result.problems if one.key.startswith("result.")]
         result.problems = [one for one in result.problems if one not in unread]
         for one in unread:

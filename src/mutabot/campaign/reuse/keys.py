@@ -1,4 +1,4 @@
-"""What an outcome depends on, by content: what is as it was need not be run again.
+"""What an outcome depends on, by content: without a change it need not be run again.
 
 An outcome has a *key* of five digests: of what all outcomes share (settings, versions, files that are no
 program text), of what those at its place share (tests, entries of the vocabulary), of the mutant's own, of
@@ -285,7 +285,7 @@ class Dependencies:
         return found
 
     def renewed(self, key: str, was: Was, mutant: Mutant, round: int) -> str:
-        """The key of an outcome that holds as it is now, with the lines that its units have now."""
+        """Return the current key of an outcome that still holds, with the current lines of its units."""
         place = self.place(mutant, round, *self.asked(was))
         executed: dict[str, tuple[int, ...]] = dict.fromkeys(was.notes, ())
         for name, units in _names(was).items():
@@ -494,7 +494,7 @@ def changes(old: Parts, new: Parts) -> list[str]:
 
 
 def everything_of(request: Request, files: Parts, installed: Parts) -> Parts:
-    """All that runs of the tests depend on, whatever mutant they are.
+    """Everything that runs of the tests depend on, for any mutant.
 
     Args:
         files: the files that count, with their digests.

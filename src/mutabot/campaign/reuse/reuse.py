@@ -57,7 +57,7 @@ class Earlier:
         return in_short(names) if names else None
 
     def row(self, pair: RunId, mutant: Mutant) -> Kept | None:
-        """An outcome with its lines as they are now; None if its source line no longer exists."""
+        """Return an outcome with its current lines; None if its source line no longer exists."""
         row = self._journal.row(*pair)
         if row is None:
             return None

@@ -44,7 +44,7 @@ def _slice_of(path: Path) -> Step | None:
 
 
 def _spread(path: Path, axes: tuple[str, ...]) -> list[Path]:
-    """One path per axis, for a path that ends with a slice.
+    """Return a path per axis, for a path that ends with a slice.
 
     Raises ValueError if it ends with none, or with one that does not have as many elements.
     """

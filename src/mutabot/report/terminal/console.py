@@ -67,7 +67,7 @@ class Breakable(Text):
 
 
 def _pieces(word: str, width: int) -> list[str]:
-    """A long word in parts that fit a width, as far as signs in it allow."""
+    """Split a long word into parts that fit a width, at its punctuation where possible."""
     pieces = [""]
     for part in re.findall(r"[^_./:\-\[\],=]*[_./:\-\[\],=]?", word):
         if len(pieces[-1]) + len(part) > width and pieces[-1]:
@@ -86,7 +86,7 @@ def leave_pipe() -> None:
 
 
 def make_console(file: IO[str] | None = None, *, width: int | None = None, stderr: bool = False) -> Console:
-    """Make a console that prints texts as they are. ``file`` is standard output if None."""
+    """Make a console that prints texts unchanged. ``file`` is standard output if None."""
     return _Console(file=file, width=width, stderr=stderr, markup=False, highlight=False, emoji=False)
 
 

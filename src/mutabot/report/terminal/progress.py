@@ -44,7 +44,7 @@ class Pace:
         self._began = clock()
 
     def advance(self) -> None:
-        """One more is done."""
+        """Count one more step."""
         self.done += 1
 
     @property

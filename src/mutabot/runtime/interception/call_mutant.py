@@ -38,7 +38,7 @@ class CallMutant(ActiveFault):
             self._start()
 
     def start_test(self, test: str, random: Random) -> None:
-        """A test begins, or goes on in this process, which was forked in it."""
+        """Begin a test, or continue it in this process, which was forked in it."""
         if self._active is not None and self._is_early:
             self._active.early = self._active.evidence
         self._is_early = False

@@ -95,7 +95,7 @@ class Recorder:
         return index
 
     def told(self) -> list[RecordedCall]:
-        """Return the calls of the running test with their times, as far as they are recorded."""
+        """Return the recorded calls of the running test with their times."""
         return [
             self.told_of(index, written, read, began, ended)
             for (index, written, read, _), (began, ended) in zip(self.trace[:_TOLD], self.when, strict=False)
@@ -176,7 +176,7 @@ def _can_be_lost(call: Call) -> bool:
 
 
 def _frozen(values: Mapping[str, Any]) -> dict[str, Any]:
-    """The values as they are now: a program may change its lists and arrays later."""
+    """Return copies of the values: a program may change its lists and arrays later."""
     found: dict[str, Any] = {
         name: list(value) if isinstance(value, list) else value for name, value in values.items()
     }

@@ -132,7 +132,7 @@ class PrivateFiles:
         os.utime(file, (after, after))
 
     def enter(self, name: str) -> str:
-        """In a process that was just forked, while its parent waits: share nothing with it any more.
+        """In a process that was just forked, separate it from its parent, which waits.
 
         ``name`` is unlike that of any other fork. Returns the folder of the process. Raises OSError if it
         cannot be kept apart.
@@ -332,7 +332,7 @@ def mount_point(line: bytes) -> str:
 
 @contextmanager
 def _opened(paths: list[str]) -> Iterator[list[int]]:
-    """Descriptors that stand for these folders, whatever is mounted over their names meanwhile."""
+    """Open descriptors of these folders, which stay valid if something is mounted over their names."""
     descriptors: list[int] = []
     try:
         descriptors.extend(os.open(path, os.O_PATH | os.O_CLOEXEC) for path in paths)
@@ -371,7 +371,7 @@ def _written() -> Iterator[tuple[str, int]]:
 
 
 def isolate_files(log: os.stat_result, instead: int | None = None) -> None:
-    """In a process that was just forked: stop reading and writing where its parent does.
+    """In a process that was just forked, give open files and descriptors positions of their own.
 
     An open file has one position for parent and child; the child opens its own. Of a deleted temporary file,
     such as those that pytest captures output in, it makes a copy. What leads to the parent's log leads

@@ -268,7 +268,7 @@ class ForkParent:
                 namespaces.leave_out(monotonic() - began)
 
     def _fork_one(self, mutant: Mutant, began: float) -> namespaces.ForkedPids | None:
-        """Fork; None in the child, which is this mutant then. It goes on at the moment ``began``."""
+        """Fork; None in the child, which becomes this mutant and continues at the time ``began``."""
         slot = self._slots.get(mutant.id, -1)
         self._finished[slot], self._tests[slot] = 0, self._number
         # random registers a hook that seeds anew in every child
@@ -323,7 +323,7 @@ class ForkParent:
         self._copied = self._copied or not self._forking
 
     def note_finished(self, mutant: str) -> None:
-        """In a child: it has gone to the end of the session."""
+        """In a child, note that it has reached the end of the session."""
         self._finished[self._slots[mutant]] = 1
 
     def note_test(self, mutant: str, test: str | None = None) -> None:

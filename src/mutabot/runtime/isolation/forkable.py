@@ -49,7 +49,7 @@ def running_loop() -> Any:
 
 
 def go_on_running(loop: Any) -> None:
-    """In a process that was just forked while this loop ran: it runs here, too."""
+    """Mark this event loop as running, in a process that was forked while it ran."""
     if loop is not None:
         events: Any = sys.modules["asyncio.events"]
         events._set_running_loop(loop)

@@ -108,7 +108,7 @@ class Instances:
         return sum(id(instance) in by_id for by_id in made)
 
     def of(self, name: str) -> list[Any]:
-        """The objects of this class that a probe is read from, as they are now."""
+        """The current objects of this class that a probe is read from."""
         return _alive(self._used.get(name, {})) or self._made_last(name, True) or self._held_by_fixtures(name)
 
     def _made_last(self, name: str, is_of_test: bool) -> list[Any]:

@@ -67,7 +67,7 @@ class Reading:
 
 
 def take(probes: tuple[Probe, ...], instances: Instances) -> Reading:
-    """All probes as they are now. Whatever the user's probe does, the test's outcome stands."""
+    """Read all probes. An error of the user's probe does not change the test's outcome."""
     reading = Reading()
     for probe in probes:
         try:
@@ -194,7 +194,7 @@ def _parts(value: Any, name: str) -> Iterator[tuple[str, Any]]:
 
 
 def _fields_of(value: Any) -> Any:
-    """The fields of a dataclass or named tuple by name; anything else as it is."""
+    """The fields of a dataclass or named tuple by name; any other value unchanged."""
     if hasattr(type(value), "_asdict"):
         return value._asdict()
     if is_dataclass(value) and not isinstance(value, type):

@@ -119,7 +119,7 @@ def _completing(start: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def _with_variables(environment: Any) -> Any:
-    """An environment as a mapping, with these variables; anything else as it is, for ``os`` to refuse."""
+    """Add variables to an environment that is a mapping; return any other value, which ``os`` refuses."""
     if not isinstance(environment, Mapping) or environment is os.environ:
         return environment  # ours has been completed already
     try:
@@ -229,7 +229,7 @@ class Announced:
 
 
 class Now:
-    """In a process below the tests: the number of the running test, in memory that such processes share.
+    """The number of the running test, in memory shared by the processes below the tests.
 
     Args:
         folder: the folder of the campaign's processes.

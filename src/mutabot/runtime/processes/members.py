@@ -80,7 +80,7 @@ class Members:
         return self._texts
 
     def _here(self) -> Iterable[ChildRecord]:
-        """Those that were there during the test."""
+        """Return the processes that existed during the test."""
         present = {id(one) for one in self._present}
         number = self._running.number
         for one in self.children.records.values():

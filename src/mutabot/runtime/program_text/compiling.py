@@ -113,7 +113,7 @@ def _compile(
     source: Any, filename: Any, mode: str, flags: int = 0, dont_inherit: bool = False, optimize: int = -1,
     **more: Any,
 ) -> Any:  # fmt: skip
-    """In place of ``compile``."""
+    """Replacement for ``compile``."""
     if not dont_inherit:
         flags |= sys._getframe(1).f_code.co_flags & _INHERITED
     plainly = partial(_builtin, source, filename, mode, flags, True, optimize, **more)
@@ -216,7 +216,7 @@ def text_of(path: str) -> bytes:
 
 
 def _is_same(source: Any, data: bytes) -> bool:
-    """Whether a text is that of a file, however its lines end and whatever it is written in."""
+    """Whether a text is that of a file, with any line ends and encoding."""
     if source is data or source == data:
         return True
     return _decoded(source) == _decoded(data)

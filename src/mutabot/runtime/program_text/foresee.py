@@ -153,7 +153,7 @@ class Forms:
     alternatives: tuple[ForeseenForm, ...]
 
     def differing(self, indexes: frozenset[int], frame: types.FrameType) -> frozenset[int]:
-        """Of these alternatives, those that would not give what the original gives in a frame, or may not."""
+        """Return the alternatives whose value in a frame differs, or may differ, from the original's."""
         try:
             given = self.original.value(frame)
         except Exception:  # whatever it is: a real evaluation will tell

@@ -82,7 +82,7 @@ class _Instrumenter(ast.NodeTransformer):
         self._lines: list[int] | None = None
 
     def look_near(self, tree: ast.Module) -> None:
-        """From now on look only at statements around the places, if there are few, and all stand there.
+        """Restrict the search to statements around the places, if these are few.
 
         Nodes in f-strings may say wrong lines.
         """

@@ -121,7 +121,7 @@ def hook_pytest_first(step: SourceStep) -> None:
 
 
 def hook_script() -> None:
-    """If the script that this process is about to run is wanted, let it be compiled as modules are.
+    """Compile the script that this process is about to run as modules are, if it is wanted.
 
     To be called before Python looks for the script: while it is still setting itself up.
     """

@@ -89,7 +89,7 @@ class Returns:
         self.entries, self.prepared, self.is_on = [], 0, True
 
     def begin_call(self) -> None:
-        """Its fixtures are set up."""
+        """Note that the test's fixtures are set up."""
         self.prepared = len(self.entries)
 
     def stop(self) -> None:

@@ -57,7 +57,7 @@ class Switch:
     # what instrumented text calls around an alternative, so that one sees whether it changed anything
 
     def was(self, value: Any) -> Any:
-        """The original's value, which the alternative goes on with."""
+        """The original's value, which the alternative uses."""
         self._before = value
         return value
 
@@ -255,7 +255,7 @@ class Alternatives:
         return value
 
     def absolute(self, value: Any) -> Any:
-        """``abs``, whatever the program calls by that name."""
+        """The built-in ``abs``, also if the program has replaced that name."""
         return abs(value)
 
 

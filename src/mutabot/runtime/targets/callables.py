@@ -122,7 +122,7 @@ class Callables:
         return self.found.keys()
 
     def found_elsewhere(self, targets: Iterable[str]) -> None:
-        """Their modules may not even be importable here."""
+        """Forget targets that other processes have found, whose modules may not be importable here."""
         self.pending.difference_update(targets)
 
     def seek(self) -> Iterator[tuple[str, Finding]]:

@@ -166,7 +166,7 @@ class Where:
     stands_in: bool = False
 
     def deliver(self, handler: Handler, message: Any, callback: Callable[[Any], Any]) -> Any:
-        """Call the program's callback with a message, or with whatever the handler makes of it.
+        """Call the program's callback with a message, as the handler has changed it.
 
         Returns what the callback returns: a coroutine if it is a coroutine function. A message that is lost
         calls nothing and returns None; one that is late calls it from ``means.later``.
@@ -360,7 +360,7 @@ class Names(Protocol):
         """What is to stand around a use under a resolved name, in a node; None if nothing is."""
 
     def heard(self, name: str, message: Any) -> None:
-        """A message passed under a resolved name, received or published, as it is in truth.
+        """Report an unchanged message, received or published under a resolved name.
 
         Of an action: its result, or the word by which its goal ended (``model.operation.ENDINGS``).
         """
@@ -378,7 +378,7 @@ class MiddlewareModule(Protocol):
 
 @runtime_checkable
 class TypedMiddleware(MiddlewareModule, Protocol):
-    """One that knows the types of messages as well."""
+    """A middleware that also knows the types of messages."""
 
     def check(self, operation: Operation) -> Iterator[Finding]:
         """What of an operation does not fit the definition of its type, or the type that the program uses."""
@@ -472,7 +472,7 @@ class Messages:
             return found
 
     def heard(self, name: str, message: Any) -> None:
-        """A message passed under a resolved name, as it is in truth; see ``target.Names``."""
+        """Report an unchanged message under a resolved name; see ``target.Names``."""
         if self.on_heard is not None:
             self.on_heard(name, message)
 
