@@ -15,7 +15,7 @@ from itertools import accumulate
 from typing import TYPE_CHECKING
 
 from mutabot.campaign.engines.engine import run_trials
-from mutabot.campaign.request import REPLAY
+from mutabot.config.options import REPLAY
 from mutabot.journal.records import CONFIRMATION, is_wrong, run_short
 from mutabot.thresholds.planned import split_ladders
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Protocol, Self
 
 from mutabot.campaign.project_files import ProjectListing
 from mutabot.config.configuration import Configuration
-from mutabot.config.options import Sample, Shard
+from mutabot.config.options import AUTO, ENGINES, FORK, Sample, Shard
 from mutabot.errors import UsageError, unknown_name_text
 from mutabot.extensions import told_to_processes
 from mutabot.families import USUAL
@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from mutabot.execution.workers import Workers
     from mutabot.model.mutant_end import MutantEnd
 
-AUTO, FORK, REPLAY = "auto", "fork", "replay"
-ENGINES = (FORK, REPLAY)
 #: outcomes over a simulation that are run again over the real middleware, unless ``--verify`` says otherwise
 VERIFIED = 5
 
@@ -121,7 +119,7 @@ class Request:
     jobs: int
     only: tuple[str, ...] = ()
     skip: tuple[str, ...] = ()
-    engine: str = "auto"
+    engine: str = AUTO
     executor: ExecutorChoice | None = None
     fresh: bool = False
     verify: int | None = None

@@ -15,7 +15,7 @@ from mutabot.campaign.baseline.baseline import observation
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.comparison import Observation, compare
 from mutabot.campaign.plan import make_plan
-from mutabot.campaign.request import AUTO, Request
+from mutabot.config.options import AUTO
 from mutabot.errors import MutabotError, UsageError
 from mutabot.execution.task import Result
 from mutabot.extensions import brought
@@ -23,6 +23,7 @@ from mutabot.frozen import frozen
 from mutabot.model.operation import Clock
 
 if TYPE_CHECKING:
+    from mutabot.campaign.request import Request
     from mutabot.config.table import Table
     from mutabot.model import Vocabulary
 

@@ -169,7 +169,7 @@ class CommandContext:
             json: print the results as JSON.
             stream: name of a format of lines, of which each is printed as soon as its mutant is settled;
                 empty for the summary.
-            fail_on: what there must be none of, by names of ``results.gate.FAIL_ON``.
+            fail_on: what there must be none of, by names of ``config.options.FAIL_ON``.
 
         Raises UsageError for an unknown format, typer.Exit, and what the campaign raises.
         """

@@ -10,12 +10,7 @@ import typer
 from typer import Option
 
 from mutabot import __version__
-from mutabot.config.options import JOBS, ROUNDS, SEED, VERIFIED
-
-#: the names of ``campaign.request``, which is not loaded for this, so that `--help` is fast
-ENGINES = ("auto", "fork", "replay")
-#: those of ``results.gate``, likewise
-WANTED_NONE = ("survivors", "untested")
+from mutabot.config.options import AUTO, ENGINES, FAIL_ON, JOBS, MOST_VERIFIED, ROUNDS, SEED
 
 
 def _print_version(wanted: bool) -> None:
@@ -49,7 +44,7 @@ _JOURNAL = "Also reuse valid outcomes from this journal, e.g. one downloaded fro
 _BUDGET = "Stop after this much time (90s, 10m), baseline included; run the most informative mutants first."
 _VERIFY = "Re-run N random outcomes in fresh processes; exit with 4 if one ends differently."
 _MIN_SCORE = "Exit with 1 if a score is below this percentage."
-_ENGINE = f"How mutants are run: {', '.join(ENGINES)}."
+_ENGINE = f"How mutants are run: {', '.join((AUTO, *ENGINES))}."
 Only = Annotated[list[str] | None, Option("--only", metavar="WHICH", help=_ONLY)]
 Skip = Annotated[list[str] | None, Option("--skip", metavar="WHICH", help=_SKIP)]
 Settings = Annotated[list[str] | None, Option("-o", metavar="KEY=VALUE", help=_SETTING)]
@@ -71,19 +66,19 @@ Fresh = Annotated[bool, Option("--fresh", help="Re-run everything, including res
 Since = Annotated[str | None, Option("--since", metavar="REF", help=_SINCE)]
 OtherJournal = Annotated[Path | None, Option("--journal", metavar="PATH", help=_JOURNAL)]
 Budget = Annotated[str | None, Option("--budget", metavar="TIME", help=_BUDGET)]
-Verify = Annotated[int | None, Option("--verify", metavar="N", min=0, max=VERIFIED, help=_VERIFY)]
+Verify = Annotated[int | None, Option("--verify", metavar="N", min=0, max=MOST_VERIFIED, help=_VERIFY)]
 Round = Annotated[int | None, Option("--round", metavar="N", min=1, max=ROUNDS, help="Only this round.")]
 MinScore = Annotated[
     float | None,
     Option("--min-score", metavar="PERCENT", min=0, max=100, callback=_number, help=_MIN_SCORE),
 ]
-_FAIL_ON = f"Exit with 1 if there is any: {', '.join(WANTED_NONE)}. Repeatable."
+_FAIL_ON = f"Exit with 1 if there is any: {', '.join(FAIL_ON)}. Repeatable."
 
 
 def _known_names(values: list[str] | None) -> list[str] | None:
     for value in values or ():
-        if value not in WANTED_NONE:
-            raise typer.BadParameter(f"{value!r} is not one of {', '.join(WANTED_NONE)}")
+        if value not in FAIL_ON:
+            raise typer.BadParameter(f"{value!r} is not one of {', '.join(FAIL_ON)}")
     return values
 
 

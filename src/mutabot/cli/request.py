@@ -11,7 +11,7 @@ from typing import Unpack
 from mutabot.campaign.request import ExecutorChoice, Request
 from mutabot.campaign.simulation import with_simulation
 from mutabot.config.configuration import load_configuration
-from mutabot.config.options import Sample, Shard, seconds_of
+from mutabot.config.options import AUTO, ENGINES, Sample, Shard, seconds_of
 from mutabot.config.vocabulary import load_vocabulary
 from mutabot.errors import UsageError, unknown_name_text
 from mutabot.extensions import brought
@@ -20,7 +20,7 @@ from mutabot.journal.records import RAN_OVER
 from mutabot.model import Moment
 from mutabot.results.results import Results
 
-from .options import ENGINES, Running
+from .options import Running
 
 
 def request_of(
@@ -43,10 +43,10 @@ def request_of(
     """
     if unknown := given.keys() - Running.__annotations__.keys():
         raise TypeError(f"there is no option {', '.join(sorted(unknown))}")
-    engine, seed = given.get("engine", "auto"), given.get("seed")
+    engine, seed = given.get("engine", AUTO), given.get("seed")
     sample, shard, budget = given.get("sample"), given.get("shard"), given.get("budget")
-    if engine not in ENGINES:
-        raise UsageError(unknown_name_text("engine", engine, ENGINES))
+    if engine not in (AUTO, *ENGINES):
+        raise UsageError(unknown_name_text("engine", engine, (AUTO, *ENGINES)))
     size = Sample.parse(sample) if sample is not None else None
     families = families_of(given.get("family"))
     configuration = load_configuration(project, families, given.get("settings") or ())

@@ -14,6 +14,12 @@ from typing import Any
 from mutabot.errors import UsageError, shortened
 from mutabot.frozen import frozen
 
+#: names of the engines, and of the choice between them
+AUTO, FORK, REPLAY = "auto", "fork", "replay"
+ENGINES = (FORK, REPLAY)
+#: what a campaign can be asked to have none of
+FAIL_ON = ("survivors", "untested")
+
 # The greatest numbers that options and settings take: more cannot be meant, and cannot be done.
 #: repetitions of a whole campaign: each has a baseline of its own
 ROUNDS = 10_000
@@ -24,7 +30,7 @@ SEED = 2**53 - 1
 #: runs of the original per round
 BASELINES = 1_000
 #: outcomes to look at again: all that there are
-VERIFIED = 1_000_000_000
+MOST_VERIFIED = 1_000_000_000
 #: seconds, 11 days: what a system can wait for at once is no more than twice of it
 SECONDS = 1_000_000
 #: times the time of the original

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from mutabot.results.results import Results
     from mutabot.thresholds.demands import Demand
 
-#: what a campaign can be asked to have none of, and numbers of mutants that a line gives
-FAIL_ON, _SHOWN = ("survivors", "untested"), 20
+#: numbers of mutants that a line gives
+_SHOWN = 20
 
 
 @frozen
@@ -53,8 +53,8 @@ def decide(
     tests among the tests, and of unstable outcomes among all; ``max_errors`` the greatest share of errors
     among all outcomes: mutants of which nothing is known. Graded mutants have no score, but their errors and
     unstable outcomes count; ``demands`` say which of them must be noticed. ``fail_on`` has names of
-    ``FAIL_ON``. A disagreement that ``--verify`` found always fails, and so does a journal that lacks what
-    was found, or that something else has written to. Of a shard nothing else is judged.
+    ``config.options.FAIL_ON``. A disagreement that ``--verify`` found always fails, and so does a journal
+    that lacks what was found, or that something else has written to. Of a shard nothing else is judged.
     """
     doubtful = tuple(_doubtful(results))
     if doubtful:

@@ -6,9 +6,6 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.request import AUTO
-from mutabot.campaign.request import ENGINES as KNOWN
-from mutabot.cli.options import ENGINES
 from mutabot.errors import UsageError
 from tests.campaign.project import run, write_project
 
@@ -23,10 +20,6 @@ TESTS = """
     def test_run():
         run(Arm())
     """
-
-
-def test_the_command_line_knows_each_engine() -> None:
-    assert (AUTO, *KNOWN) == ENGINES
 
 
 def test_an_engine_that_there_is_not_is_told_before_the_tests_run(tmp_path: Path) -> None:

@@ -22,8 +22,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from mutabot.campaign.faults.providers import provider
-from mutabot.campaign.request import FORK, REPLAY
 from mutabot.campaign.verdict import judge, run_of
+from mutabot.config.options import FORK, REPLAY
 from mutabot.errors import ControlError
 from mutabot.families import CALLS, CONTROL
 from mutabot.journal.records import ControlEnd

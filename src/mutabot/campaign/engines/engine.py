@@ -15,7 +15,7 @@ from dataclasses import replace
 from itertools import takewhile
 from typing import TYPE_CHECKING
 
-from mutabot.campaign.request import FORK, REPLAY
+from mutabot.config.options import FORK, REPLAY
 from mutabot.errors import in_short, plural
 from mutabot.execution.task import Task
 from mutabot.journal.records import ControlEnd

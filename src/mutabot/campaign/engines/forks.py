@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING
 
 from mutabot.campaign.baseline.baseline import observation
 from mutabot.campaign.campaign import Campaign, MutantRun
-from mutabot.campaign.request import FORK
 from mutabot.campaign.verdict import Death, Run, judged, not_judged, not_run, without_tests
+from mutabot.config.options import FORK
 from mutabot.errors import MutabotError
 from mutabot.execution.interruption import Interruption
 from mutabot.execution.task import Result, Task, how_ended

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from mutabot.campaign.request import REPLAY
 from mutabot.campaign.verdict import judged, not_judged, run_of, without_tests
+from mutabot.config.options import REPLAY
 
 if TYPE_CHECKING:
     from mutabot.campaign.campaign import Campaign, MutantRun
