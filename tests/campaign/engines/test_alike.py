@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -100,6 +102,27 @@ def test_whoever_asks_the_collector_first_finds_nothing_frozen(tmp_path: Path, t
     (asks,) = (one for one in tests if one.startswith(f"    def {test}("))
     found = run(write_project(tmp_path, TOOL + MISSION, first + asks), engine="fork", only=("skip", "repeat"))
     assert {one.verdict for one in found.values()} == {Verdict.SURVIVED}
+
+
+COLLECTS_FROZEN = """
+import gc
+
+if {is_frozen}:
+    gc.freeze()
+from mutabot.runtime.isolation import collector
+
+collector.watch()
+collector.freeze()
+gc.collect()
+print(gc.get_freeze_count() > 0)
+"""
+
+
+@pytest.mark.parametrize("is_frozen", [True, False])
+def test_objects_that_the_program_has_frozen_and_no_others_stay_frozen(is_frozen: bool) -> None:
+    script = [sys.executable, "-c", COLLECTS_FROZEN.format(is_frozen=is_frozen)]
+    found = subprocess.run(script, capture_output=True, text=True, check=True)
+    assert found.stdout.strip() == str(is_frozen)
 
 
 LEAVES = """

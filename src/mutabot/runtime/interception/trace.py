@@ -10,7 +10,7 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
 from types import CodeType, FrameType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from mutabot.evidence.recording import RecordedCall
 from mutabot.languages.python import FRONT_END as PYTHON
@@ -28,10 +28,13 @@ if TYPE_CHECKING:
     from mutabot.model.mutant import Extent
     from mutabot.runtime.targets.target import CallPlace
 
+_Asked = TypeVar("_Asked")
 #: stands for an answer that cannot be kept and that the program waits for: it never comes
 LOST = {"pending": ""}
 #: modules whose frames run the tasks of an event loop
 _LOOPS = frozenset({"asyncio.events", "asyncio.base_events", "asyncio.runners", "trio._core._run"})
+#: stands for the definition of a function, beside the numbers of its instructions
+_DEFINITION = -2
 #: of the calls of a trace, how many are recorded with their times
 _TOLD = 2000
 
@@ -221,7 +224,7 @@ class Locator:
             found = self._in_interpreter(frame) if interpreted else None
             role = self.role(code.co_filename) if found is None else None
             if role is not None:
-                found = (self._span(frame), role)
+                found = (self._span(code, frame.f_lasti, PYTHON.position_of, frame), role)
             if found is not None:
                 return found if not around_loop or is_within_border(frame) else None
             around_loop = around_loop or (in_operation and frame.f_globals.get("__name__") in _LOOPS)
@@ -233,7 +236,7 @@ class Locator:
         role = self.role(code.co_filename)
         if role is None:
             return None
-        return self._span_at(code.co_filename, *PYTHON.definition_of(code)), role
+        return self._span(code, _DEFINITION, PYTHON.definition_of, code), role
 
     def relative(self, filename: str) -> str:
         """The path relative to the root, with forward slashes."""
@@ -261,12 +264,14 @@ class Locator:
                 return self._span_at(filename, *front_end.position_of(frame)), role
         return None
 
-    def _span(self, frame: FrameType) -> Span:
-        code = frame.f_code
-        key = (id(code), frame.f_lasti)
+    def _span(
+        self, code: CodeType, instruction: int, find: Callable[[_Asked], tuple[Extent, str]], asked: _Asked
+    ) -> Span:
+        """The place of an instruction of the code, found once."""
+        key = (id(code), instruction)
         known = self._spans.get(key)
         if known is None:
-            span = self._span_at(code.co_filename, *PYTHON.position_of(frame))
+            span = self._span_at(code.co_filename, *find(asked))
             known = self._spans[key] = (span, code)
         return known[0]
 

@@ -5,6 +5,9 @@ fork what it shares with its parent. They are thawed before the first question o
 or its tests' that could show that, and then stay so. Pytest itself collects at the end of each session, when
 no test can look any more: that leaves them frozen, unless warnings are errors, such as of what a finalizer
 raises then.
+
+Where the program or a plug-in of pytest has frozen objects itself, nothing else is frozen: they could not be
+thawed alone.
 """
 
 from __future__ import annotations
@@ -36,8 +39,10 @@ def watch() -> None:
 
 
 def freeze() -> None:
-    """Freeze all objects that there are."""
+    """Freeze all objects that there are, unless some are frozen already."""
     global _is_frozen  # noqa: PLW0603  # a process has one collector
+    if gc.get_freeze_count():
+        return
     gc.collect()
     gc.freeze()
     _is_frozen = True
