@@ -43,7 +43,7 @@ ALLOWED = {
         "operators", "journal", "evidence", "repository", "thresholds",
     },
     "results": {"errors", "families", "model", "journal", "evidence", "thresholds"},
-    "report": {"errors", "extensions", "model", "journal", "results", "evidence", "thresholds"},
+    "report": {"errors", "extensions", "languages", "model", "journal", "results", "evidence", "thresholds"},
     "__main__": {"cli"},
     "cli": {
         "errors", "extensions", "families", "faults", "model", "config", "execution",

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -30,6 +30,7 @@ from mutabot.model.activation import Activation
 from mutabot.model.codec import to_data
 from mutabot.model.mutant import Place
 from mutabot.thresholds.demands import Demand
+from mutabot.thresholds.planned import at_magnitude
 
 if TYPE_CHECKING:
     from mutabot.operators.operator import Rule
@@ -58,6 +59,11 @@ class Project:
     moments: tuple[Moment | None, ...] = (None,)
     demands: tuple[Demand, ...] = ()
     tables: Mapping[str, Any] = field(default_factory=dict)
+
+    def asks_for(self, rule: Rule) -> bool:
+        """Whether mutants of an operator are asked for: its family, or a magnitude of its faults."""
+        is_demanded = rule.has_sizes and any(demand.operator == rule.name for demand in self.demands)
+        return rule.family in self.families or is_demanded
 
     def program_files(self) -> list[str]:
         """The files of the program, in all its languages, relative to ``root``, each once."""
@@ -178,6 +184,8 @@ class FaultProvider(ABC):
         families: the families of its mutants, in the order in which they are listed.
         location: what a place of its own is called in messages.
         needs_vocabulary: whether its mutants need a vocabulary.
+        in_program: whether all its mutants stand in files of the program or the oracle: words of ``--only``
+            that name no such file are then refused before the baseline is taken.
         numbered_with: name of the provider with whose mutants its own are put in one order; empty for none.
     """
 
@@ -185,11 +193,13 @@ class FaultProvider(ABC):
     families: ClassVar[tuple[str, ...]]
     location: ClassVar[str] = "location"
     needs_vocabulary: ClassVar[bool] = False
+    in_program: ClassVar[bool] = False
     numbered_with: ClassVar[str] = ""
 
     def is_asked_for(self, project: Project) -> bool:
         """Whether any of its mutants are asked for."""
-        return not set(self.families).isdisjoint(project.families)
+        is_of_family = not set(self.families).isdisjoint(project.families)
+        return is_of_family or any(project.asks_for(rule) for rule in self.rules())
 
     def rules(self) -> Sequence[Rule]:
         """Its operators, for lists, documentation and reports."""
@@ -234,10 +244,21 @@ class FaultProvider(ABC):
     def plan(self, project: Project, original: Original) -> Planned:
         """All its mutants of the families that are asked for.
 
+        Each once, and of a fault with sizes its usual ones: the plan adds moments and magnitudes that users
+        ask for, where ``Rule.has_moments`` and ``Rule.has_sizes`` of the operator say so.
+
         Args:
             project: the project.
             original: what the baseline has seen; its ``texts`` has those of this provider, by its name.
         """
+
+    def at_magnitude(self, planned: PlannedMutant, magnitude: float) -> PlannedMutant:
+        """The same fault at another magnitude, which users demand.
+
+        Unless a provider says otherwise, the fault takes its size from ``Mutant.magnitude``: else nothing
+        differs but the mutant's variant and description, which have it as ``f"{magnitude:g}"``.
+        """
+        return replace(planned, mutant=at_magnitude(planned.mutant, magnitude))
 
     def draws(self, operator: str) -> bool:
         """Whether one of its operators draws new random numbers in each round."""

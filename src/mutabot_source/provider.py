@@ -30,6 +30,7 @@ class SourceFaults(FaultProvider):
     name = PROVIDER
     families = OF_TEXT
     location = "program text"
+    in_program = True
 
     def rules(self) -> Sequence[ConventionalOperator]:
         """All operators on program text."""

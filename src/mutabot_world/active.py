@@ -34,7 +34,9 @@ class WorldFault(ActiveFault):
             case "made":
                 # those that are there may be of the test, or left of others: that is known at its end
                 with suppress(LookupError):
-                    self._earlier = [one for one in live(self.data["of"]) if self._disturb(one, is_told=False)]
+                    self._earlier = [
+                        one for one in live(self.data["of"]) if self._disturb(one, is_told=False)
+                    ]
                 for reference in self.data["of"]:
                     self._wrap(reference, after=lambda _, world: self._meet(world))
             case "call":

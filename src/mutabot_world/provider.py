@@ -53,6 +53,15 @@ class WorldFaults(FaultProvider):
         """False: less friction may let a box slip into place where a little less lets it fall."""
         return False
 
+    def at_magnitude(self, planned: PlannedMutant, magnitude: float) -> PlannedMutant:
+        """The same disturbance by another magnitude."""
+        made = super().at_magnitude(planned, magnitude)
+        before, unit = planned.mutant.magnitude or 0.0, planned.mutant.unit
+        text = planned.mutant.description.replace(amount(before, unit), amount(magnitude, unit), 1)
+        data = {**planned.does, "amount": planned.does["amount"] * magnitude / before}
+        active = replace(planned.active, data=data) if planned.active is not None else None
+        return replace(made, mutant=replace(made.mutant, description=text), does=data, active=active)
+
     def plan(self, project: Project, original: Original) -> Planned:
         """A mutant for each test, parameter, direction and magnitude."""
         table = project.tables.get("world") or WorldTable()

@@ -140,7 +140,7 @@ def read_all(path: Path) -> None:
     console = make_console()
     print_results(console, found)
     for one in found.everything:
-        print_mutant(console, found.mutant(one.mutant.id), samples.PROGRAM)
+        print_mutant(console, found.mutant(one.mutant.id), lambda _: samples.PROGRAM)
 
 
 def written_as(name: str) -> Callable[[Path], None]:

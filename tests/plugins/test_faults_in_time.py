@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from textwrap import dedent
 from typing import Any
 
 import pytest
 from tests.plugins.test_faults import write
-from tests.plugins.test_plugins import ERRORS, mutabot
+from tests.plugins.test_plugins import ERRORS, SCORE_TOO_LOW, USAGE, mutabot
 
 #: a box that slides on a belt until friction stops it; the program drives it to a mark
 PROJECT = {
@@ -74,6 +75,7 @@ PACKAGE = {
             family = "world"
             summary = "From a simulated time on, things slip."
             has_sizes = True
+            has_moments = %(has_moments)s
 
         class Slippery(FaultProvider):
             name = "slippery"
@@ -130,9 +132,10 @@ PACKAGE = {
 }
 
 
-def installed(folder: Path, head: str = "", awaits: str = "'<test>'") -> Path:
+def installed(folder: Path, head: str = "", awaits: str = "'<test>'", *, has_moments: bool = False) -> Path:
     """A folder into which the package is installed."""
-    filled = {name: text % {"head": head, "awaits": awaits} for name, text in PACKAGE.items()}
+    said = {"head": head, "awaits": awaits, "has_moments": has_moments}
+    filled = {name: text % said for name, text in PACKAGE.items()}
     return write(folder / "site", filled)
 
 
@@ -212,3 +215,56 @@ def test_a_fault_that_needs_a_simulator_waits_until_the_program_has_imported_it(
     project = write(tmp_path / "project", PROJECT)
     found = rounds(project, installed(tmp_path / "site", head, "'belt'"), "--engine", "replay")
     assert {size: one["verdict"] for size, one in found.items()} == {"0.05": "survived", "0.5": "killed"}
+
+
+DEMAND = """
+[[tool.mutabot.demand]]
+operator = "slip"
+site = "%s"
+notice = 0.2
+"""
+
+
+def test_a_demanded_magnitude_of_a_package_is_planted_searched_and_judged(tmp_path: Path) -> None:
+    configuration = PROJECT["pyproject.toml"].replace('families = ["world"]', 'families = ["robot"]')
+    demanding = {"pyproject.toml": dedent(configuration) + DEMAND % "friction"}
+    project = write(tmp_path / "project", {**PROJECT, **demanding})
+    done = mutabot(installed(tmp_path), project, "run", "--json")
+    found = {one["magnitude"]: one for one in json.loads(done.stdout)["graded"]}
+    verdicts = {size: one["rounds"][0]["verdict"] for size, one in found.items()}
+    assert verdicts == {0.05: "survived", 0.2: "survived", 0.5: "killed"}
+    assert found[0.2]["description"] == "friction is 0.2 less from 1 s on"
+    assert [one["number"] for one in found.values()] == [1, 2, 3]
+    assert done.returncode == SCORE_TOO_LOW
+    assert "survives 0.2 in round 1 (mutant 2)" in done.stderr
+    told = json.loads(mutabot(tmp_path / "site", project, "thresholds", "--json").stdout)
+    (ladder,) = told["ladders"]
+    assert (ladder["place"], ladder["none_up_to"], ladder["all_from"]) == ("belt", 0.2, 0.5)
+
+
+def test_a_demand_of_a_package_that_speaks_of_nothing_is_told_and_others_are_refused(tmp_path: Path) -> None:
+    site = installed(tmp_path)
+    files = {"pyproject.toml": dedent(PROJECT["pyproject.toml"]) + DEMAND % "gravity"}
+    project = write(tmp_path / "project", {**PROJECT, **files})
+    told = mutabot(site, project, "list").stderr
+    assert "no mutant of slip is what it speaks of" in told
+    assert "`mutabot list --family world` names the sites" in told
+    wrong = (project / "pyproject.toml").read_text().replace('"slip"', '"slipp"')
+    (project / "pyproject.toml").write_text(wrong)
+    done = mutabot(site, project, "list")
+    assert done.returncode == USAGE
+    assert "did you mean 'slip'?" in done.stderr
+
+
+@pytest.mark.parametrize("has_moments", [False, True])
+def test_moments_are_for_operators_that_have_some(has_moments: bool, tmp_path: Path) -> None:
+    site, project = installed(tmp_path, has_moments=has_moments), write(tmp_path / "project", PROJECT)
+    done = mutabot(site, project, "list", "--json", "-o", "when=['from 2', 'once']")
+    found = json.loads(done.stdout)
+    ids = [f"belt:friction:slip={size}{'@from 2' if has_moments else ''}" for size in ("0.05", "0.5")]
+    assert [one["id"] for one in found["mutants"]] == ids
+    reasons = {one["reason"] for one in found["left_out"]}
+    unknown = {"how often a test reaches it is not known, so that no moment can be drawn"}
+    assert reasons == (unknown if has_moments else set())
+    is_told = "mutants of world act wherever they are reached: moments are those of calls" in done.stderr
+    assert is_told is not has_moments

@@ -149,6 +149,8 @@ def test_its_lines_are_sites_with_verdicts(project: Path, tmp_path: Path) -> Non
     assert {name: (one["line"], one["end_column"]) for name, one in spans.items()} == {
         "move#1": (1, 10), "move#2": (3, 11),
     }  # fmt: skip
+    report = json.loads(mutabot(site, project, "report", "--format", "mutation-testing").stdout)
+    assert report["files"]["mission.STEPS"]["language"] == "steps"
 
 
 @pytest.mark.parametrize("engine", ["fork", pytest.param("replay", marks=pytest.mark.whole)])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -18,6 +19,10 @@ PATCHES = {
     },
     "force": {"cell/limits.json": '{"speed": 2.0, "force": 99.0}'},
     "late": {"cell/move.py": MOVE + "clipped(speed + 1)\n"},
+    "quiet": {
+        "cell/limits.json": '{"speed": 2.0, "force": 11.0}\n',
+        "cell/move.py": MOVE + "clipped(speed * 1)\n",
+    },
     "outside": {"../elsewhere.py": "x = 1\n"},
 }
 PROJECT = {
@@ -64,6 +69,7 @@ PROJECT = {
 PACKAGE = {
     "patches_of_bugs.py": """
         import json
+        from difflib import SequenceMatcher
 
         from mutabot.api.faults import Activation, Extension, FaultProvider, Planned, PlannedMutant
         from mutabot.api.faults import Rule, Site
@@ -74,6 +80,14 @@ PACKAGE = {
             name = "patch"
             family = "patch"
             summary = "Files are as they were before a bug was fixed."
+
+        def hunks(root, texts):
+            for path, text in texts.items():
+                before = (root / path).read_text().splitlines() if (root / path).is_file() else [""]
+                for tag, first, last, *_ in SequenceMatcher(None, before, text.splitlines()).get_opcodes():
+                    if tag != "equal":
+                        last = max(1, last)
+                        yield path, (min(first + 1, last), 0, last, len(before[last - 1].encode()))
 
         class Patches(FaultProvider):
             name = "patches"
@@ -87,7 +101,7 @@ PACKAGE = {
                 planned = Planned()
                 for file in sorted((project.root / "patches").glob("*.json")):
                     texts = json.loads(file.read_text())
-                    site = Site.of_parameter("patches", file.stem)
+                    site = Site.of_patch(file.stem, hunks(project.root, texts))
                     mutant = self.mutant(Patch(), site, file.stem)
                     active = Activation("patches_inside:Patched", texts, (), Activation.AT_ONCE)
                     planned.mutants.append(PlannedMutant(mutant, does=texts, active=active))
@@ -124,20 +138,105 @@ def test_patches_of_several_files_are_judged_and_the_users_files_stay(tmp_path: 
         "double": ("killed", "tests/test_move.py::test_fast"),
         "force": ("survived", None),
         "late": ("killed", "tests/test_move.py::test_slow"),
+        "quiet": ("survived", None),
         "outside": ("error", "tests/test_move.py::test_slow"),
     }
     assert "../elsewhere.py cannot be changed: it is not a file of the project" in found["outside"]["message"]
     assert {file: file.read_bytes() for file in before} == before
     assert not (tmp_path / "elsewhere.py").exists()
-    assert "4 mutants that are active before any point at which they could be forked" in done.stderr
-    # a patch stands in no one file: reports name none
-    (line,) = mutabot(site, project, "report", "--format", "github").stdout.splitlines()
-    assert line.startswith("::warning title=Survivor 2%3A patch (program)::force: survived in round 1.")
+    assert "5 mutants that are active before any point at which they could be forked" in done.stderr
+    _check_reports(site, project)
+
+
+def _check_reports(site: Path, project: Path) -> None:
+    """All reports have every place of the patch of two files that survives; its number is 5."""
+    (found,) = [one for one in json.loads(mutabot(site, project, "results", "--json").stdout)["mutants"]
+                if one["description"] == "quiet"]  # fmt: skip
+    assert found["id"] == "cell/limits.json:quiet:patch"
+    places = [{"file": "cell/limits.json", "line": 1, "column": 1, "end_line": 1, "end_column": 30},
+              {"file": "cell/move.py", "line": 4, "column": 1, "end_line": 4, "end_column": 26}]  # fmt: skip
+    assert [found["span"], *found["other_spans"]] == places
+    told = mutabot(site, project, "show", "5").stdout
+    assert '> 1 │ {"speed": 2.0, "force": 10.0}' in told
+    assert "> 4 │     return clipped(speed)" in told
+    for command in (["results"], ["list"], ["show", "5"]):
+        told = mutabot(site, project, *command).stdout
+        assert all(place in told for place in ("cell/limits.json:1", "cell/move.py:4")), (command, told)
+    line = mutabot(site, project, "report", "--format", "github").stdout.splitlines()[1]
+    assert line.startswith("::warning file=cell/limits.json,line=1,endLine=1,col=1,endColumn=30,title=")
+    assert "::quiet (also at cell/move.py:4): survived" in line
     (told,) = json.loads(mutabot(site, project, "report", "--format", "sarif").stdout)["runs"]
-    (result,) = told["results"]
-    assert result["locations"] == [
-        {"logicalLocations": [{"fullyQualifiedName": "patches:force", "kind": "variable"}]}
+    (result,) = [one for one in told["results"] if one["properties"]["number"] == 5]
+    regions = [one["physicalLocation"] for one in (*result["locations"], *result["relatedLocations"])]
+    assert [(one["artifactLocation"]["uri"], one["region"]["snippet"]["text"]) for one in regions] == [
+        ("cell/limits.json", '{"speed": 2.0, "force": 10.0}'),
+        ("cell/move.py", "    return clipped(speed)"),
     ]
+    files = json.loads(mutabot(site, project, "report", "--format", "mutation-testing").stdout)["files"]
+    assert {name: one["language"] for name, one in files.items()} == {
+        "../elsewhere.py": "python", "cell/limits.json": "text", "cell/move.py": "python",
+    }  # fmt: skip
+    mutabot(site, project, "report", "--html", str(project / "page"))
+    sources = (project / "page/data/sources.js").read_text(encoding="utf-8")
+    assert all(f'"{one["file"]}"' in sources for one in places)
+    assert '"cell/move.py","line":4' in (project / "page/data/campaign.js").read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder into which the package is installed."""
+    return write(tmp_path_factory.mktemp("site"), PACKAGE)
+
+
+@pytest.mark.parametrize(
+    ("words", "names"),
+    [
+        (["--only", "cell/move.py"], ["double", "late", "quiet"]),
+        (["--only", "cell/move.py:4"], ["double", "late", "quiet"]),
+        (["--only", "move.py:1-3"], []),
+        (["--only", "cell/limits.json", "--skip", "cell/*.py"], ["force"]),
+        (["--only", "cell", "--skip", "limits.json:1"], ["late"]),
+    ],
+)
+def test_a_patch_is_chosen_by_each_of_its_files_and_lines(
+    words: list[str], names: list[str], site: Path, tmp_path: Path
+) -> None:
+    project = write(tmp_path / "project", PROJECT)
+    done = mutabot(site, project, "list", "--json", *words)
+    found = json.loads(done.stdout)["mutants"] if done.returncode == 0 else []
+    assert [one["description"] for one in found] == names, done.stderr
+
+
+def test_a_patch_is_accepted_until_its_line_changes(site: Path, tmp_path: Path) -> None:
+    project = write(tmp_path / "project", PROJECT)
+    mutabot(site, project, "run", "-o", "repeats=false", "--only", "*quiet*")
+    assert mutabot(site, project, "accept", "5", "--why", "the force is not used").returncode == 0
+    text = (project / "mutabot-accepted.toml").read_text()
+    assert 'line = "{\\"speed\\": 2.0, \\"force\\": 10.0}"' in text
+    again = mutabot(site, project, "run", "--json", "-o", "repeats=false", "--only", "*quiet*")
+    (found,) = json.loads(again.stdout)["mutants"]
+    assert (found["status"], found["accepted"]["why"]) == ("accepted", "the force is not used")
+    (project / "cell/limits.json").write_text('{"speed": 2.0, "force": 12.0}\n')
+    again = mutabot(site, project, "run", "--json", "-o", "repeats=false", "--only", "*quiet*")
+    assert json.loads(again.stdout)["mutants"][0]["status"] == "survived"
+    assert "has changed from" in again.stderr
+
+
+def test_since_a_revision_patches_are_run_whose_files_or_texts_have_changed(
+    site: Path, tmp_path: Path
+) -> None:
+    project = write(tmp_path / "project", {**PROJECT, ".gitignore": ".mutabot/\n__pycache__/\n"})
+    commands = (
+        ["init", "-q"],
+        ["add", "."],
+        ["-c", "user.name=x", "-c", "user.email=x", "commit", "-qm", "x"],
+    )
+    for words in commands:
+        subprocess.run(["git", *words], cwd=project, check=True)
+    options = ("run", "-o", "repeats=false", "--skip", "*outside*", "--since", "HEAD")
+    assert "0 to run" in mutabot(site, project, *options).stderr
+    (project / "cell/limits.json").write_text('{"speed": 2.0, "force": 12.0}\n')
+    assert "4 to run" in mutabot(site, project, *options).stderr
 
 
 @pytest.mark.whole

@@ -32,7 +32,7 @@ def campaign(folder: Path, **changes: Any) -> Any:
 def on_terminal(found: Any, number: int) -> tuple[str, str]:
     files = io.StringIO(), io.StringIO()
     print_results(make_console(files[0], width=200), found)
-    print_mutant(make_console(files[1], width=200), found.mutant(str(number)), None)
+    print_mutant(make_console(files[1], width=200), found.mutant(str(number)), lambda _: None)
     return files[0].getvalue(), files[1].getvalue()
 
 

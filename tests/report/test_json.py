@@ -82,7 +82,7 @@ def test_a_mutant_has_everything_a_machine_needs(tmp_path: Path) -> None:
     assert mutant["id"] == samples.REVERSE.id
     assert (mutant["number"], mutant["operator"], mutant["family"]) == (1, "reverse", "robot")
     assert (mutant["role"], mutant["file"], mutant["quantity"]) == ("program", "mission.py", "dx")
-    assert mutant["span"] == {"line": 3, "column": 5, "end_line": 3, "end_column": 25}
+    assert mutant["span"] == {"file": "mission.py", "line": 3, "column": 5, "end_line": 3, "end_column": 25}
     assert mutant["description"] == samples.REVERSE.description
     assert mutant["meaning"]["unit"] == "m"
     rate = mutant["kill_rate"]

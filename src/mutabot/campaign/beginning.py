@@ -15,7 +15,7 @@ from mutabot.campaign.baseline.wrappers import shared_sites
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.duration import Duration, duration_of
 from mutabot.campaign.engines.engine import try_controls
-from mutabot.campaign.faults.providers import texts_of
+from mutabot.campaign.faults.providers import family_of, rules_of, texts_of
 from mutabot.campaign.plan import Plan, draw, make_plan
 from mutabot.campaign.request import CheckReport, ExecutorChoice, Preview, Progress, Request
 from mutabot.campaign.reuse.original import OriginalRuns
@@ -27,7 +27,6 @@ from mutabot.errors import JournalError, NothingToDoError, in_short
 from mutabot.execution.interruption import interruptions_kept
 from mutabot.execution.processes import provide
 from mutabot.extensions import brought
-from mutabot.families import CALLS, MESSAGES
 from mutabot.frozen import frozen
 from mutabot.journal.files import at_work, refuse_tracked
 from mutabot.journal.journal import Journal
@@ -151,7 +150,8 @@ def selected(campaign: Campaign, plan: Plan) -> Plan:
 def _ignored(request: Request, plan: Plan) -> Iterator[Remark]:
     """Settings of the configuration that have no effect on any provider of faults."""
     configuration, mutants = request.configuration, plan.mutants
-    others = sorted({one.family for one in mutants if one.provider not in (CALLS, MESSAGES)})
+    without = {rule.name for rule in rules_of(request.families) if not rule.has_moments}
+    others = sorted({one.family for one in mutants if one.operator in without})
     if request.moments != (None,) and others:
         text = f"mutants of {' and '.join(others)} act wherever they are reached: moments are those of calls"
         yield Remark(configuration.file or "configuration", "when", text)
@@ -160,9 +160,10 @@ def _ignored(request: Request, plan: Plan) -> Iterator[Remark]:
     for demand in configuration.demands:
         known = ((one, kinds[one.id]) for one in firsts)
         if not any(demand.is_about(one, of.kind if of is not None else None) for one, of in known):
+            family = family_of(f":{demand.operator}")
             text = (
                 f"no mutant of {demand.operator} is what it speaks of, so it demands nothing; "
-                "`mutabot list --family graded` names the sites and quantities that there are"
+                f"`mutabot list --family {family}` names the sites and quantities that there are"
             )
             yield Remark(demand.source or "configuration", "demand", text)
 

@@ -13,6 +13,7 @@ from hashlib import blake2b
 from itertools import groupby
 from typing import TYPE_CHECKING
 
+from mutabot.campaign.faults.planned import planned_by
 from mutabot.campaign.faults.providers import asked_for, provider, rules_of
 from mutabot.faults import Project, known_families
 from mutabot.frozen import frozen
@@ -65,7 +66,7 @@ def shuffled(mutants: Iterable[Mutant], salt: str) -> list[Mutant]:
 def make_plan(baseline: Baseline, project: Project) -> Plan:
     """All mutants that are asked for, provider by provider; the baseline learns of their places."""
     plan = Plan([], [])
-    planned = {provider: provider.plan(project, baseline) for provider in asked_for(project)}
+    planned = {provider: planned_by(provider, project, baseline) for provider in asked_for(project)}
     for made in planned.values():
         made.reach_text(baseline)
     baseline.add_planned({provider.name: found for provider, found in planned.items()})

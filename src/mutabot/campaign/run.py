@@ -239,7 +239,7 @@ def _write_beginning(
         round, repetition = result.task.key
         journal.add_tests(records.BaselineTest.of(round, repetition, end) for end in result.ends)
     carried = carry([one for one, _ in journal.known()], request, plan.mutants, whole.mutants)
-    files = {mutant.site.span.file for mutant in (*plan.mutants, *carried)}
+    files = {span.file for mutant in (*plan.mutants, *carried) for span in mutant.site.spans}
     sources = {file: text_of(path) for file in files if (path := request.root / file).is_file()}
     journal.set_plan(plan.mutants, plan.left_out, sources=sources)
     journal.set_known((mutant, True) for mutant in carried)

@@ -12,6 +12,7 @@ import re
 import tokenize
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -22,7 +23,7 @@ from mutabot.errors import ConfigurationError, UnknownNameError, unknown_name_te
 from mutabot.journal import records
 from mutabot.languages.registry import front_end_of, program_files
 from mutabot.model import LeftOut
-from mutabot.model.suppression import Acceptance, Accepted, Action, Suppression, first_fitting
+from mutabot.model.suppression import Acceptance, Accepted, Action, LinesOf, Suppression, first_fitting
 from mutabot.operators import registry
 
 if TYPE_CHECKING:
@@ -126,7 +127,7 @@ def divided(campaign: Campaign, plan: Plan) -> tuple[Plan, tuple[str, ...]]:
     excluding = [one for one in campaign.suppressions if one.action is Action.EXCLUDE]
     kept = []
     for mutant in plan.mutants:
-        found = first_fitting(excluding, mutant, lines.of(mutant))
+        found = first_fitting(excluding, mutant, lines.of)
         if found is None:
             kept.append(mutant)
         else:
@@ -142,10 +143,10 @@ def _unmatched(campaign: Campaign, plan: Plan, lines: _SourceLines) -> Iterator[
     ids = {one.id for one in plan.left_out}
     for one in campaign.suppressions:
         named = [mutant for mutant in plan.mutants if one.names(mutant)]
-        if one.id in ids or any(one.fits(mutant, lines.of(mutant)) for mutant in named):
+        if one.id in ids or any(one.fits(mutant, lines.of) for mutant in named):
             continue
         if one.id and named:
-            now = lines.of(named[0])[named[0].site.span.line - 1].strip()
+            now = line_at(lines.of, named[0])
             yield f"{one.source}: the line of {one.id} has changed from {one.line!r} to {now!r}: decide again"
         elif _is_of(one, campaign.request.families):
             yield f"{one.source}: no mutant is {one.words}: the decision has no effect"
@@ -161,28 +162,30 @@ def _is_of(one: Suppression, families: Collection[str]) -> bool:
 def note_accepted(journal: Journal, suppressions: Iterable[Suppression], unmatched: Sequence[str]) -> None:
     """Write into a journal which of its mutants are accepted if they survive, and what fits none."""
     accepting = [one for one in suppressions if one.action is Action.ACCEPT]
-    texts: dict[str, list[str]] = {}
+    lines = cache(lambda file: (journal.source(file) or "").split("\n"))
     found = {}
     for mutant in (*journal.mutants(), *(one for one, _ in journal.known())) if accepting else ():
-        file = mutant.site.span.file
-        if file not in texts:
-            texts[file] = (journal.source(file) or "").split("\n")
-        one = first_fitting(accepting, mutant, texts[file])
+        one = first_fitting(accepting, mutant, lines)
         if one is not None:
             found[mutant.id] = Acceptance(one.why, one.source, one.date, one.in_source)
     journal.set_meta(records.ACCEPTED, Accepted(found, tuple(unmatched)))
 
 
+def line_at(lines: LinesOf, mutant: Mutant) -> str:
+    """The first line of a mutant's first place, without blanks around it; empty if there is none."""
+    span = mutant.site.span
+    return "".join(lines(span.file)[max(0, span.line - 1) : span.line]).strip()
+
+
 class _SourceLines:
-    """Lines of the program's files, each read once."""
+    """Lines of the files in which mutants stand, each read once."""
 
     def __init__(self, root: Path) -> None:
         self._root = root
         self._of: dict[str, list[str]] = {}
 
-    def of(self, mutant: Mutant) -> list[str]:
-        """The lines of a mutant's file; no lines for a mutant outside of files."""
-        file = mutant.site.span.file
+    def of(self, file: str) -> list[str]:
+        """The lines of a file; none if there is no such file."""
         if file not in self._of:
             path = self._root / file
             self._of[file] = text_of(path).split("\n") if path.is_file() else []

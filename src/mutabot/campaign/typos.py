@@ -6,7 +6,7 @@ import re
 from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING
 
-from mutabot.campaign.faults.providers import operators_of_packages
+from mutabot.campaign.faults.providers import asked_for, operators_of_packages
 from mutabot.errors import SelectionError
 from mutabot.faults import known_families
 from mutabot.languages.registry import program_files
@@ -23,7 +23,12 @@ _WILD = re.compile(r"[*?]")
 
 
 def refuse_typos(request: Request) -> None:
-    """Raise SelectionError for words that cannot match any mutant of this project."""
+    """Raise SelectionError for words that cannot match any mutant of this project.
+
+    Where mutants may stand elsewhere than in the program, only the plan can tell.
+    """
+    if not all(provider.in_program for provider in asked_for(request.project)):
+        return
     sources = (*request.configuration.program, *request.configuration.oracle)
     files = program_files(request.root, sources)
     names = [*registry.names(), *known_families(), *(role.value for role in Role)]

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import datetime
 from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
 from typing import Annotated
 
 import typer
 from typer import Option
 
-from mutabot.campaign.suppressions import comments_in, note_accepted
+from mutabot.campaign.suppressions import comments_in, line_at, note_accepted
 from mutabot.cli.context import CommandContext
 from mutabot.config.suppressions import FILE, add_acceptances, read_suppressions
 from mutabot.errors import SelectionError, UsageError
@@ -45,7 +46,8 @@ def accept(context: CommandContext, mutant: _Mutants = None, why: _Why = "", jso
     _refuse_others(chosen)
     read_suppressions(root)  # a file with a mistake is not added to
     if chosen:
-        entries = [(one.mutant.id, _line(results, one)) for one in chosen]
+        lines = cache(lambda file: (results.source(file) or "").split("\n"))
+        entries = [(one.mutant.id, line_at(lines, one.mutant)) for one in chosen]
         add_acceptances(root, entries, why.strip(), datetime.date.today())
     if is_written(path):
         context.tell(
@@ -77,13 +79,6 @@ def _refuse_others(chosen: Sequence[MutantResult]) -> None:
             wrong.append(f"{name} is not a survivor ({state_of(one)}): only survivors can be accepted")
     if wrong:
         raise SelectionError("\n".join(wrong))
-
-
-def _line(results: Results, result: MutantResult) -> str:
-    """The first line of a mutant's place, as the campaign saw it."""
-    span = result.mutant.site.span
-    lines = (results.source(span.file) or "").split("\n")
-    return lines[span.line - 1].strip() if 1 <= span.line <= len(lines) else ""
 
 
 def _apply(path: Path, root: Path, results: Results) -> None:

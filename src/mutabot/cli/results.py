@@ -56,7 +56,7 @@ def show(
     found = context.results(earlier=True)
     result = found.mutant(mutant)
     is_there = not result.outdated or result.mutant.family in found.meta.get("families", ())
-    source = found.source(result.mutant.site.span.file) if is_there else None
+    source = found.source if is_there else lambda _: None
     suggestion = kept_suggestions(context.journal, found.meta).get(result.mutant.id)
     if json:
         context.print_json(shown_data(result, source, suggestion))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import chain
 from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import AfterValidator, Field
@@ -74,9 +75,11 @@ def _amount(place: DocumentPlace, notice: str | float) -> tuple[float, str | Non
 
 
 def _check_operator(place: DocumentPlace, name: str) -> None:
-    from mutabot.operators import load_all  # noqa: PLC0415  # few configurations name one
+    from mutabot.faults import brought_providers  # noqa: PLC0415  # few configurations name one
+    from mutabot.operators import load_all  # noqa: PLC0415  # as above
 
-    known = [rule.name for rule in load_all() if rule.has_sizes]
+    rules = chain(load_all(), (rule for one in brought_providers() for rule in one.rules()))
+    known = [rule.name for rule in rules if rule.has_sizes]
     if name not in known:
         place.error(unknown_name_text("graded operator", name, [*known, OFFSET]))
 

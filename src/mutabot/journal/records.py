@@ -588,8 +588,8 @@ def held(kind: type[T], row: Mapping[str, Any]) -> T:
         raise ValueError
     match found:
         case Mutant(site=site):
-            span = site.span
-            _check_numbers(found.number, span.line, span.end_line, span.column, span.end_column)
+            for span in site.spans:
+                _check_numbers(found.number, span.line, span.end_line, span.column, span.end_column)
             _check_numbers(found.magnitude, least=-math.inf)
         case KeptBaseline():
             _check_numbers(found.taken, _LATEST - found.taken)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -16,12 +16,27 @@ if TYPE_CHECKING:
 
 
 @cache
+def _by_language() -> Mapping[str, FrontEnd]:
+    """The front ends by the names of their languages, in the order in which they are asked."""
+    return {**{name: part.load() for name, part in brought("languages").items()}, "python": FRONT_END}
+
+
+@cache
 def front_ends() -> tuple[FrontEnd, ...]:
     """All front ends; Python is last, since an interpreter's frames are Python's as well.
 
     Raises ExtensionError for one of a package that cannot be loaded.
     """
-    return (*(part.load() for part in brought("languages").values()), FRONT_END)
+    return tuple(_by_language().values())
+
+
+def language_of(file: str) -> str | None:
+    """The name of a file's language, by its suffix; None for unknown suffixes.
+
+    Raises ExtensionError for a language of a package that cannot be loaded.
+    """
+    name = file.lower()
+    return next((one for one, found in _by_language().items() if name.endswith(found.suffixes)), None)
 
 
 def front_end_of(file: str) -> FrontEnd:

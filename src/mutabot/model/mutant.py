@@ -164,20 +164,39 @@ class Site:
 
     Attributes:
         span: its exact place.
-        text: the callee as written, such as ``arm.translate``.
-        occurrence: 1-based number among the expressions with this text in this function.
+        text: the callee as written, such as ``arm.translate``; or a name of its own.
+        occurrence: 1-based number among the expressions with this text in this function; 0 if the text is a
+            name that the file has once.
         role: whose call it is.
+        other_spans: the other places of a fault that stands in several, such as further hunks of a patch.
     """
 
     span: Span
     text: str
     occurrence: int
     role: Role
+    other_spans: tuple[Span, ...] = ()
 
     @classmethod
     def of_parameter(cls, owner: str, name: str) -> Site:
         """A parameter, which stands nowhere in the program text: ``of_parameter("world", "gravity")``."""
-        return cls(Span(owner, 0, 0, 0, 0, ""), name, 1, Role.PROGRAM)
+        return cls(Span(owner, 0, 0, 0, 0, ""), name, 0, Role.PROGRAM)
+
+    @classmethod
+    def of_patch(cls, name: str, hunks: Iterable[tuple[str, Extent]]) -> Site:
+        """Several places of one fault, in one file or in several; these may be files of data, too.
+
+        Args:
+            name: of the patch, which the first of its files has once.
+            hunks: the file and the extent of each, as ``in_program`` takes them; of a hunk that only adds
+                lines, the extent of the line before it.
+
+        Raises ValueError if there is no hunk.
+        """
+        spans = [Span(file, *extent, "") for file, extent in hunks]
+        if not spans:
+            raise ValueError(f"the patch {name!r} changes no place: give the file and extent of each hunk")
+        return cls(spans[0], name, 0, Role.PROGRAM, tuple(spans[1:]))
 
     @classmethod
     def in_program(cls, file: str, extent: Extent, function: str, text: str, occurrence: int = 1) -> Site:
@@ -198,9 +217,14 @@ class Site:
         return self.span.line > 0
 
     @property
+    def spans(self) -> tuple[Span, ...]:
+        """All its places."""
+        return (self.span, *self.other_spans)
+
+    @property
     def id(self) -> str:
         """The part of a mutant's id that names the site; stable under edits elsewhere."""
-        if not self.is_in_file:
+        if not self.occurrence:
             return f"{self.span.file}:{self.text}"
         return f"{self.span.file}:{self.span.function}:{self.text}#{self.occurrence}"
 
@@ -316,18 +340,21 @@ def fits(pattern: str, mutant: Mutant) -> bool:
     if means_numbers(pattern):
         return any(mutant.number in _range(part) for part in pattern.split(","))
     line = line_of(pattern)
-    if line is not None and _is_at(mutant, *line):
-        return True
-    span = mutant.site.span
-    if any(is_like(pattern, f"{span.file}:{number}") for number in range(span.line, span.end_line + 1)):
+    if line is not None and any(_is_at(span, *line) for span in mutant.site.spans):
         return True
     names = (mutant.operator, mutant.family, mutant.site.role.value)
-    file = mutant.site.span.file
+    if pattern in names or is_like(pattern, mutant.id):
+        return True
+    return any(_is_in(pattern, span) for span in mutant.site.spans)
+
+
+def _is_in(pattern: str, span: Span) -> bool:
+    """Whether a word is a line of a span, its file or one of its folders."""
+    lines = (f"{span.file}:{number}" for number in range(span.line, span.end_line + 1))
     return (
-        pattern in names
-        or is_like(pattern, mutant.id)
-        or is_like(pattern, file)
-        or file.startswith(pattern.rstrip("/") + "/")
+        is_like(pattern, span.file)
+        or span.file.startswith(pattern.rstrip("/") + "/")
+        or any(is_like(pattern, line) for line in lines)
     )
 
 
@@ -348,9 +375,8 @@ def _range(text: str) -> range:
     return range(int(first), int(last or first) + 1)
 
 
-def _is_at(mutant: Mutant, file: str, lines: range) -> bool:
-    """Whether a mutant stands in these lines of a file, whose first folders may be left out."""
-    span = mutant.site.span
+def _is_at(span: Span, file: str, lines: range) -> bool:
+    """Whether a span is in these lines of a file, whose first folders may be left out."""
     is_here = is_like(file, span.file) or span.file.endswith("/" + file.removeprefix("…/"))
     return is_here and span.line < lines.stop and span.end_line >= lines.start
 

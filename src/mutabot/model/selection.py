@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -87,11 +88,10 @@ def _patterns(file: Path, ids: Collection[str]) -> Iterator[str]:
 
 def _names(mutants: Sequence[Mutant]) -> list[str]:
     words = (
-        word
+        (one.operator, one.family, one.site.role.value, *(span.file for span in one.site.spans), one.id)
         for one in mutants
-        for word in (one.operator, one.family, one.site.role.value, one.site.span.file, one.id)
     )
-    return list(dict.fromkeys(words))
+    return list(dict.fromkeys(chain.from_iterable(words)))
 
 
 def nothing_fits(source: str, unknown: Sequence[str], known: Sequence[str]) -> SelectionError:

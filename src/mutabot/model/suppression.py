@@ -6,13 +6,16 @@ well where an id is given: ids count equal calls of a function, so another one b
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import field
 from enum import StrEnum
 
 from mutabot.frozen import frozen
 
-from .mutant import Mutant, is_like
+from .mutant import Mutant, Span, is_like
+
+#: returns the lines of a file; none if it is not known
+LinesOf = Callable[[str], Sequence[str]]
 
 
 class Action(StrEnum):
@@ -33,8 +36,8 @@ class Suppression:
         id: the id of a mutant; empty for any.
         file: path of a program file, in which ``*`` and ``?`` are wild; empty for any.
         operator: name of an operator, likewise.
-        line: text of one of the lines that the mutant's place takes, without blanks around it, likewise.
-        numbers: first and last line that the mutant's place has to meet; None for any.
+        line: text of one of the lines that a place of the mutant takes, without blanks around it, likewise.
+        numbers: first and last line that a place of the mutant has to meet; None for any.
         date: when it was made, as ``2026-01-31``; empty if it is not said.
         in_source: whether it is a comment in the program.
     """
@@ -50,25 +53,29 @@ class Suppression:
     date: str = ""
     in_source: bool = False
 
-    def fits(self, mutant: Mutant, lines: Sequence[str]) -> bool:
-        """Whether a mutant is meant; ``lines`` are those of its file."""
-        return self.names(mutant) and (not self.line or self.has_line(mutant, lines))
+    def fits(self, mutant: Mutant, lines: LinesOf) -> bool:
+        """Whether a mutant is meant; ``lines`` are those of a file."""
+        places = self._places(mutant)
+        return any(not self.line or self._has_line(span, lines(span.file)) for span in places)
 
     def names(self, mutant: Mutant) -> bool:
         """Whether the decision names the mutant, whatever its line says."""
-        span = mutant.site.span
-        first, last = self.numbers or (span.line, span.end_line)
-        return (
-            self.id in ("", mutant.id)
-            and first <= span.end_line
-            and span.line <= last
-            and (not self.file or is_like(self.file, span.file))
-            and (not self.operator or is_like(self.operator, mutant.operator))
-        )
+        return bool(self._places(mutant))
 
-    def has_line(self, mutant: Mutant, lines: Sequence[str]) -> bool:
-        """Whether one of the lines that the mutant's place takes has the text."""
-        span = mutant.site.span
+    def _places(self, mutant: Mutant) -> list[Span]:
+        """The places of the mutant that the decision means; none if it means another mutant."""
+        is_other = self.id not in ("", mutant.id)
+        if is_other or (self.operator and not is_like(self.operator, mutant.operator)):
+            return []
+        return [span for span in mutant.site.spans if self._is_at(span)]
+
+    def _is_at(self, span: Span) -> bool:
+        first, last = self.numbers or (span.line, span.end_line)
+        is_there = first <= span.end_line and span.line <= last
+        return is_there and (not self.file or is_like(self.file, span.file))
+
+    def _has_line(self, span: Span, lines: Sequence[str]) -> bool:
+        """Whether one of the lines that a place takes has the text."""
         return any(is_like(self.line, text.strip()) for text in lines[max(0, span.line - 1) : span.end_line])
 
     @property
@@ -111,8 +118,6 @@ class Accepted:
     unmatched: tuple[str, ...] = ()
 
 
-def first_fitting(
-    suppressions: Iterable[Suppression], mutant: Mutant, lines: Sequence[str]
-) -> Suppression | None:
+def first_fitting(suppressions: Iterable[Suppression], mutant: Mutant, lines: LinesOf) -> Suppression | None:
     """The first decision that means a mutant; None if there is none."""
     return next((one for one in suppressions if one.fits(mutant, lines)), None)

@@ -62,7 +62,10 @@ class Rule(ABC):
             ``{timing}`` and the like stand for; may be empty for those that are published.
         published: rows of the table of published operators that it makes, ``7. original → mutant``, with
             semicolons between them; empty for all others.
-        has_sizes: whether it plants each fault in several magnitudes, of which a threshold is sought.
+        has_sizes: whether it plants each fault in several magnitudes, of which a threshold is sought. Where
+            users demand another one, the plan asks ``FaultProvider.at_magnitude`` for it.
+        has_moments: whether its mutants act at the moments that users ask for (``when``), which are
+            ``Mutant.moment``, and not wherever they are reached.
 
     ``where``, ``rationale`` and ``published`` are paragraphs of the docstring, which begin with ``Where:``,
     ``Stands for:`` and ``Published:``, unless they are given.
@@ -76,6 +79,7 @@ class Rule(ABC):
     rationale: ClassVar[str] = ""
     published: ClassVar[str] = ""
     has_sizes: ClassVar[bool] = False
+    has_moments: ClassVar[bool] = False
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
@@ -89,6 +93,10 @@ class Rule(ABC):
                 for word, counted in _COUNTED.items():
                     text = text.replace(f"{{{word}}}", f"{counted} {_STUDIES}")
                 setattr(cls, name, text.rstrip(".") if name == "where" else text)
+
+    def takes_all_calls(self) -> bool:
+        """Whether what it does to a call depends on earlier ones, so that no moment can be asked of it."""
+        return False
 
 
 class Need(Enum):
@@ -335,12 +343,17 @@ class Operator(Rule):
 
     family: ClassVar[str] = ROBOT
     examples: ClassVar[tuple[Example, ...]] = ()
+    has_moments: ClassVar[bool] = True
     needs: ClassVar[frozenset[Need]] = frozenset()
     does_nothing: ClassVar[bool] = False
     draws: ClassVar[bool] = False
     is_raced: ClassVar[bool] = False
     by_chance: ClassVar[bool] = False
     calls: ClassVar[int] = 1
+
+    def takes_all_calls(self) -> bool:
+        """Whether it needs a memory of the calls of a test."""
+        return Need.MEMORY in self.needs
 
     def needs_of(self, subject: Subject) -> frozenset[Need]:
         """What it asks for at this subject."""

@@ -15,7 +15,8 @@ from mutabot.extensions import ExtensionPart, brought
 from mutabot.journal import records
 from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity, Span
 from mutabot.model.outcome import Apart, Measurement
-from mutabot.report.texts import effect_text, excerpt, state_of, telling
+from mutabot.report.mutant_data import SPAN
+from mutabot.report.texts import effect_text, excerpts, state_of, telling
 from mutabot.results.results import Encoder, MutantResult, Results
 from mutabot.results.score import Group, RoundScores, Score
 from mutabot.results.statistics import Confirmed, Estimate, false_kills, false_survivors
@@ -80,18 +81,20 @@ def accepting_data(results: Results) -> dict[str, Any]:
     }
 
 
-def shown_data(result: MutantResult, source: str | None, suggestion: Suggestion | None) -> dict[str, Any]:
+def shown_data(
+    result: MutantResult, source: Callable[[str], str | None], suggestion: Suggestion | None
+) -> dict[str, Any]:
     """Return one mutant with its source, its story, the checks that ran, and what was suggested.
 
     Args:
-        source: the text of its file, or None if it is not known.
+        source: the text of a file, or None if it is not known.
         suggestion: what was suggested for it; None if nothing was looked for.
     """
     round, diverged = telling(result) or (None, None)
     outcome = result.rounds[round] if round is not None else None
     return {
         **data_of(result),
-        "source": excerpt(source, result.mutant.site.span) if source is not None else [],
+        "source": excerpts(result.mutant.site, source),
         "effect": effect_text(result),
         "story": {"round": round + 1, **data_of(diverged)} if round is not None and diverged else None,
         "checks": data_of(outcome.looked) if outcome is not None else [],
@@ -170,9 +173,9 @@ def _thresholds(found: thresholds.Thresholds) -> dict[str, Any]:
 data_of = Encoder(
     {
         Mutant: "id number operator variant family role=site.role file=site.span.file span=site.span "
-        "function=site.span.function site=site.id call=site.text operation pattern quantity description "
-        "magnitude unit direction? ladder? moment=moment.text",
-        Span: "line column=column+1 end_line end_column=end_column+1",
+        "other_spans=site.other_spans function=site.span.function site=site.id call=site.text operation "
+        "pattern quantity description magnitude unit direction? ladder? moment=moment.text",
+        Span: SPAN,
         Quantity: "kind axis unit frame mode",
         MutantResult: _mutant,
         Outcome: "round=round+1 verdict by test exception message place hits acted away example tests wall "

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from mutabot.model import Span
 from mutabot.report.texts import effect_text, one_line, state_of
 from mutabot.results.results import Encoder
 
@@ -14,11 +15,14 @@ if TYPE_CHECKING:
 
 _LINE = (
     "number=mutant.number id=mutant.id file=mutant.site.span.file line=mutant.site.span.line "
-    "function=mutant.site.span.function operator=mutant.operator family=mutant.family role=mutant.site.role "
+    "other_spans=mutant.site.other_spans function=mutant.site.span.function operator=mutant.operator "
+    "family=mutant.family role=mutant.site.role "
     "description=mutant.description killed=kill_rate.killed valid=kill_rate.valid"
 )
 _GROUP = "family role score=scores.mean check_score=scores.mean_check accepted=scores.accepted"
-_DATA_OF = Encoder({})
+#: facts of a place
+SPAN = "file line column=column+1 end_line end_column=end_column+1"
+_DATA_OF = Encoder({Span: SPAN})
 
 
 def mutant_data(result: MutantResult) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from mutabot.results.results import OUTSIDE, Results, unlooked
 from mutabot.results.statistics import Estimate, Interval, false_kills, false_survivors
 from mutabot.thresholds.thresholds import line_of, thresholds_of
 
-from .texts import acceptance_text, effect_text, escaped, rounds_text
+from .texts import acceptance_text, effect_text, escaped, places_text, rounds_text
 
 if TYPE_CHECKING:
     from mutabot.results.score import Group
@@ -71,7 +71,7 @@ MUTANT_COLUMNS = (">no.", "place", "operator", "*fault")
 
 def mutant_cells(mutant: Mutant, place: PlaceName) -> tuple[str, ...]:
     """The cells of these columns."""
-    return str(mutant.number), place(mutant.site.span), mutant.operator, mutant.description
+    return str(mutant.number), places_text(mutant.site, place), mutant.operator, mutant.description
 
 
 def _errors(results: Results) -> Iterator[Section]:
@@ -234,7 +234,8 @@ def _thresholds(results: Results, place: PlaceName) -> Iterator[Section]:
         runs = sum(len(result.outcomes) for result in results.graded)
         graded = f"{plural(results.ladders, 'ladder')} of graded mutants ({plural(runs, 'run')})"
         rows = [
-            (place(one.mutant.site.span), one.name, line_of(one)) for one in thresholds_of(results).ladders
+            (places_text(one.mutant.site, place), one.name, line_of(one))
+            for one in thresholds_of(results).ladders
         ]
         title = f"{graded}, in no score: `mutabot thresholds` shows them"
         columns = ("place", "*fault", "*noticed")

@@ -18,7 +18,7 @@ from mutabot.model.outcome import first_line, numbers_text
 from mutabot.results.divergence import weight_of
 
 if TYPE_CHECKING:
-    from mutabot.model import Span
+    from mutabot.model import Site, Span
     from mutabot.results.results import MutantResult, Results
 
 #: XML and strict JSON cannot hold these: controls, halves of surrogate pairs, and what is no character at all
@@ -172,7 +172,19 @@ def reason_of(result: MutantResult) -> str:
 
 def survivor_text(result: MutantResult) -> str:
     """Describe a survivor: what it does, in which rounds it survived, and its effect on the world."""
-    return f"{result.mutant.description}: {rounds_text(result)}. {why_alone(result)}"
+    what = f"{result.mutant.description}{also_text(result.mutant.site)}"
+    return f"{what}: {rounds_text(result)}. {why_alone(result)}"
+
+
+def also_text(site: Site) -> str:
+    """Return the other places of a fault that stands in several, for a place where the first is named."""
+    others = ", ".join(span.place for span in site.other_spans)
+    return f" (also at {others})" if others else ""
+
+
+def places_text(site: Site, place: Callable[[Span], str]) -> str:
+    """Return all places of a site, a line each; ``place`` names a span as the reader knows it."""
+    return ",\n".join(map(place, site.spans))
 
 
 def why_alone(result: MutantResult) -> str:
@@ -228,6 +240,18 @@ def _end(outcome: Outcome | None) -> str:
 
 #: columns of a tab in an excerpt
 _TAB = 4
+
+
+def excerpts(site: Site, source: Callable[[str], str | None]) -> list[str]:
+    """Return the lines around each place of a site; of several, each begins with its file and line.
+
+    Args:
+        source: the text of a file, or None if it is not known.
+    """
+    found = [(span, excerpt(text, span)) for span in site.spans if (text := source(span.file)) is not None]
+    if not site.other_spans:
+        return [line for _, lines in found for line in lines]
+    return [line for span, lines in found if lines for line in (span.place, *lines)]
 
 
 def excerpt(source: str, span: Span, *, around: int = 2) -> list[str]:

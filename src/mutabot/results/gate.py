@@ -7,7 +7,6 @@ from collections.abc import Collection, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from mutabot.errors import ExitCode, in_short, plural
-from mutabot.families import GRADED
 from mutabot.frozen import frozen
 from mutabot.journal.records import INCOMPLETE, ShardOf
 from mutabot.model import Verdict
@@ -169,8 +168,7 @@ def _nothing_valid(results: Results) -> str:
 
 def _too_loose(results: Results, demands: Sequence[Demand]) -> Iterator[str]:
     """Each site that tolerates more than is demanded, with direction and rounds."""
-    families = [*(results.meta.get("families") or ()), *([GRADED] if results.graded else [])]
-    return unmet(demands, ladders_of(results) if demands else (), families)
+    return unmet(demands, ladders_of(results) if demands else ())
 
 
 def _found(results: Results, fail_on: Collection[str]) -> Iterator[str]:

@@ -389,7 +389,8 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
             None if mutant.has_sizes else accepting.mutants.get(mutant.id),
         )  # fmt: skip
 
-    texts = {file: journal.source(file) for file in sorted({one.site.span.file for one in mutants})}
+    files = sorted({span.file for one in mutants for span in one.site.spans})
+    texts = {file: journal.source(file) for file in files}
     found = Results(
         meta=meta,
         state="",

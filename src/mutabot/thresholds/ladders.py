@@ -242,8 +242,8 @@ class Ladder:
 
     @property
     def place(self) -> str:
-        """``sorting.py:38``."""
-        return self.mutant.site.span.place
+        """``sorting.py:38``; all places of a fault that stands in several."""
+        return ", ".join(span.place for span in self.mutant.site.spans)
 
     @property
     def name(self) -> str:

@@ -37,7 +37,9 @@ def demanded_of(
 def at_magnitude(mutant: Mutant, size: float) -> Mutant:
     """Return the fault at another magnitude."""
     old, new = f"{mutant.magnitude:g}", f"{size:g}"
-    before, _, behind = mutant.description.rpartition(old)
+    before, found, behind = mutant.description.rpartition(old)
+    if not found:  # it does not say how large the fault is
+        before, behind = f"{mutant.description}, ", ""
     variant = mutant.variant.removeprefix(mutant.direction)
     return replace(
         mutant,

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from mutabot.errors import plural, unknown_name_text
-from mutabot.families import GRADED
 from mutabot.model import Outcome, Verdict
 from mutabot.model.outcome import numbers_text
 from mutabot.thresholds.brackets import MagnitudeResult, seen
@@ -193,19 +192,14 @@ def thresholds_of(results: GradedResults) -> Thresholds:
     )
 
 
-def unmet(
-    demands: Iterable[Demand], ladders: Sequence[Ladder], families: Sequence[str] = (GRADED,)
-) -> Iterator[str]:
-    """The demands that do not hold: ``sorting.py:38 arm.move_by y +: survives 5 mm in round 3 (mutant 17)``.
-
-    ``families`` are those that the campaign was asked for.
-    """
+def unmet(demands: Iterable[Demand], ladders: Sequence[Ladder]) -> Iterator[str]:
+    """The demands that do not hold: ``sorting.py:38 arm.move_by y +: survives 5 mm in round 3``."""
     kinds = {one.id: one.quantity.kind if one.quantity is not None else None for one in ladders}
     for demand in demands:
         about = [one for one in ladders if demand.is_about(one.mutant, kinds[one.id])]
         found = {f"{one.place} {one.name}": _why_unmet(demand, one) for one in about}
         if not about:
-            found = {"no ladder": _why_nothing_fits(demand, ladders, families)}
+            found = {"no ladder": _why_nothing_fits(demand, ladders)}
         source = f"{demand.source} · " if demand.source else ""
         yield from (f"{source}{demand.text}: {where}: {why}" for where, why in found.items() if why)
 
@@ -257,11 +251,11 @@ def _survivors_text(ladder: Ladder, survivors: Sequence[tuple[int, float, Outcom
     return f"survives {', '.join(told)}"
 
 
-def _why_nothing_fits(demand: Demand, ladders: Sequence[Ladder], families: Sequence[str]) -> str:
-    if GRADED not in families:
-        return 'the campaign has no graded mutants; add "graded" to families, or run with --family graded'
+def _why_nothing_fits(demand: Demand, ladders: Sequence[Ladder]) -> str:
     if not ladders:
-        return "the campaign has no ladders"
+        return (
+            "the campaign has no graded mutants; `mutabot run` plants those of which a demand speaks, if any"
+        )
     here = [one for one in ladders if demand.is_at(one.mutant)]
     if not here:
         places = {name for one in ladders for name in (one.place, one.mutant.site.id, one.mutant.site.text)}

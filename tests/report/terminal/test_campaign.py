@@ -254,7 +254,7 @@ def test_what_fits_several_mutants_names_ten_of_them(tmp_path: Path, results: Re
 
 def test_show_marks_the_call_in_its_source(results: Results) -> None:
     on = console(80)
-    print_mutant(on, results.mutant("3"), samples.PROGRAM)
+    print_mutant(on, results.mutant("3"), lambda _: samples.PROGRAM)
     lines = written(on).splitlines()
     (source,) = (line for line in lines if line.startswith("> "))
     assert "größe" in source
@@ -262,13 +262,13 @@ def test_show_marks_the_call_in_its_source(results: Results) -> None:
 
 def test_show_gives_the_kill_rate_with_its_interval(results: Results) -> None:
     on = console(100)
-    print_mutant(on, results.mutant("1"), None)
+    print_mutant(on, results.mutant("1"), lambda _: None)
     assert "in 2 of 2 valid rounds, 95 % interval 34–100 %" in written(on)
 
 
 def test_show_tells_what_changed_and_how_each_round_ended(results: Results) -> None:
     on = console(100)
-    print_mutant(on, results.mutant("1"), None, everything=True)
+    print_mutant(on, results.mutant("1"), lambda _: None, everything=True)
     text = written(on)
     for words in (
         samples.REVERSE.id,
@@ -298,7 +298,7 @@ def test_rounds_that_ended_alike_are_one_line(tmp_path: Path) -> None:
     path = samples.write_journal(tmp_path / "journal.sqlite", outcomes=outcomes, rounds=8)
     with Journal.open(path) as journal:
         on = console(100)
-        print_mutant(on, read_results(journal).mutant("1"), None, everything=True)
+        print_mutant(on, read_results(journal).mutant("1"), lambda _: None, everything=True)
     lines = [line.strip() for line in written(on).partition("Rounds\n")[2].partition("\n\n")[0].splitlines()]
     assert lines == [
         "C C C C C S S ·",
@@ -314,7 +314,7 @@ def test_rounds_that_ended_alike_are_one_line(tmp_path: Path) -> None:
 
 def test_one_screen_shows_the_rounds_that_tell_most(results: Results) -> None:
     on = console(100)
-    print_mutant(on, results.mutant("4"), None)
+    print_mutant(on, results.mutant("4"), lambda _: None)
     text = written(on)
     assert "round 1: S survived" in text
     assert "killed by a check" not in text
@@ -326,7 +326,7 @@ def test_show_tells_where_a_mutant_stayed_away_and_why(results: Results) -> None
     why = {"the value would leave the range [-1, 1]": 138, "the value would stay the same": 1}
     rounds = tuple(one and replace(one, acted=161, hits=300, away=why) for one in mutant.rounds)
     on = console(100)
-    print_mutant(on, replace(mutant, rounds=rounds), None, everything=True)
+    print_mutant(on, replace(mutant, rounds=rounds), lambda _: None, everything=True)
     text = written(on)
     assert "acted at 161 of 300 hits" in text
     assert "left 138 calls unchanged: the value would leave the range [-1, 1]" in text

@@ -29,7 +29,7 @@ def result_of(folder: Path, mutant: Mutant) -> MutantResult:
 
 def shown(folder: Path, mutant: Mutant, found: Suggestion | None) -> str:
     file = io.StringIO()
-    print_mutant(make_console(file, width=120), result_of(folder, mutant), None, found)
+    print_mutant(make_console(file, width=120), result_of(folder, mutant), lambda _: None, found)
     return file.getvalue()
 
 

@@ -99,7 +99,7 @@ def test_a_demand_that_fits_no_ladder_is_no_pass(tmp_path: Path, demand: Demand,
 def test_a_campaign_without_graded_mutants_says_how_to_get_them(tmp_path: Path) -> None:
     found = journals.results(tmp_path, with_others=True, families=["robot"])
     decision = decide(found, demands=[TEN])
-    assert "--family graded" in decision.lines[0]
+    assert "`mutabot run` plants those of which a demand speaks" in decision.lines[0]
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,6 @@
 """All providers of faults, those of the core and of packages; and what the core's own plant in calls.
 
-Operators at places make mutants, at every call or at moments; what cannot matter is left out, with the
-reason.
+Operators at places make mutants; what cannot matter is left out, with the reason.
 """
 
 from __future__ import annotations
@@ -12,7 +11,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from random import Random
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from mutabot.errors import ExtensionError, MutabotError, OperatorError, unknown_name_text
 from mutabot.families import CALLS, CATALOGUE, GRADED, MESSAGES, MIDDLEWARE, OF_CALLS, ROBOT
@@ -27,7 +26,6 @@ from mutabot.model import (
     Call,
     Kind,
     Middleware,
-    Moment,
     Mutant,
     Operation,
     ProgramText,
@@ -36,7 +34,6 @@ from mutabot.model import (
     Vocabulary,
 )
 from mutabot.model.activation import Activation
-from mutabot.model.mutant import Place, When
 from mutabot.model.quantity import holds_number, is_number, is_reading_of
 from mutabot.operators import Need, Operator, Subject, load_all
 from mutabot.operators.operator import Rule, with_operation
@@ -44,53 +41,9 @@ from mutabot.operators.passage import CallRecord, rehearse
 from mutabot.operators.registry import names as operators_on_calls
 from mutabot.operators.registry import operator as operator_named
 from mutabot.original import Hit, NoAnswerError, Original, RecordedAnswers, idle_of
-from mutabot.thresholds.demands import is_same
-from mutabot.thresholds.planned import at_magnitude, demanded_of, split_ladders
 
-
-def at_moments(
-    planted: Sequence[PlannedMutant],
-    original: Original,
-    vocabulary: Vocabulary,
-    wanted: Sequence[Moment | None],
-) -> list[PlannedMutant]:
-    """Each mutant at each of these moments; None is every call."""
-    found = [one for one in planted if one.reason is not None]
-    for one in planted:
-        for moment in wanted if one.reason is None else ():
-            made = one.mutant if moment is None else _at(one.mutant, moment, original)
-            reason = _why_not(made, vocabulary, original)
-            order = one.order if reason is None else (1, *one.order[1:])  # left out here: behind the others
-            found.append(replace(one, mutant=made, reason=reason, order=order))
-    return found
-
-
-def _at(mutant: Mutant, moment: Moment, original: Original) -> Mutant:
-    if moment.when is When.ONCE:
-        counts = {f"{round} {test}": count for (round, test), count in _calls_at(mutant, original).items()}
-        moment = replace(moment, calls=counts)
-    return replace(mutant, moment=moment, description=f"{mutant.description}, {moment.words}")
-
-
-def _why_not(mutant: Mutant, vocabulary: Vocabulary, original: Original) -> str | None:
-    moment = mutant.moment
-    if moment is None:
-        return None
-    if Need.MEMORY in operator_named(mutant.operator).needs:
-        return "what it does to a call depends on earlier ones, so that it acts at all of them"
-    if moment.asks_time and vocabulary.clock is None:
-        return "the vocabulary names no clock"
-    most = max(_calls_at(mutant, original).values(), default=0)
-    is_reached = Place.of(mutant) in original.hits
-    if is_reached and moment.first > most and not moment.asks_time:
-        return f"no test makes call {moment.first:g} here; the most are {most}"
-    return None
-
-
-def _calls_at(mutant: Mutant, original: Original) -> Counter[tuple[int, str]]:
-    """How many calls the site has in each test of each round."""
-    return Counter(hit.where for hit in original.hits.get(Place.of(mutant), ()))
-
+if TYPE_CHECKING:
+    from mutabot.model.mutant import Place
 
 #: why a speed or ratio is not reversed
 NO_SIGN = (
@@ -123,27 +76,19 @@ class CallFaults(FaultProvider):
     families: ClassVar[tuple[str, ...]] = (ROBOT, GRADED, CATALOGUE)
     location = "operation"
     needs_vocabulary = True
+    in_program = True
     numbered_with = CALLS
 
     def rules(self) -> Sequence[Operator]:
         """All operators on calls but those of messages, also those that packages bring."""
         return [rule for rule in load_all() if rule.family != MIDDLEWARE]
 
-    def is_asked_for(self, project: Project) -> bool:
-        """True also for operators of packages, which have families of their own, and for those of demands."""
-        return any(_is_asked_for(rule, project) for rule in self.rules())
-
     def plan(self, project: Project, original: Original) -> Planned:
-        """The mutants of its operators at all places that the tests reach.
-
-        Those with sizes come behind all others, whose numbers are the same with and without them.
-        """
-        operators = [rule for rule in self.rules() if _is_asked_for(rule, project)]
+        """The mutants of its operators at all places that the tests reach."""
+        operators = [rule for rule in self.rules() if project.asks_for(rule)]
         found = list(_at_places(original, project.vocabulary, operators, self.name))
         found += _not_covered(original, project.vocabulary, operators, self.name)
-        if project.moments != (None,):
-            found = at_moments(found, original, project.vocabulary, project.moments)
-        return Planned(_ladders_last(_with_demanded(found, project)))
+        return Planned(found)
 
     def draws(self, operator: str) -> bool:
         """Return whether one of its operators draws new random numbers in each round."""
@@ -163,10 +108,6 @@ class MessageFaults(CallFaults):
     def rules(self) -> Sequence[Operator]:
         """The operators on messages."""
         return [rule for rule in load_all() if rule.family == MIDDLEWARE]
-
-
-def _is_asked_for(rule: Operator, project: Project) -> bool:
-    return rule.family in project.families or (bool(project.demands) and rule.has_sizes)
 
 
 def _at_places(
@@ -462,7 +403,8 @@ def all_providers() -> tuple[FaultProvider, ...]:
 
 def asked_for(project: Project) -> list[FaultProvider]:
     """Return the providers whose mutants are selected; packages are searched only if they may have some."""
-    known = _OWN if set(project.families) <= set(OF_CALLS) else all_providers()
+    of_calls = {demand.operator for demand in project.demands} <= set(operators_on_calls())
+    known = _OWN if of_calls and set(project.families) <= set(OF_CALLS) else all_providers()
     return [provider for provider in known if provider.is_asked_for(project)]
 
 
@@ -505,39 +447,3 @@ def rules_of(families: Collection[str]) -> list[Rule]:
 def operators_of_packages() -> dict[str, str]:
     """The operators of the packages' providers, with their families. To look at these may take its time."""
     return {rule.name: rule.family for one in brought_providers() for rule in one.rules()}
-
-
-def _with_demanded(planted: Sequence[PlannedMutant], project: Project) -> list[PlannedMutant]:
-    """Return the mutants, with one added for each demanded magnitude that its ladder lacks.
-
-    Where a family was not asked for, the ladders stay of which a demand speaks, and no others of it.
-    """
-    demands, families = project.demands, project.families
-    if not demands:
-        return [*planted]
-    ladders = split_ladders(one.mutant for one in planted if one.reason is None)[1]
-    wanted = demanded_of(ladders, demands, project.vocabulary)
-    found = [
-        one
-        for one in planted
-        if one.reason is not None or one.mutant.family in families or wanted.get(one.mutant.ladder)
-    ]
-    places = {one.mutant.ladder: one for one in reversed(found) if one.reason is None}
-    for name, mutants in ladders.items():
-        found += [
-            replace(places[name], mutant=at_magnitude(mutants[0], size))
-            for size in wanted.get(name, ())
-            if not any(is_same(one.magnitude or 0.0, size) for one in mutants)
-        ]
-    return found
-
-
-def _ladders_last(planted: Sequence[PlannedMutant]) -> list[PlannedMutant]:
-    """Number the mutants so that graded ones come last, ladder by ladder."""
-    _, ladders = split_ladders(one.mutant for one in planted if one.reason is None)
-    steps = [mutant.id for mutants in ladders.values() for mutant in mutants]
-    order = {mutant: (1, number) for number, mutant in enumerate(steps)}
-    return [
-        replace(one, order=order[one.mutant.id]) if one.reason is None and one.mutant.id in order else one
-        for one in planted
-    ]

@@ -281,7 +281,7 @@ class Dependencies:
             common = was.common
             found = [*found, *self._once(lambda: changes(common, self.common), common)]
         if is_known and was.own != self.own(mutant, round) and not found:
-            found = ["the calls return something else"]
+            found = ["the calls return something else" if mutant.operation else "it does something else"]
         return found
 
     def renewed(self, key: str, was: Was, mutant: Mutant, round: int) -> str:

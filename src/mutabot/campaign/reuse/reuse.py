@@ -394,7 +394,8 @@ def altered_since(
         was = Was(
             then.common,
             then.place(mutant, round, whole, until),
-            then.own(mutant, round),
+            # what another provider makes its mutants from is not known to have been the same at the revision
+            then.own(mutant, round) if known is None or mutant.operation else known.own,
             then.tree,
             known.found_in if known is not None else now.tree,
             known.executed if known is not None else now.executed_by(mutant, round),

@@ -13,6 +13,7 @@ from mutabot.report.texts import (
     NOT_RUN,
     acceptance_text,
     one_line,
+    places_text,
     reason_of,
     rounds_text,
     short_reason,
@@ -95,7 +96,8 @@ def _case(suite: Xml.Element, result: MutantResult, material: Material) -> None:
     )
     state = state_of(result)
     element = _ELEMENT.get(state)
-    text = f"{replace(mutant.site.span, file=file).place}: {mutant.description}\n{reason_of(result)}"
+    place = places_text(mutant.site, lambda span: replace(span, file=material.path(span.file)).place)
+    text = f"{one_line(place)}: {mutant.description}\n{reason_of(result)}"
     if element is None:
         Xml.SubElement(case, "system-out").text = text
         return

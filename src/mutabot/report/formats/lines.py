@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from mutabot.report.mutant_data import end_data, lines_of, mutant_data
-from mutabot.report.texts import one_line
+from mutabot.report.texts import one_line, places_text
 
 if TYPE_CHECKING:
     from mutabot.report.format import Material
@@ -24,7 +24,7 @@ def make(material: Material) -> str:
 def mutant_line(result: MutantResult) -> str:
     """Return the line of a mutant."""
     data = mutant_data(result)
-    place = result.mutant.site.span.place
+    place = one_line(places_text(result.mutant.site, lambda span: span.place))
     what = one_line(result.mutant.description)
     cells = (_keyword(data["status"]), str(data["number"]), place, data["operator"], what, data["why"])
     return "\t".join(cells)

@@ -10,10 +10,11 @@ from collections import Counter
 from collections.abc import Mapping
 from typing import Any
 
+from mutabot.languages.registry import language_of
 from mutabot.model import Mutant, Span, Verdict
 from mutabot.report.document import dumps
 from mutabot.report.format import Material, utf16
-from mutabot.report.texts import ACCEPTED, NOT_RUN, reason_of, state_of
+from mutabot.report.texts import ACCEPTED, NOT_RUN, also_text, reason_of, state_of
 from mutabot.results.results import MutantResult, killing_tests
 
 _SCHEMA_VERSION = "2.0"
@@ -61,7 +62,11 @@ def _files(material: Material) -> dict[str, Any]:
         file = result.mutant.site.span.file
         entry = found.setdefault(
             material.path(file),
-            {"language": "python", "source": material.campaign.source(file) or "", "mutants": []},
+            {
+                "language": language_of(file) or "text",
+                "source": material.campaign.source(file) or "",
+                "mutants": [],
+            },
         )
         entry["mutants"].append(_mutant(result, material))
     return found
@@ -73,7 +78,7 @@ def _mutant(result: MutantResult, material: Material) -> dict[str, Any]:
     return {
         "id": mutant.id,
         "mutatorName": mutant.operator,
-        "description": mutant.description,
+        "description": f"{mutant.description}{also_text(mutant.site)}",
         "replacement": _replacement(mutant, material),
         "location": _location(mutant.site.span, material),
         "status": _STATUS[state_of(result)],

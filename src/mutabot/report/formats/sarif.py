@@ -12,7 +12,7 @@ from mutabot.report.format import Material, utf16
 from mutabot.report.texts import survivor_text
 
 if TYPE_CHECKING:
-    from mutabot.model import Mutant, Site
+    from mutabot.model import Mutant, Site, Span
     from mutabot.model.suppression import Acceptance
     from mutabot.results.results import MutantResult
 
@@ -94,6 +94,7 @@ def _result(result: MutantResult, material: Material, rules: Mapping[str, int]) 
         "level": _level(result),
         "message": {"text": _message(survivor_text(result))},
         "locations": [_location(mutant.site, material)],
+        **_related(mutant.site, material),
         "partialFingerprints": {_FINGERPRINT: mutant.id},
         "properties": {"mutant": mutant.id, "number": mutant.number},
         **_suppressions(result.acceptance),
@@ -120,7 +121,23 @@ def _level(result: MutantResult) -> str:
 def _location(site: Site, material: Material) -> dict[str, Any]:
     if not site.is_in_file:
         return {"logicalLocations": [{"fullyQualifiedName": site.id, "kind": "variable"}]}
-    span = site.span
+    function = site.span.function or site.id
+    return {
+        "physicalLocation": _region(site.span, material),
+        "logicalLocations": [
+            {"fullyQualifiedName": function, **({"kind": "function"} if site.span.function else {})}
+        ],
+    }
+
+
+def _related(site: Site, material: Material) -> dict[str, Any]:
+    """The other places of a fault that stands in several."""
+    spans = site.other_spans
+    found = [{"id": number, "physicalLocation": _region(one, material)} for number, one in enumerate(spans)]
+    return {"relatedLocations": found} if found else {}
+
+
+def _region(span: Span, material: Material) -> dict[str, Any]:
     place = material.place(span, utf16)
     region: dict[str, Any] = {"startLine": place.line, "endLine": place.end_line}
     if place.text is not None:
@@ -130,10 +147,7 @@ def _location(site: Site, material: Material) -> dict[str, Any]:
             "snippet": {"text": place.text},
         }
     file = {"uri": quote(material.path(span.file)), "uriBaseId": _ROOT}
-    return {
-        "physicalLocation": {"artifactLocation": file, "region": region},
-        "logicalLocations": [{"fullyQualifiedName": span.function, "kind": "function"}],
-    }
+    return {"artifactLocation": file, "region": region}
 
 
 def _message(text: str) -> str:

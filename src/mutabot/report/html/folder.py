@@ -36,8 +36,9 @@ from mutabot.thresholds.thresholds import line_of, thresholds_of
 #: facts of a row of the list, by the names that they have in the results document
 _ROW = (
     "number=mutant.number id=mutant.id operator=mutant.operator variant=mutant.variant family=mutant.family "
-    "role=mutant.site.role file=mutant.site.span.file span=mutant.site.span site=mutant.site.id "
-    "function=mutant.site.span.function operation=mutant.operation quantity=mutant.quantity "
+    "role=mutant.site.role file=mutant.site.span.file span=mutant.site.span "
+    "other_spans=mutant.site.other_spans site=mutant.site.id function=mutant.site.span.function "
+    "operation=mutant.operation quantity=mutant.quantity "
     "unit=quantity.unit description=mutant.description killed=kill_rate.killed valid=kill_rate.valid "
     "indistinguishable deviation earlier outdated"
 )

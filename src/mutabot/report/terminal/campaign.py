@@ -14,6 +14,7 @@ from rich.text import Text
 from mutabot.errors import plural
 from mutabot.report.document import data_of
 from mutabot.report.sections import Section, sections, size_text, skipped, untested
+from mutabot.report.texts import places_text
 
 from .console import Breakable, below, heading, legend, letters, make_table, plain, print_section, short_place
 
@@ -93,7 +94,7 @@ def _mutants(results: Results) -> Iterator[RenderableType]:
         table.add_row(
             f"{mutant.number}{'*' if result.outdated else ''}",
             mutant.site.role.value,
-            short_place(mutant.site.span),
+            places_text(mutant.site, short_place),
             mutant.operator,
             Breakable(plain(mutant.description)),
             letters(result.rounds, many=many),
@@ -122,7 +123,7 @@ def print_plan(
         (
             str(mutant.number),
             mutant.site.role.value,
-            short_place(mutant.site.span),
+            places_text(mutant.site, short_place),
             mutant.operator,
             mutant.description + (f"\n{mutant.id}" if everything else others.get(mutant.ladder, "")),
         )

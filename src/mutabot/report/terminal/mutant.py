@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
@@ -12,7 +12,7 @@ from rich.text import Text
 from mutabot.errors import plural
 from mutabot.model.outcome import end_in_words, numbers_text
 from mutabot.report.sections import Section, between
-from mutabot.report.texts import acceptance_text, effect_text, excerpt, telling
+from mutabot.report.texts import acceptance_text, effect_text, excerpts, places_text, telling
 
 from .console import Breakable, below, heading, letters, make_table, mark_of, plain, print_section
 
@@ -29,7 +29,7 @@ _LINES = 8
 def print_mutant(
     console: Console,
     result: MutantResult,
-    source: str | None,
+    source: Callable[[str], str | None],
     suggestion: Suggestion | None = None,
     *,
     everything: bool = False,
@@ -37,14 +37,14 @@ def print_mutant(
     """Print one mutant.
 
     Args:
-        source: the text of its file, or None if it is not known.
+        source: the text of a file, or None if it is not known.
         suggestion: what was suggested for it; None if nothing was looked for.
         everything: print every round.
     """
     mutant = result.mutant
     console.print(Text(f"Mutant {mutant.number}: {plain(mutant.description)}", style="bold", overflow="fold"))
     console.print(_facts(result))
-    lines = excerpt(source, mutant.site.span) if source is not None else []
+    lines = excerpts(mutant.site, source)
     if lines:
         text = "\n" + "\n".join(plain(line) for line in lines)
         console.print(Text(text, no_wrap=True, overflow="ellipsis"))
@@ -70,13 +70,13 @@ def print_replayed(console: Console, mutant: Mutant, rounds: Iterable[Replayed])
 
 def _facts(result: MutantResult) -> Table:
     mutant, rate = result.mutant, result.kill_rate
-    span = mutant.site.span
+    place, function = places_text(mutant.site, lambda span: span.place), mutant.site.span.function
     of_rounds = f"in {rate.killed} of {plural(rate.valid, 'valid round')}"
     interval = f", 95 % interval {between(rate.interval)}" if rate.interval is not None else ""
     command = f", command {mutant.pattern_name}" if mutant.pattern else ""
     facts = {
         "id": mutant.id,
-        "place": f"{span.place} in {span.function}" if span.function else span.place,
+        "place": f"{place} in {function}" if function else place,
         "operator": f"{mutant.operator} ({mutant.family}, {mutant.site.role})",
         "operation": f"{mutant.operation}{command}",
         "quantity": _quantity_text(mutant.quantity, result.quantity) if mutant.operation else "",

@@ -16,6 +16,8 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, ProgressColum
 from rich.table import Column
 from rich.text import Text
 
+from mutabot.report.texts import one_line, places_text
+
 from .console import plain, short_place
 
 if TYPE_CHECKING:
@@ -100,7 +102,8 @@ class Tally:
         if end.is_reused:
             return None
         mutant = end.mutant
-        what = f"{mutant.number} {short_place(mutant.site.span)} {mutant.operator}: {mutant.description}"
+        place = one_line(places_text(mutant.site, short_place))
+        what = f"{mutant.number} {place} {mutant.operator}: {mutant.description}"
         return f"{state}: {what} (round {end.outcome.round + 1})"
 
     @property

@@ -39,14 +39,15 @@
     data.mutants = data.mutants.map((row) => {
       const one = Object.fromEntries(data.columns.map((name, index) => [name, row[index]]));
       [one.line, one.endLine] = [one.span.line, one.span.end_line];
-      one.place = one.line ? `${one.file}:${one.line}` : one.file || "–";
+      one.spans = [one.span, ...one.other_spans]; // a patch stands in several places
+      one.place = one.spans.map((span) => span.line ? `${span.file}:${span.line}` : span.file || "–").join(", ");
       one.reach = reaching.get(one.site) || [];
       one.survives = /[SN]/.test(one.ends) && one.status !== "accepted";
       one.haystack = [one.number, one.id, one.place, one.function, one.operator, one.description, one.why].join("\n").toLowerCase();
       return one;
     });
     const programs = data.mutants.filter((one) => one.role === "program");
-    data.files = [...new Set([...programs, ...data.mutants].map((one) => one.file))]; // the program's first
+    data.files = [...new Set([...programs, ...data.mutants].flatMap((one) => one.spans.map((span) => span.file)))]; // the program's first
     data.byNumber = new Map(data.mutants.map((one) => [one.number, one]));
     return data;
   }

@@ -30,7 +30,7 @@
       if (those[0].parts.length === depth + 1) return { name, file: those[0].file, mutants: those[0].mutants };
       const within = branch(those, depth + 1);
       if (within.length === 1 && within[0].within) return { ...within[0], name: `${name}/${within[0].name}` };
-      return { name, within, mutants: those.flatMap((one) => one.mutants) };
+      return { name, within, mutants: [...new Set(those.flatMap((one) => one.mutants))] };
     });
   }
 
@@ -43,8 +43,8 @@
   /** The tree; of a single file there is none. */
   mutabot.fileTree = (campaign, current) => {
     if (campaign.files.length < 2) return "";
-    const byFile = Map.groupBy(campaign.mutants, (one) => one.file);
-    const files = campaign.files.map((file) => ({ file, parts: file.split("/"), mutants: byFile.get(file) }));
+    const inFile = (file) => campaign.mutants.filter((one) => one.spans.some((span) => span.file === file));
+    const files = campaign.files.map((file) => ({ file, parts: file.split("/"), mutants: inFile(file) }));
     return h("nav", { class: "files", "aria-label": "Files" }, rows(branch(files, 0), current));
   };
 })();

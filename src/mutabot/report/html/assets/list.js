@@ -9,6 +9,8 @@
     status: [(one) => marks.ORDER.indexOf(one.status), 1], killed: [(one) => (one.valid ? one.killed / one.valid : 2), 1], deviation: [(one) => (one.survives ? one.deviation : -1), -1],
   };
 
+  const isAsked = (span, asked) => (!asked.file || span.file === asked.file) && (!asked.line || (span.line <= Number(asked.line) && span.end_line >= Number(asked.line)));
+
   /** The mutants that are asked for, in the order that is asked for. */
   function chosen(asked) {
     const campaign = mutabot.campaign;
@@ -17,7 +19,7 @@
     const test = asked.test !== undefined ? Number(asked.test) : null;
     const found = campaign.mutants.filter((one) =>
       (!states || states.has(one.status)) && (!asked.family || one.family === asked.family) && (!asked.role || one.role === asked.role) &&
-      (!asked.operator || one.operator === asked.operator) && (!asked.file || one.file === asked.file) && (!asked.line || (one.line <= Number(asked.line) && one.endLine >= Number(asked.line))) &&
+      (!asked.operator || one.operator === asked.operator) && one.spans.some((span) => isAsked(span, asked)) &&
       (!asked.end || one.ends.includes(asked.end)) && (!asked.world || (one.survives && one.indistinguishable === (asked.world === "same"))) &&
       (test === null || one.reach.includes(test) || one.kills.some((kill) => kill[0] === test)) &&
       words.every((word) => one.haystack.includes(word)));
@@ -45,7 +47,8 @@
         h("select", { id, onchange: (event) => { state[name] = event.target.value; delete state.page; update(); } },
           h("option", { value: "" }, "all"), values.map(([value, text]) => h("option", { value, selected: String(state[name]) === value }, text))));
     }
-    const each = (key) => [...new Set(campaign.mutants.map((one) => one[key]))].sort().map((value) => [value, value]);
+    const named = (values) => [...new Set(values)].sort().map((value) => [value, value]);
+    const each = (key) => named(campaign.mutants.map((one) => one[key]));
 
     const counts = new Map();
     for (const one of campaign.mutants) counts.set(one.status, (counts.get(one.status) || 0) + 1);
@@ -65,7 +68,7 @@
       h("div", { class: "filters", role: "search", "aria-label": "Filter mutants" },
         h("div", { class: "field wide" }, h("label", { for: "search" }, "Search"), search), chips,
         h("div", { class: "selects" }, select("role", "Role", each("role")), select("family", "Family", each("family")), select("operator", "Operator", each("operator")),
-          select("file", "File", each("file")), select("world", "Survivors by effect", [["differs", "with an effect"], ["same", "no measured effect"]]), select("test", "Reached by", campaign.tests.map((name, index) => [String(index), name])), reset)),
+          select("file", "File", named(campaign.files)), select("world", "Survivors by effect", [["differs", "with an effect"], ["same", "no measured effect"]]), select("test", "Reached by", campaign.tests.map((name, index) => [String(index), name])), reset)),
       told, results);
 
     function update(isFirst) {

@@ -24,7 +24,7 @@
         upper || lower ? h("nav", { "aria-label": "Survivors beside this one in the source" }, h("span", null, "Survivors in the source:"),
           step(upper, upper && `↑ ${upper.place}`, "Shift+P"), step(lower, lower && `↓ ${lower.place}`, "Shift+N")) : null),
       h("h1", { tabindex: "-1" }, h("span", { class: "number" }, `${one.number} `), one.description),
-      h("p", { class: "under" }, marks.status(one.status), marks.ends(one.ends), h("span", { class: "place" }, one.place, " in ", one.function), h("span", null, `${one.operator} (${one.family}, ${one.role})`)),
+      h("p", { class: "under" }, marks.status(one.status), marks.ends(one.ends), h("span", { class: "place" }, one.place, one.function ? ` in ${one.function}` : ""), h("span", null, `${one.operator} (${one.family}, ${one.role})`)),
       h("p", { class: "story big" }, mutabot.breakable(one.why)));
     const holder = h("div", null, h("p", { class: "wait" }, "The mutant is being read …"));
     body.append(holder);
@@ -72,21 +72,26 @@
   function excerpt(one, page) {
     const section = h("section", { "aria-labelledby": "there" }, h("h2", { id: "there" }, "Source location"));
     mutabot.load("sources", "data/sources.js").then((sources) => {
-      const text = new Map(sources).get(one.file);
-      if (text === undefined) { section.append(empty("The text of this file was not written down.")); return; }
-      const lines = text.split("\n");
-      const from = Math.max(1, one.line - AROUND), to = Math.min(lines.length, one.endLine + AROUND);
-      const box = h("div", { class: "code small" });
-      for (let at = from; at <= to; at += 1) {
-        const line = lines[at - 1];
-        const inside = at >= one.line && at <= one.endLine;
-        const a = at === one.line ? characters(line, one.span.column) : line.search(/\S|$/), b = at === one.endLine ? characters(line, one.span.end_column) : line.length;
-        box.append(h("div", { class: `line${inside ? " marked" : ""}` }, h("span", { class: "at" }, at), h("code", null, inside ? [line.slice(0, a), h("mark", null, line.slice(a, b)), line.slice(b)] : line || " ")));
-      }
-      section.append(box, page.change ? h("p", null, `At first, the program ${page.change}`, page.told ? [" (", page.told, ")"] : null, ".") : "",
-        h("p", null, h("a", { class: "more", href: address(["source", one.file], { line: String(one.line) }) }, "The whole file")));
+      for (const span of one.spans) section.append(...lines(span, new Map(sources).get(span.file), one.spans.length > 1));
+      if (page.change) section.append(h("p", null, `At first, the program ${page.change}`, page.told ? [" (", page.told, ")"] : null, "."));
     }, (error) => section.append(h("p", null, error.message)));
     return section;
+  }
+
+  /** The lines around a place; with its name where there are others. */
+  function lines(span, text, isNamed) {
+    if (text === undefined) return [empty(`The text of ${isNamed ? span.file : "this file"} was not written down.`)];
+    const all = text.split("\n");
+    const from = Math.max(1, span.line - AROUND), to = Math.min(all.length, span.end_line + AROUND);
+    const box = h("div", { class: "code small" });
+    for (let at = from; at <= to; at += 1) {
+      const line = all[at - 1];
+      const inside = at >= span.line && at <= span.end_line;
+      const a = at === span.line ? characters(line, span.column) : line.search(/\S|$/), b = at === span.end_line ? characters(line, span.end_column) : line.length;
+      box.append(h("div", { class: `line${inside ? " marked" : ""}` }, h("span", { class: "at" }, at), h("code", null, inside ? [line.slice(0, a), h("mark", null, line.slice(a, b)), line.slice(b)] : line || " ")));
+    }
+    const whole = isNamed ? `The whole of ${span.file}` : "The whole file";
+    return [box, h("p", null, h("a", { class: "more", href: address(["source", span.file], { line: String(span.line) }) }, whole))];
   }
 
   function facts(one, page) {

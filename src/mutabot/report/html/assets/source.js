@@ -23,7 +23,7 @@
       holder.replaceChildren(text === undefined
         ? empty("The text of this file was not written down.", "The journal is of an older version of mutabot, or the file could not be read. The mutants are in ",
           h("a", { href: address(["mutants"], { file }) }, "the list"), ".")
-        : code(file, text, campaign.mutants.filter((one) => one.file === file)));
+        : code(file, text, campaign.mutants.filter((one) => one.spans.some((span) => span.file === file))));
       const wanted = asked.line && document.getElementById(`L${asked.line}`);
       if (wanted) { wanted.classList.add("wanted"); if (isNew) wanted.scrollIntoView({ block: "center" }); }
       stops.push(survivors(holder, wanted, isNew));
@@ -67,7 +67,10 @@
 
   function code(file, text, mutants) {
     const byLine = new Map();
-    for (const one of mutants) byLine.set(one.line, [...(byLine.get(one.line) || []), one]);
+    for (const one of mutants) {
+      const lines = new Set(one.spans.filter((span) => span.file === file).map((span) => span.line));
+      for (const line of lines) byLine.set(line, [...(byLine.get(line) || []), one]);
+    }
     const box = h("div", { class: "code", role: "list", "aria-label": `${file}, line by line` });
     coloured(file, text.replace(/\n$/, "")).forEach((line, index) => box.append(row(file, line, index + 1, byLine.get(index + 1) || [])));
     const toggle = h("label", { class: "toggle" }, h("input", { type: "checkbox", checked: true, onchange: (event) => { box.classList.toggle("bare", !event.target.checked); } }), "Survivors under their lines");
