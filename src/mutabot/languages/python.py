@@ -142,7 +142,7 @@ def _expressions(scope: ast.AST) -> list[ast.expr]:
     while waiting:
         node = waiting.pop()
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
-            waiting.extend(_outer(node))
+            waiting.extend(outer_of(node))
             continue
         if isinstance(node, ast.expr):
             found.append(node)
@@ -151,18 +151,17 @@ def _expressions(scope: ast.AST) -> list[ast.expr]:
 
 
 def _own(scope: ast.AST) -> list[ast.AST]:
-    outer = {id(node) for node in _outer(scope)}
+    outer = {id(node) for node in outer_of(scope)}
     return [node for node in ast.iter_child_nodes(scope) if id(node) not in outer]
 
 
-def _outer(node: ast.AST) -> list[ast.AST]:
+def outer_of(node: ast.AST) -> list[ast.AST]:
+    """The parts of a function or class that are evaluated in the scope around it."""
     if isinstance(node, ast.ClassDef):
         return [*node.decorator_list, *node.bases, *(keyword.value for keyword in node.keywords)]
-    if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
-        defaults = [
-            default for default in (*node.args.defaults, *node.args.kw_defaults) if default is not None
-        ]
-        return [*node.decorator_list, *defaults]
+    if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
+        defaults = [one for one in (*node.args.defaults, *node.args.kw_defaults) if one is not None]
+        return [*([] if isinstance(node, ast.Lambda) else node.decorator_list), *defaults]
     return []
 
 

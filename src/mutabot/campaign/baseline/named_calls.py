@@ -13,7 +13,7 @@ import builtins
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 from mutabot.frozen import frozen
-from mutabot.languages.python import FRONT_END, extent_of
+from mutabot.languages.python import FRONT_END, extent_of, outer_of
 from mutabot.model import Operation, Pattern, Site
 from mutabot.model.notation import Notation
 from mutabot.model.operation import ANY, owner_of
@@ -111,15 +111,12 @@ def _calls(nodes: Sequence[ast.AST], scope: _CallScope) -> Iterator[tuple[ast.Ca
         if isinstance(node, ast.Call):
             yield node, scope
         if isinstance(node, _FunctionOrLambda):
-            defaults = [one for one in (*node.args.defaults, *node.args.kw_defaults) if one is not None]
-            decorators = [] if isinstance(node, ast.Lambda) else node.decorator_list
-            yield from _calls([*decorators, *defaults], scope)
+            yield from _calls(outer_of(node), scope)
             name = "<lambda>" if isinstance(node, ast.Lambda) else node.name
             inner = _CallScope(scope.inner(name), (*scope.functions, node), scope.owner)
             yield from _calls([node.body] if isinstance(node.body, ast.expr) else node.body, inner)
         elif isinstance(node, ast.ClassDef):
-            keywords = [one.value for one in node.keywords]
-            yield from _calls([*node.decorator_list, *node.bases, *keywords], scope)
+            yield from _calls(outer_of(node), scope)
             yield from _calls(
                 node.body, _CallScope(scope.inner(node.name), scope.functions, node, is_class=True)
             )
