@@ -78,6 +78,7 @@ site: $(SITE)/.ready
 ## draw the pictures of the cell and of the report in docs/img again, without a screen
 pictures: $(READY) $(REPORTS) $(MESHES)
 	MUJOCO_GL=$${MUJOCO_GL:-osmesa} $(RUN) tools/make_pictures.py
+	MUJOCO_GL=$${MUJOCO_GL:-osmesa} $(RUN) tools/hero_picture.py
 	$(RUN) tools/make_report_pictures.py
 
 ## compare the families of operators on the examples (of the largest a tenth of the mutants), and write
