@@ -59,7 +59,9 @@ _SCALED = frozenset({"speed", "acceleration", "angle", "force", "torque"})
 #: where a scale without a unit ends: a fraction, or so many bits
 _TOPS = (1.0, 127.0, 255.0, 1023.0, 4095.0)
 #: how docstrings tell that a number counts
-_COUNT = re.compile(r"\b(?:number of|steps|samples|iterations|points)\b", re.IGNORECASE)
+_COUNT = re.compile(
+    r"\b(?:number of(?! (?:milli|micro)?sec)|steps|samples|iterations|points)\b", re.IGNORECASE
+)
 #: how the line of another argument begins
 _NEXT = re.compile(r"\s*(?:[:@]|[-*] |\w+\s*(?:\([^)]*\))?:|$)")
 #: more different numbers than these are no settings, but a scale
@@ -139,6 +141,8 @@ def guess_argument(name: str, setting: NameContext) -> Guess:
     if OUTPUT & {*setting.words, *setting.owner} and noun in ("generic", "switch"):
         return _output(setting)
     stem = "_".join(words)
+    if OUTPUT & {*setting.words} and stem in ("x", "y", "z") and first(VERBS, setting.words) is None:
+        return Guess()  # the number of an output
     motion = _by_verb(noun, stem, setting) or _by_name(noun, stem)
     limits = _documented_range(_about(name, setting.doc), setting) if noun == "generic" else None
     if limits is not None and limits[1] in _TOPS and limits[0] in (0.0, -limits[1]):

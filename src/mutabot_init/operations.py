@@ -18,7 +18,9 @@ from .words import (
     COMMANDS,
     GRIPPER,
     HOUSEKEEPING,
+    MODES,
     OPPOSITES,
+    PACKERS,
     READERS,
     REPLIES,
     SETUP,
@@ -158,7 +160,15 @@ def _is_housekeeping(call: WatchedCallable) -> bool:
 def _computes(call: WatchedCallable) -> bool:
     """Whether it makes or computes something of its arguments: the robot has no part in that."""
     is_constructor = call.is_of_class and call.owner != "" and call.result.type == call.owner
-    return is_constructor or (call.only_computes and bool(call.arguments) and not _reads(call))
+    is_pure = call.only_computes and bool(call.arguments)
+    return is_constructor or ((is_pure or _packs(call)) and not _reads(call))
+
+
+def _packs(call: WatchedCallable) -> bool:
+    """Whether it is a function that puts a value into a buffer, which something else sends."""
+    words, first = words_of(call.name), next(iter(call.arguments.values()), None)
+    is_buffer = first is not None and any(part.type == "bytearray" for part in first.parts.values())
+    return not call.owner and is_buffer and bool(words) and words[0] in PACKERS
 
 
 def _is_setup(call: WatchedCallable) -> bool:
@@ -204,6 +214,8 @@ def _argument(name: str, part: WatchedPart, call: WatchedCallable) -> Iterator[t
         words = (*setting.words, *(() if is_told else (*words_of(name), *mode)))
         doc = f"{part.doc}\n{setting.doc}"
         setting = replace(setting, words=words, doc=doc, annotation="", names=frozenset({"x", "y"}))
+    if call.is_set and not any(MODES.get(word) == "by" for word in (*setting.words, *words_of(own))):
+        setting = replace(setting, words=(*setting.words, "to"))  # what is assigned is where to go
     guess = guess_argument(own, setting)
     if guess.table:
         yield part.path, guess

@@ -56,11 +56,13 @@ COMMANDS = _words(
     "press screw weld dock undock servo servoj servol speedj speedl step write jog drive set send "
     "command enable disable ptp lin calibrate takeoff land fly up down left right forward "
     "forwards back backward backwards curve flip clockwise counterclockwise on off toggle blink "
-    "emergency arm disarm pulse pause resume aspirate dispense"
+    "emergency arm disarm pulse pause resume aspirate dispense halt activate deactivate shake"
 )
 READERS = _words(
     "read get getl getj query ask measure is has recv receive where locate detect scan actual current"
 )
+#: how functions are called that put values into a buffer
+PACKERS = _words("set put pack encode insert")
 #: what is made ready before the robot does anything, and the clock of a simulator
 SETUP = _words("create connect disconnect load make init initialize configure simulation reset safety")
 #: what lets a simulation go on, and what has such a clock
@@ -100,7 +102,8 @@ NOUNS = _by_word(
         "ratio": "ratio percent percentage brightness throttle power throttle duty",
         "height": "height altitude depth lift",
         "length": "distance dist length amount travel range gap ultrasonic lidar width",
-        "angle": "angle angles theta degrees deg radians rad heading bearing rotation turn alpha beta gamma",
+        "angle": "angle angles theta degree degrees deg radians rad heading bearing rotation turn "
+        "alpha beta gamma",
         "joints": "joints jnts joint q qpos qs jpos",
         "place": "pose tpose poses tcp xyz pos position positions location point waypoint coord coords "
         "translation target where locate goto goal getl movel",

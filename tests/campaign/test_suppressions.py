@@ -211,6 +211,23 @@ def run(project: Path, *arguments: str) -> int:
     return main(["-C", str(project), *arguments])
 
 
+def test_the_command_accepts_several_numbers_at_once_and_none_if_one_of_them_is_no_survivor(
+    project: Path, script: Script, capsys: pytest.CaptureFixture[str]
+) -> None:
+    script.kill(FIRST, "repeat")
+    found = campaign(project).mutants
+    survivors = [one.mutant.number for one in found if one.is_survivor]
+    first, *_, last = survivors
+    numbers = {one.mutant.number: one for one in found}
+    between = [number for number in range(first, last + 1) if not numbers[number].is_survivor]
+    assert between
+    assert run(project, "accept", f"{first}-{last}", "--why", "all") == ExitCode.USAGE
+    assert f"mutant {between[0]} is not a survivor" in capsys.readouterr().err
+    assert not (project / FILE).exists()
+    assert run(project, "accept", ",".join(map(str, survivors)), "--why", "all") == ExitCode.FINE
+    assert len(accepted(campaign(project))) == len(survivors)
+
+
 def test_the_command_writes_reason_line_and_date_and_applies_them_at_once(
     project: Path, script: Script, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -69,6 +69,16 @@ def test_a_box_that_stands_when_it_is_let_go_falls_from_nowhere() -> None:
     assert found[IMPACT, "box"].value == 0.0
 
 
+@pytest.mark.parametrize(("height", "hits"), [(0.003, False), (0.05, True)])
+def test_what_is_set_down_hits_nothing_however_fast_it_was_carried_there(height: float, hits: bool) -> None:
+    start = (1.0, 0.0, TABLE[2] + height)
+    box = [SHELF, *line(SHELF, start, 2.0), TABLE, TABLE]
+    tool = [*box[:21], start, start]
+    found = facts(tool, box, lambda now: {LYING, HELD} if now == 0 else {HELD} if now < 21 else {THERE})
+    assert found[RELEASE, "box"].value == pytest.approx(height)
+    assert (found[IMPACT, "box"].value > 0.3) is hits
+
+
 @pytest.mark.parametrize("slip", [0.0, 0.03])
 def test_a_slip_is_how_far_a_box_moves_in_the_grip(slip: float) -> None:
     tool = [SHELF, *line(SHELF, ABOVE, 2.0)]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import datetime
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Annotated
@@ -17,13 +17,14 @@ from mutabot.config.suppressions import FILE, add_acceptances, read_suppressions
 from mutabot.errors import SelectionError, UsageError
 from mutabot.journal.files import is_written
 from mutabot.journal.journal import Journal
+from mutabot.model.mutant import means_numbers, numbers_in
 from mutabot.report.document import accepting_data
 from mutabot.report.sections import Section, accepted_sections, numbered
 from mutabot.report.terminal.console import make_console, print_section, short_place
 from mutabot.report.texts import acceptance_text, state_of
 from mutabot.results.results import MutantResult, Results
 
-_MUTANTS = "Numbers, ids, or unique parts of ids. Without any, list what is accepted."
+_MUTANTS = "Numbers (3,16-20), ids, or unique parts of ids. Without any, list what is accepted."
 _WHY = "Why these may survive. It is written beside each of them."
 _Mutants = Annotated[list[str] | None, typer.Argument(metavar="[MUTANT]...", help=_MUTANTS)]
 _Why = Annotated[str, Option("--why", metavar="TEXT", help=_WHY)]
@@ -42,7 +43,7 @@ def accept(context: CommandContext, mutant: _Mutants = None, why: _Why = "", jso
     if why and not names:
         raise UsageError("--why needs a mutant: `mutabot accept 5 --why …`")
     results = context.results(earlier=True)
-    chosen = list({one.mutant.id: one for one in (results.mutant(name) for name in names)}.values())
+    chosen = list({one.mutant.id: one for one in _named(results, names)}.values())
     _refuse_others(chosen)
     read_suppressions(root)  # a file with a mistake is not added to
     if chosen:
@@ -64,6 +65,13 @@ def accept(context: CommandContext, mutant: _Mutants = None, why: _Why = "", jso
         print_section(make_console(), section)
     if chosen:
         context.tell([f"\naccepted {numbered([one.mutant.number for one in chosen])}; commit {FILE}"])
+
+
+def _named(results: Results, names: Sequence[str]) -> Iterator[MutantResult]:
+    """The mutants that these words name, each of numbers such as ``3,16-20``. Raises SelectionError."""
+    for name in names:
+        for word in map(str, numbers_in(name)) if means_numbers(name) else [name]:
+            yield results.mutant(word)
 
 
 def _refuse_others(chosen: Sequence[MutantResult]) -> None:

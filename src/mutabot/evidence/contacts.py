@@ -9,7 +9,7 @@ from itertools import pairwise
 from math import hypot, inf
 from typing import TYPE_CHECKING
 
-from mutabot.evidence.paths import RecordedPaths
+from mutabot.evidence.paths import STEP, RecordedPaths
 from mutabot.evidence.recording import Recording, TrackKind
 
 if TYPE_CHECKING:
@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 ContactSpan = tuple[float, float]
 #: names of what no simulator calls a robot
 _GROUND = frozenset({"floor", "ground", "plane", "world"})
-#: s: moments that lie closer together belong to two worlds
-STEP = 0.02
 #: s in which a support carries a thing that no robot touches, and how fast the thing moves then, m/s
 _CARRIED, _CARRYING = 0.2, 0.005
 #: s: a contact that is lost for less goes on

@@ -161,4 +161,4 @@ def aside_of(measure: Measure, before: TrackPath, after: TrackPath) -> float | N
         usual = [row[0] for row in before.rows]
         least, most = min(usual), max(usual)
         return max(max(0.0, least - row[0], row[0] - most) for row in after.rows)
-    return aside(after.outline, before.outline)
+    return aside(after.outline, before.outline, before.bows)

@@ -1,6 +1,7 @@
 """Paths: where each recorded thing was over time, and the distance of points from a path.
 
-Paths of points are simplified before the distance of points from a path is measured.
+Paths of points are simplified before the distance of points from a path is measured. Between two recorded
+moments a path is not known: what is no farther from it than it may bow there has not left it.
 """
 
 from __future__ import annotations
@@ -25,6 +26,11 @@ LENGTH = 0.001
 _MOST_TURNS, _SAME_TURN = 150, 0.0009
 #: two times that differ by less are the same moment, s
 _SAME = 1e-6
+#: how far a path may be from a line, in what the points at its ends swerve: if the next ones do not, and how
+#: much less if they do as well
+_CORNER, _ARC = 1.25, 0.75
+#: s: moments that lie closer together belong to two worlds
+STEP = 0.02
 
 
 def simple(points: Sequence[Point], tolerance: float) -> list[Point]:
@@ -33,6 +39,11 @@ def simple(points: Sequence[Point], tolerance: float) -> list[Point]:
     Source: D. H. Douglas, T. K. Peucker: Algorithms for the reduction of the number of points required to
     represent a digitized line or its caricature. Cartographica 10 (1973), pp. 112-122.
     """
+    return [points[number] for number in _kept(points, tolerance)]
+
+
+def _kept(points: Sequence[Point], tolerance: float) -> list[int]:
+    """The numbers of the points that ``simple`` keeps."""
     kept = {0, len(points) - 1}
     waiting = [(0, len(points) - 1)]
     while waiting:
@@ -45,17 +56,22 @@ def simple(points: Sequence[Point], tolerance: float) -> list[Point]:
         if sqrt(far) > tolerance:
             kept.add(where)
             waiting += [(first, where), (where, last)]
-    return [points[number] for number in sorted(kept)]
+    return sorted(kept)
 
 
-def aside(points: Iterable[Point], path: Sequence[Point]) -> float:
-    """Return the largest distance of points from a path, m."""
+def aside(points: Iterable[Point], path: Sequence[Point], bows: Sequence[float] = ()) -> float:
+    """Return the largest distance of points from a path, m.
+
+    ``bows``: how far the path may be from each of its lines, m; points that are no farther lie on it.
+    """
     segments = [_segment(one, other) for one, other in pairwise(path)] or [_segment(path[0], path[0])]
+    squares = [bow * bow for bow in bows] or [0.0] * len(segments)
     worst = 0.0
     for point in points:
         least = inf
-        for segment in segments:
-            least = min(least, _square(point, segment))
+        for segment, bow in zip(segments, squares, strict=True):
+            far = _square(point, segment)
+            least = min(least, far if far > bow else 0.0)
             if least <= worst:  # this point cannot be the farthest
                 break
         worst = max(worst, least)
@@ -156,7 +172,36 @@ class TrackPath:
     @cached_property
     def outline(self) -> list[Point]:
         """Return the path with fewer points, to half of the tolerance."""
-        return simple(self.points, LENGTH / 2)
+        return [self.points[number] for number in self._corners]
+
+    @cached_property
+    def bows(self) -> list[float]:
+        """How far it may have been from each line of its outline between the moments of its rows, m."""
+        swerves = [0.0, *(self._swerve(number) for number in range(len(self.points))), 0.0]
+        beside = zip(swerves, swerves[1:], swerves[2:], swerves[3:], strict=False)
+        bends = [
+            _CORNER * max(one, other) - _ARC * min(before, after) for before, one, other, after in beside
+        ]
+        return [max(0.0, *bends[first:last]) for first, last in pairwise(self._corners)]
+
+    @cached_property
+    def _corners(self) -> list[int]:
+        return _kept(self.points, LENGTH / 2)
+
+    def _swerve(self, number: int) -> float:
+        """How far a point is from the line between the two beside it, m.
+
+        On an arc that is four times as far as the path is from the line between two moments, and so are the
+        points next to these. At a corner between two moments it is nearly as far as the corner, and those
+        are not.
+        """
+        if not 0 < number < len(self.points) - 1:
+            return 0.0
+        before, now, after = self.when[number - 1 : number + 2]
+        one, point, other = self.points[number - 1 : number + 2]
+        if min(now - before, after - now) <= STEP:  # another world begins
+            return 0.0
+        return sqrt(_square(point, _segment(one, other)))
 
     def at(self, time: float) -> int:
         """The number of the row that holds at a time: the last one before or at it, else the first."""

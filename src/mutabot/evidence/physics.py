@@ -12,7 +12,8 @@ from itertools import pairwise
 from math import dist, hypot, inf, sqrt
 from typing import TYPE_CHECKING, NamedTuple
 
-from mutabot.evidence.contacts import STEP, ContactSpan, RecordedContacts, is_within
+from mutabot.evidence.contacts import ContactSpan, RecordedContacts, is_within
+from mutabot.evidence.paths import STEP
 
 if TYPE_CHECKING:
     from mutabot.evidence.paths import RecordedPaths, Row, TrackPath
@@ -23,6 +24,8 @@ RELEASE, IMPACT, SLIP, DRAG = "release height", "impact speed", "slip", "drag"
 COLLISION, SPEED, DURATION, MARGIN = "collision speed", "greatest speed", "duration", "least margin"
 #: how the names of values end that tell how near something is to a limit
 _MARGIN = "margin"
+#: m: a thing that is let go lower than this is set down, and hits nothing
+SET_DOWN = 0.005
 #: m/s²
 _GRAVITY = 9.81
 #: s: what falls longer is not followed
@@ -124,11 +127,13 @@ def _landing(supports: Mapping[str, Sequence[ContactSpan]], time: float) -> tupl
 def _impact(contacts: RecordedContacts, release: Fact) -> float:
     """How fast a thing was when it touched what it fell onto, m/s: from its energy when it was let go.
 
+    Zero for what was set down: how fast it was between two moments, while the arm slowed down, is not known.
+
     At ten moments a second the first touch may be missed, and what is seen is a bounce.
     """
     path = contacts.seen.paths[release.thing]
     last = path.at(release.at - 1e-3)
-    if release.value <= 0.0 or last == 0:
+    if release.value <= SET_DOWN or last == 0:
         return 0.0
     step = path.when[last] - path.when[last - 1]
     carried = dist(path.points[last - 1], path.points[last]) / step if step > STEP else 0.0

@@ -23,6 +23,7 @@ from mutabot.evidence.physics import (
     IMPACT,
     MARGIN,
     RELEASE,
+    SET_DOWN,
     SLIP,
     SPEED,
     Fact,
@@ -39,8 +40,6 @@ _LEAST_TURN = 5.0
 _MOST_PATHS = 2
 #: s by which a test must end earlier, and by which a thing must be let go at another time
 _EARLY, _OTHER_TIME = 1.0, 0.5
-#: m: a thing that is let go lower than this is set down
-_SET_DOWN = 0.005
 #: m/s: what is slower hits nothing
 _SLOW = 0.3
 #: share of its range by which fingers move that let something go, and the s before and after that
@@ -201,14 +200,14 @@ class _ComparedRuns:
             return self._not_landed(thing, usual, contacts)
         impact = self._impact(thing)
         if before is None:
-            is_told = usual.holds(thing) and after.value > _SET_DOWN
+            is_told = usual.holds(thing) and after.value > SET_DOWN
             return f"{self._verb(thing, after)} {_height(after)} (original: never){impact}" if is_told else ""
         is_other = before.other != after.other
         if not is_other and not any((one.name, one.thing) == (RELEASE, thing) for one in measured):
             return ""
         is_other_time = abs(after.at - before.at) > _OTHER_TIME
         now, then = (f"at {one.at:.1f} s, " if is_other_time else "" for one in (after, before))
-        known = _height(before) if is_other or before.value <= _SET_DOWN else _amount(before.value)
+        known = _height(before) if is_other or before.value <= SET_DOWN else _amount(before.value)
         return f"{self._verb(thing, after)} {now}{_height(after)} (original: {then}{known}){impact}"
 
     def _not_landed(self, thing: str, usual: RecordedContacts, contacts: RecordedContacts) -> str:
@@ -224,7 +223,7 @@ class _ComparedRuns:
 
     def _verb(self, thing: str, release: Fact) -> str:
         """Whether fingers opened, as far as they are recorded."""
-        if release.value <= _SET_DOWN:
+        if release.value <= SET_DOWN:
             return f"{thing} was set down"
         paths = [one for one in self.mutant.paths.values() if one.track.kind is TrackKind.VALUE]
         fingers = [one for one in paths if "finger" in one.track.name or "gripper" in one.track.name]
@@ -281,7 +280,7 @@ def _pair(one: str, other: str) -> BodyPair:
 
 
 def _height(release: Fact) -> str:
-    if release.value <= _SET_DOWN:
+    if release.value <= SET_DOWN:
         return f"on the {release.other}"
     return f"{_amount(release.value)} above the {release.other}"
 

@@ -8,7 +8,7 @@ examined, and put in place where the program runs; they cross the process border
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import field, replace
 from enum import StrEnum
 from functools import lru_cache
@@ -361,6 +361,11 @@ def _is_in(pattern: str, span: Span) -> bool:
 def means_numbers(pattern: str) -> bool:
     """Whether a word means numbers of mutants."""
     return _NUMBERS.fullmatch(pattern) is not None
+
+
+def numbers_in(pattern: str) -> Iterator[int]:
+    """The numbers that ``3,16-20`` means, in its order."""
+    return (number for part in pattern.split(",") for number in _range(part))
 
 
 def line_of(pattern: str) -> tuple[str, range] | None:

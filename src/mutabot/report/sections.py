@@ -221,11 +221,15 @@ def _outside(results: Results, place: PlaceName) -> Iterator[Section]:
         yield Section(f"{plural(waiting, 'mutant')} not run yet")
 
 
-def skipped(left_out: Sequence[LeftOut]) -> Iterator[Section]:
-    """What the plan leaves out, a line for each kind of reason."""
-    for heading, those in by_heading(left_out).items():
+def skipped(left_out: Sequence[LeftOut], *, are_listed: bool = False) -> Iterator[Section]:
+    """What the plan leaves out, a line for each kind of reason; the last one says what lists them."""
+    found = by_heading(left_out)
+    for number, (heading, those) in enumerate(found.items(), start=1):
         joined = " that " if heading == NOTHING else ": "
-        yield Section(f"{plural(len(those), 'mutant')} left out{joined}{heading}", is_detail=True)
+        is_last = number == len(found) and not are_listed
+        lines = ["`mutabot list --all` lists each, with its reason."] if is_last else []
+        title = f"{plural(len(those), 'mutant')} left out{joined}{heading}"
+        yield Section(title, lines=lines, is_detail=True)
 
 
 def _thresholds(results: Results, place: PlaceName) -> Iterator[Section]:

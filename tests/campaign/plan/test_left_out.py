@@ -30,7 +30,10 @@ def test_only_what_would_change_nothing_stands_under_that() -> None:
     }  # fmt: skip
     first, second = skipped(LEFT_OUT)
     assert (first.title, list(first.lines)) == ("2 mutants left out that would change nothing", [])
-    assert (second.title, list(second.lines)) == ("2 mutants left out: no call raises in the baseline", [])
+    assert (second.title, list(second.lines)) == (
+        "2 mutants left out: no call raises in the baseline",
+        ["`mutabot list --all` lists each, with its reason."],
+    )
 
 
 @pytest.mark.parametrize(

@@ -142,7 +142,13 @@ def test_degrees_are_a_unit_unless_they_are_of_freedom(text: str, expected: list
 
 @pytest.mark.parametrize(
     ("doc", "is_sure"),
-    [("t: time in seconds", True), ("t: time vector or number of steps", False), ("", True)],
+    [
+        ("t: time in seconds", True),
+        ("t: number of seconds to move", True),
+        ("", True),
+        ("t: time vector or number of steps", False),
+        ("t: number of points", False),
+    ],
 )
 def test_a_number_that_may_count_steps_is_a_question(doc: str, is_sure: bool) -> None:
     found = guess_argument("t", NameContext(words_of("follow"), doc=doc, values=[20]))
@@ -180,6 +186,10 @@ PLC = """
         @ramp.setter
         def ramp(self, value): self._ramp = value
         @property
+        def angle(self): return self._angle
+        @angle.setter
+        def angle(self, value): self._angle = value
+        @property
         def speed_rpm(self): return self._speed
         @speed_rpm.setter
         def speed_rpm(self, value): self._speed = value
@@ -196,6 +206,7 @@ CELL = """
         drive.limits[0] = 3
         drive.ramp = 2.5
         drive.speed_rpm = 300.0
+        drive.angle = 90
         drive.note = "ready"
         return drive.speed_rpm
 """
@@ -258,15 +269,62 @@ def test_assignments_to_properties_are_listed(fieldbus: Path) -> None:
     text = (fieldbus / "robot.toml").read_text()
     (speed,) = operations(fieldbus)["plc:Drive.speed_rpm"].arguments
     assert (speed.kind, speed.unit) == ("speed", "rpm")
+    (angle,) = operations(fieldbus)["plc:Drive.angle"].arguments
+    assert (angle.kind, angle.mode) == ("rotation", "to")
     assert '# call = "plc:Drive.ramp"\n# arguments.value  # seen: 2.5' in text
     assert "limits" not in text
     assert "note" not in text
 
 
+def test_what_puts_a_value_into_a_buffer_is_no_command_and_what_sends_it_is_one(tmp_path: Path) -> None:
+    files = {
+        "bus.py": """
+            import struct
+            def set_real(data, index, value): struct.pack_into(">f", data, index, value)
+            def send(data): sent.append(bytes(data))
+            class Plc:
+                def set_block(self, data): sent.append(bytes(data))
+            sent = []
+        """,
+        "program.py": """
+            import bus
+            def run(plc):
+                data = bytearray(4)
+                bus.set_real(data, 0, 12.5)
+                bus.send(data)
+                plc.set_block(data)
+        """,
+        "test_program.py": "import bus, program\ndef test_it(): program.run(bus.Plc())\n",
+    }
+    propose(write(tmp_path, files))
+    assert {"bus:set_real", "bus:send", "bus:Plc.set_block"} & operations(tmp_path).keys() == {
+        "bus:send", "bus:Plc.set_block",
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "is_moved"), [("set_digital_output", False), ("move_to", True)])
+def test_the_number_of_an_output_is_no_coordinate(name: str, is_moved: bool) -> None:
+    found = guess_argument("x", NameContext(words_of(name), values=[1], names=frozenset({"x"})))
+    assert bool(found.table) is is_moved
+
+
+@pytest.mark.parametrize(
+    ("name", "is_known"), [("halt", True), ("deactivate", True), ("shake", True), ("hold", False)]
+)
+def test_what_ends_or_begins_something_is_a_command(tmp_path: Path, name: str, is_known: bool) -> None:
+    files = {
+        "pump.py": f"class Pump:\n    def start(self): self.on = 1\n    def {name}(self): self.last = 1\n",
+        "program.py": f"def run(pump): pump.start(), pump.{name}()\n",
+        "test_program.py": "import program, pump\ndef test_it(): program.run(pump.Pump())\n",
+    }
+    propose(write(tmp_path, files))
+    assert (f"pump:Pump.{name}" in operations(tmp_path)) is is_known
+
+
 def test_check_reaches_every_write_that_is_drafted(fieldbus: Path) -> None:
     done = mutabot(fieldbus, "check")
     assert done.returncode == 0, done.stderr
-    assert "sites     8 reached" in done.stdout
+    assert "sites     9 reached" in done.stdout
 
 
 def mutabot(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:

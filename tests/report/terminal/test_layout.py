@@ -52,4 +52,9 @@ def test_mutants_of_one_kind_of_reason_that_are_left_out_take_one_line() -> None
     left_out = [LeftOut(f"a{calls}", "x", f"{NOTHING} in any of {calls} calls") for calls in range(5)]
     (section,) = skipped([*left_out])
     assert section.title == f"5 mutants left out that {NOTHING}"
-    assert not section.lines
+
+
+def test_what_lists_each_mutant_that_is_left_out_is_said_once_and_not_above_that_list() -> None:
+    left_out = [LeftOut("a", "x", f"{NOTHING} in any of 3 calls"), LeftOut("b", "x", "it is always 0")]
+    assert [bool(section.lines) for section in skipped(left_out)] == [False, True]
+    assert [bool(section.lines) for section in skipped(left_out, are_listed=True)] == [False, False]

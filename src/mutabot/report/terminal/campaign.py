@@ -132,7 +132,7 @@ def print_plan(
     ]
     columns = (">no.", "role", "place", "operator", "*fault")
     print_section(console, Section(f"{plural(len(mutants), 'mutant')}{of_them}", columns, rows))
-    for section in (*untested(reach, everything=everything), *skipped(left_out)):
+    for section in (*untested(reach, everything=everything), *skipped(left_out, are_listed=everything)):
         print_section(console, section)
     for item in left_out if everything else ():
         console.print(below(f"{item.id}  {item.description}: {item.reason}"))

@@ -16,6 +16,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, ProgressColum
 from rich.table import Column
 from rich.text import Text
 
+from mutabot.errors import plural
 from mutabot.report.texts import one_line, places_text
 
 from .console import plain, short_place
@@ -220,9 +221,9 @@ class Lines:
         self._thread = threading.Thread(target=self._live, name="mutabot-progress", daemon=True)
 
     def stage(self, text: str, total: int | None = None) -> None:
-        """Print the stage's name."""
+        """Print the stage's name, and how many runs it has."""
         self._text, self._pace = text, Pace(total)
-        self._print(f"{text}: {total}" if total is not None else text)
+        self._print(f"{text}: {plural(total, 'run')}" if total is not None else text)
 
     def mutant_ended(self, end: MutantEnd) -> None:
         """Count an outcome, and print a survivor."""

@@ -43,7 +43,7 @@
   function state(campaign) {
     const meta = campaign.meta;
     const complete = campaign.state === "complete" && campaign.done >= campaign.planned;
-    const facts = [typeof meta.seconds === "number" && `took ${duration(meta.seconds)}`,
+    const facts = [typeof meta.seconds === "number" && `the last run took ${duration(meta.seconds)}`,
       meta.families && `families ${meta.families.join(", ")}`, count(campaign.tests.length, "test"),
       campaign.drawing && `a sample of ${campaign.drawing.size} of ${count(campaign.drawing.selected, "mutant")}`];
     return [
