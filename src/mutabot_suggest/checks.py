@@ -1,4 +1,4 @@
-"""Checks that could be added: what each looks at, what it expects, whom it notices.
+"""Candidate checks: what each reads and expects, and which mutants it notices.
 
 A check holds for all runs of the original: it allows a band around them, and is written as a person writes.
 """
@@ -41,7 +41,7 @@ Trials = frozenset[tuple[str, int]]
 
 @dataclass(frozen=True, slots=True)
 class Band:
-    """What a reading of the original stays within.
+    """The range in which a reading of the original stays.
 
     Attributes:
         middle: of all runs.
@@ -69,7 +69,7 @@ def unseen(count: int) -> float:
 
 
 def readable(band: Band, nearest: float, stated: float = 0.0) -> tuple[float, float]:
-    """Value and tolerance as a person would write them.
+    """Round a value and its tolerance as a person would.
 
     The tolerance is the one that the tests state already, if it lies between the band's and ``nearest``, the
     least distance of a survivor from the middle; else the largest of 1, 2, 5, 10 … that is at most half of
@@ -152,7 +152,7 @@ class ProposedCheck:
         return within(style, text, other or repr(float(self.value)), repr(self.tolerance))
 
     def addition(self) -> Addition:
-        """It as something that is added to a test."""
+        """The check as an addition to a test."""
         names = set(_NAME.findall(self.statement))
         needs = (*self.reading.needs, *(self.value.needs if isinstance(self.value, ReadExpression) else ()))
         approx = ["import pytest"] if "pytest.approx" in self.statement else []
@@ -161,7 +161,7 @@ class ProposedCheck:
 
 
 def candidates(project: SuiteFiles, measured: Measured) -> tuple[list[ProposedCheck], dict[str, str]]:
-    """All checks that would notice a survivor and that a person would merge.
+    """Return the checks that would notice a survivor and that a person would merge.
 
     Beside them, by mutant, what would notice it and is no such check.
     """
@@ -202,7 +202,7 @@ def _is_given(text: str, originals: Mapping[tuple[int, str], ValuesRead], mutant
 
 @dataclass(frozen=True, slots=True)
 class _ReadAtEnd:
-    """What was read at the end of a test.
+    """The readings at the end of a test.
 
     Attributes:
         place: the test.
@@ -323,7 +323,7 @@ def is_clock(text: str) -> bool:
 
 
 def clock_text(text: str) -> str:
-    """What is said of a survivor of which nothing differs but a time."""
+    """Describe a survivor that differs only in a time."""
     return f"at the ends of its tests only the clock differs ({text}): add a deadline if the task has one"
 
 

@@ -1,4 +1,4 @@
-"""What could be read in a test: noted by lines that ``mutabot suggest`` adds to a copy of it.
+"""Readings in a test, noted by lines that ``mutabot suggest`` adds to a copy of it.
 
 A probe on ``values`` carries it out of the process. Nothing here ever lets a test fail.
 """
@@ -28,7 +28,7 @@ def note(
     readings: Sequence[tuple[str, Callable[[], Any]]] = (),
     classes: Sequence[str] = (),
 ) -> None:
-    """Note all that can be read now.
+    """Note all current readings.
 
     Args:
         names: what is at hand in the test, by name.
@@ -68,7 +68,7 @@ def at_end(test: Callable[..., Any], end: Callable[[Callable[[str], Any]], None]
 
 
 def values() -> dict[str, Any]:
-    """What the running test has noted: expression to number, text or truth value."""
+    """The readings that the running test has noted: expression to number, text or boolean."""
     return _noted.get(_test(), {})
 
 

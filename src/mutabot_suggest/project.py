@@ -34,7 +34,7 @@ _NO_END = "\\ No newline at end of file\n"
 
 @dataclass(slots=True)
 class SuiteFiles:
-    """The files of a project.
+    """The test files of a project.
 
     Attributes:
         request: of the campaign: root, program, oracle and vocabulary.
@@ -159,7 +159,7 @@ class PlaceInTest:
 
 @dataclass(frozen=True, slots=True)
 class Addition:
-    """What is added to the end of a test.
+    """A statement to add to the end of a test.
 
     Attributes:
         place: the test.
@@ -317,7 +317,7 @@ def _edited(text: str, additions: Sequence[Addition]) -> str:
 
 
 def _around(place: PlaceInTest, additions: Sequence[Addition], number: int) -> list[str]:
-    """What follows a test of which the file has no function that could be added to."""
+    """The statements for a test without a function of its own in the file."""
     (test,) = place.path
     uses = dict.fromkeys(use for one in additions for use in one.uses)
     return [

@@ -26,7 +26,7 @@ _STEPS = 1.5
 
 @dataclass(frozen=True, slots=True)
 class ReadExpression:
-    """An expression that reads something.
+    """An expression that reads a value.
 
     Attributes:
         text: the expression.
@@ -42,7 +42,7 @@ class ReadExpression:
 
 
 def is_number(value: Any) -> TypeGuard[float]:
-    """Whether a value is one that can be near another."""
+    """Whether a value is a number, which can be near another."""
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
@@ -142,7 +142,7 @@ ValuesRead = Mapping[str, Any]
 
 @dataclass(slots=True)
 class Measured:
-    """What was read.
+    """The values of readings.
 
     Attributes:
         originals: per place, by (round, node id), what the original's tests read.
@@ -230,7 +230,7 @@ def _read_in(
 def _noting(
     place: PlaceInTest, readings: Sequence[ReadExpression], objects: Sequence[tuple[str, float]]
 ) -> Addition:
-    """The lines that note; they are plain statements, and never fail."""
+    """Make the lines that note readings; they are plain statements, and never fail."""
     # what the oracle does when it reads must not be seen by what only looks
     ordered = sorted(readings, key=lambda one: one.way == ORACLE)
     pairs = ", ".join(f"({one.text!r}, lambda: {one.text})" for one in ordered)

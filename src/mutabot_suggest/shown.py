@@ -1,4 +1,4 @@
-"""What was found, as the command shows it: on the terminal, as JSON, and in reports of the campaign."""
+"""Show suggestions: on the terminal, as JSON, and in reports of the campaign."""
 
 from __future__ import annotations
 
@@ -108,5 +108,5 @@ def data_of_suggestions(found: Suggestions) -> dict[str, Any]:
 
 
 def _facts(one: ProvenCheck | Unsolved | Dropped) -> dict[str, Any]:
-    """Its fields, without those that are None."""
+    """The fields of a dataclass that are not None."""
     return {name: value for name, value in asdict(one).items() if value is not None}

@@ -1,4 +1,4 @@
-"""The whole way from a campaign's survivors to checks that kill them.
+"""Find checks that kill the survivors of a campaign.
 
 Which survivors an observation can kill, which none can, and why no check kills one that it could.
 """
@@ -71,7 +71,7 @@ def why_unsolved(
 
 
 def _differences(mutant: str, measured: Measured) -> list[tuple[float, str]]:
-    """How far readings are from the original's, in what the original does by itself, each in words."""
+    """Describe how far readings are from the original's, in units of its own spread."""
     found = []
     for place, by_mutant in measured.mutants.items():
         originals = measured.originals.get(place, {})
@@ -112,7 +112,7 @@ class Quiet:
 def suggest(
     request: Request, chosen: Sequence[MutantResult], progress: Progress, *, seeds: int
 ) -> Suggestions:
-    """Checks that kill these survivors of a finished campaign.
+    """Suggest checks that kill these survivors of a finished campaign.
 
     Args:
         request: as the campaign's was.
@@ -221,7 +221,7 @@ def _suggestion(check: ProposedCheck, trials: Trials, seeds: int) -> ProvenCheck
 
 @dataclass(slots=True)
 class Proof:
-    """What is known of checks, by their statements and tests.
+    """The results of proving checks, by their statements and tests.
 
     Attributes:
         request: for the rounds of the campaign.
@@ -238,7 +238,7 @@ class Proof:
     kills: dict[ProposedCheck, Trials] = field(default_factory=dict)
 
     def on_original(self, checks: Sequence[ProposedCheck], rounds: Sequence[int]) -> list[ProposedCheck]:
-        """Those of these checks with which the original passes in all of these rounds."""
+        """Return the checks with which the original passes in all of these rounds."""
         left = [one for one in checks if one not in self.failed]
         while left:
             alarms = self._alarms(left, rounds)

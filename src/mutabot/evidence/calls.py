@@ -18,7 +18,7 @@ _ROUNDING = 1e-6
 def first_difference(
     original: Sequence[RecordedCall], mutant: Sequence[RecordedCall]
 ) -> tuple[str, float | None] | None:
-    """The first call that differs, in words, and when it began; None if all calls are the same."""
+    """Describe the first call that differs, and when it began; None if all calls are the same."""
     for one, other in zip(original, mutant, strict=False):
         found = _difference(one, other)
         if found:
@@ -33,7 +33,7 @@ def first_difference(
 
 
 def _difference(one: RecordedCall, other: RecordedCall) -> str:
-    """How a call differs from the original's; empty if it does not."""
+    """Describe how a call differs from the original's; empty if it does not."""
     if (one.operation, one.place, one.pattern) != (other.operation, other.place, other.pattern):
         return f"{_name(other)} is called instead of {_name(one)}"
     for before, after, verb in ((one.written, other.written, "sends"), (one.read, other.read, "reads")):

@@ -50,7 +50,7 @@ def joined(intervals: Iterable[ContactSpan]) -> list[ContactSpan]:
 
 @dataclass(frozen=True)
 class RecordedContacts:
-    """Who touches whom in a recording.
+    """The contacts in a recording.
 
     Attributes:
         seen: the recording with its paths.
@@ -65,14 +65,14 @@ class RecordedContacts:
 
     @cached_property
     def things(self) -> list[str]:
-        """What is tracked and touched: objects that a robot can move."""
+        """Tracked bodies that have contacts: objects that a robot can move."""
         touched = {name for pair in self.intervals for name in pair}
         paths = self.seen.paths.items()
         return [name for name, path in paths if path.track.kind is not TrackKind.VALUE and name in touched]
 
     @cached_property
     def tools(self) -> list[str]:
-        """What else is tracked with a place: the robots' tools."""
+        """The other tracked bodies: the robots' tools."""
         paths = self.seen.paths.items()
         places = [name for name, path in paths if path.track.kind is not TrackKind.VALUE]
         return [name for name in places if name not in self.things and not self.seen.paths[name].track.size]
@@ -88,7 +88,7 @@ class RecordedContacts:
 
     @cached_property
     def carriers(self) -> frozenset[str]:
-        """What moves the things that lie on it while no robot touches them, as a conveyor does."""
+        """Bodies that move things lying on them, as conveyors do."""
         found = set()
         for thing in self.things:
             held = [(begin - _CARRIED, end + _CARRIED) for begin, end in self.holds(thing)]
@@ -111,7 +111,7 @@ class RecordedContacts:
         return False
 
     def holds(self, thing: str) -> list[ContactSpan]:
-        """When any robot touches a thing."""
+        """The intervals in which any robot touches a thing."""
         return joined(
             one
             for pair, found in self.intervals.items()
@@ -120,7 +120,7 @@ class RecordedContacts:
         )
 
     def supports(self, thing: str) -> dict[str, list[ContactSpan]]:
-        """When a thing touches what is no robot, by its name."""
+        """The intervals in which a thing touches other bodies than robots, by their names."""
         found = {}
         for pair, intervals in self.intervals.items():
             (other,) = {*pair} - {thing} if thing in pair and len({*pair}) > 1 else ("",)

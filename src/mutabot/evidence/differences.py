@@ -22,7 +22,7 @@ TURNED = " turned"
 
 
 class Measure(NamedTuple):
-    """One way to tell two rows apart.
+    """A measure of the difference between two rows.
 
     Attributes:
         name: of what, such as ``box turned``.
@@ -38,7 +38,7 @@ class Measure(NamedTuple):
 
 
 def measures_of(path: TrackPath) -> Iterator[Measure]:
-    """Yield the ways to tell two moments of a thing apart: by its place and its orientation, or its value."""
+    """Yield the measures for a thing: of its position and orientation, or of its value."""
     track = path.track
     if track.kind is TrackKind.VALUE:
         values = [row[0] for row in path.rows]
@@ -117,7 +117,7 @@ def noise_between(one: RecordedPaths, other: RecordedPaths) -> dict[str, float]:
 
 
 def _together(before: TrackPath, after: TrackPath) -> Iterator[tuple[float, Row, Row]]:
-    """The rows of both that hold at each moment of either; what has ended stays as it was."""
+    """Pair the rows of both runs at each moment of either; the last row of an ended run holds."""
     if before.when == after.when:
         yield from zip(before.when, before.rows, after.rows, strict=True)
         return

@@ -1,4 +1,4 @@
-"""The feed: by which a simulator, or a node that hears of one, tells where things are."""
+"""The feed: the interface by which a simulator, or a node connected to it, reports where things are."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class _Source:
 
 
 class Feed:
-    """Tells where tool and objects are, at a fixed rate of simulated time, while a test is recorded.
+    """Records where tool and objects are, at a fixed rate of simulated time, while a test is recorded.
 
     Outside a campaign ``tick`` does nothing, and costs next to nothing. What is told is only read: it must
     change nothing in the simulation and draw no random number.
@@ -56,7 +56,7 @@ class Feed:
         self._offset = self._last = self._due = 0.0
 
     def pose(self, name: str, read: Callable[[], Sequence[float]], *, size: Triple | None = None) -> None:
-        """Something with a place and an orientation.
+        """Record a thing with a position and an orientation.
 
         Args:
             read: gives x, y, z in m and the quaternion w, x, y, z: seven numbers, world frame.
@@ -65,15 +65,15 @@ class Feed:
         self._sources.append(_Source(name, TrackKind.POSE, read, "", size))
 
     def point(self, name: str, read: Callable[[], Sequence[float]], *, size: Triple | None = None) -> None:
-        """Something with a place; ``read`` gives x, y, z in m, world frame."""
+        """Record a thing with a position; ``read`` returns x, y, z in m, world frame."""
         self._sources.append(_Source(name, TrackKind.POINT, read, "", size))
 
     def value(self, name: str, read: Callable[[], float], *, unit: str = "") -> None:
-        """One number, such as the opening of a gripper or the margin of a monitor."""
+        """Record a number, such as the opening of a gripper or the margin of a monitor."""
         self._sources.append(_Source(name, TrackKind.VALUE, read, unit))
 
     def line(self, name: str, read: Callable[[], Sequence[float]], *, radii: Sequence[float]) -> None:
-        """A line that is drawn and never compared, such as an arm from its base through its joints.
+        """Record a line that is drawn and never compared, such as an arm from its base through its joints.
 
         Args:
             read: gives x, y, z of one point after the other in m, world frame: three numbers per radius.
@@ -82,7 +82,7 @@ class Feed:
         self._sources.append(_Source(name, TrackKind.LINE, read, radii=tuple(map(float, radii))))
 
     def contacts(self, read: Callable[[], Iterable[tuple[str, str]]], *, robots: Iterable[str] = ()) -> None:
-        """What touches what.
+        """Record which bodies touch.
 
         Args:
             read: gives the pairs of names that touch each other now.
@@ -92,13 +92,13 @@ class Feed:
         self._touching, self._robots = read, tuple(robots)
 
     def block(self, name: str, centre: Triple, size: Triple, colour: Sequence[float] | None = None) -> None:
-        """A box that never moves, such as a table: middle and edge lengths in m, world frame."""
+        """Record a box that never moves, such as a table: centre and edge lengths in m, world frame."""
         self._blocks.append(
             Block(name, _triple(centre), _triple(size), None if colour is None else tuple(colour))
         )
 
     def camera(self, read: Callable[[], Any], *, rate: float = 25.0) -> None:
-        """Pictures of the world, for ``mutabot motion MUTANT --video``; no campaign ever takes any.
+        """Take pictures of the world, for ``mutabot motion MUTANT --video``; campaigns take none.
 
         Args:
             read: gives a picture of the world as it is now: an array of bytes (uint8) of the shape (height,
@@ -111,7 +111,7 @@ class Feed:
         self._camera, self._shutter = read, 1.0 / rate
 
     def note(self, text: str) -> None:
-        """Something worth telling happens now."""
+        """Record an event that happens now."""
         tape = tapes.running()
         now = self._now(tape) if tape is not None else None
         if tape is not None and now is not None:
@@ -121,7 +121,7 @@ class Feed:
 
     @property
     def due(self) -> float:
-        """The simulated time, s, before which ``tick`` has nothing to tell; inf while no test is recorded.
+        """The simulated time, s, before which ``tick`` records nothing; inf while no test is recorded.
 
         For a simulator that takes many steps at once: calls of ``tick`` before it may be left out.
         """
@@ -133,14 +133,14 @@ class Feed:
         return self._due if tape.film is None else min(self._due, self._next_picture)
 
     def tick(self) -> None:
-        """Simulated time has passed: to be called after each step, or whenever something is heard."""
+        """Record the current moment, if one is due. Call it after each step, or for each message."""
         tape = tapes.running()
         if tape is not None:
             with tape.aside():
                 self._tick(tape)
 
     def _now(self, tape: Tape) -> float | None:
-        """The simulator's own time, s; None, and a problem, if it tells none."""
+        """Return the simulator's own time, s; None, and note a problem, if it has none."""
         with tape.reading("the simulated time cannot be read"):
             now = float(self._time())
             if isfinite(now):
@@ -171,7 +171,7 @@ class Feed:
             tape.picture(self._offset + now, read)
 
     def _begin(self, tape: Tape, now: float) -> None:
-        """The first word in a test: a simulation that is there already begins at 0 as well."""
+        """Begin to record a test: the times of an existing simulation begin at 0 as well."""
         self._tape = tape
         is_first = not tape.recording.times
         self._offset = -now if is_first else tape.end + _GAP - now
@@ -186,14 +186,14 @@ class Feed:
         tape.at_end.append(lambda: self._finish(tape))
 
     def _finish(self, tape: Tape) -> None:
-        """The test is over: where everything ended."""
+        """Record the last moment of a test."""
         with tape.aside():
             now, times = self._offset + self._time(), tape.recording.times
             if tape is self._tape and times and now > times[-1] + _HAIR:
                 self._sample(tape, now)
 
     def _go_on(self, tape: Tape, now: float) -> None:
-        """The simulated time went back: what comes now comes after all that was."""
+        """Continue after simulated time has been reset: later moments follow all earlier ones."""
         self._offset = tape.end + _GAP - now
         self._due = self._next_picture = now
         self._before = frozenset()

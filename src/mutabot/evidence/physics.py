@@ -33,7 +33,7 @@ _FALL = 3.0
 
 
 class Fact(NamedTuple):
-    """Something that was measured.
+    """A measured value.
 
     Attributes:
         name: one of the names above.
@@ -54,7 +54,7 @@ class Fact(NamedTuple):
 
 @lru_cache(64)
 def facts_of(seen: RecordedPaths) -> dict[tuple[str, str], Fact]:
-    """Return the largest of each kind, by name and thing."""
+    """Return the largest value of each kind, by name and thing."""
     contacts = RecordedContacts(seen)
     found: dict[tuple[str, str], Fact] = {}
     for one in _facts(contacts):
@@ -88,7 +88,7 @@ def _facts(contacts: RecordedContacts) -> Iterator[Fact]:
 
 
 def _speeds(path: TrackPath) -> Iterator[tuple[float, float]]:
-    """When a thing had which speed, m/s."""
+    """The speed of a thing at each moment, m/s."""
     for (before, one), (after, other) in pairwise(zip(path.when, path.points, strict=True)):
         if after - before > STEP:
             yield after, dist(one, other) / (after - before)

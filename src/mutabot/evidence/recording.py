@@ -20,7 +20,7 @@ _TYPE = "f"
 
 
 class TrackKind(StrEnum):
-    """What the numbers of a track are."""
+    """The meaning of a track's numbers."""
 
     POSE = "pose"
     POINT = "point"
@@ -29,7 +29,7 @@ class TrackKind(StrEnum):
 
     @property
     def width(self) -> int:
-        """Numbers at each moment: x, y, z in m, for a pose followed by the quaternion w, x, y, z.
+        """The count of numbers per moment: x, y, z in m, for a pose followed by the quaternion w, x, y, z.
 
         Of a line those of each of its points.
         """
@@ -38,7 +38,7 @@ class TrackKind(StrEnum):
 
 @dataclass(slots=True)
 class Track:
-    """One thing over time.
+    """The values of a thing over time.
 
     Attributes:
         name: what it is, such as ``tool``.
@@ -79,7 +79,7 @@ class Block(NamedTuple):
 
 
 class RecordedMoment(NamedTuple):
-    """Something that happened.
+    """An event.
 
     Attributes:
         time: s.
@@ -163,12 +163,12 @@ def to_bytes(recording: Recording) -> bytes:
 
 @lru_cache(1)
 def _compressed(data: bytes) -> bytes:
-    """Kept for the next recording: of tests that command nothing, all are alike."""
+    """Compress data, and keep the result for an equal recording, as of tests without commands."""
     return zlib.compress(data, 1)
 
 
 def from_bytes(data: bytes) -> Recording:
-    """What ``to_bytes`` made. Raises ValueError for anything else."""
+    """Read a recording from the bytes of ``to_bytes``. Raises ValueError for anything else."""
     try:
         data = zlib.decompress(data)
         end = 4 + int.from_bytes(data[:4], "little")
@@ -197,12 +197,12 @@ def to_text(recording: Recording) -> str:
 
 
 def bytes_of(text: str) -> bytes:
-    """What ``to_bytes`` would have made of the recording that ``to_text`` made this text of."""
+    """Return the bytes of ``to_bytes`` for a text of ``to_text``."""
     return base64.b64decode(text)
 
 
 def _numbers(kind: str, data: bytes, start: int, count: int) -> tuple[array[float], int]:
-    """So many numbers from there on, and where they end."""
+    """Read a count of numbers from an offset; return them and the offset behind them."""
     numbers: array[float] = array(kind)
     end = start + count * numbers.itemsize
     numbers.frombytes(data[start:end])
@@ -214,5 +214,5 @@ def _tuple(numbers: Any) -> Any:
 
 
 def _plain(value: Any) -> Any:
-    """What stands for a value that JSON does not know."""
+    """Convert a value that JSON does not support."""
     return value.tolist() if hasattr(type(value), "tolist") else repr(value)

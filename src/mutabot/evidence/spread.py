@@ -64,7 +64,7 @@ def _measured(runs: Sequence[RecordedPaths]) -> dict[tuple[str, str], float]:
 
 
 def _scatters(runs: Sequence[RecordedPaths], ends: dict[str, float]) -> str:
-    """What has no stable end, in words: the thing that is farthest apart."""
+    """Describe the thing whose end is least stable."""
     kinds = {name: path.track.kind for one in runs for name, path in one.paths.items()}
     places = (name for name, kind in kinds.items() if kind is not TrackKind.VALUE and name in ends)
     far, name = max(((ends[name], name) for name in places), default=(0.0, ""))

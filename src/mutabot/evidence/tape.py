@@ -1,4 +1,4 @@
-"""The tape of the running test, on which feeds write and which the session reads; and its film.
+"""The recorder of the running test, which feeds write to and the session reads; and its film.
 
 There is one tape per process. Outside a campaign, and between tests, there is none and feeds do nothing.
 """
@@ -19,7 +19,7 @@ MOST_PICTURES = 6000
 
 
 class PictureWriter(Protocol):
-    """Takes pictures down.
+    """Stores pictures.
 
     Attributes:
         count: how many there are.
@@ -92,14 +92,14 @@ class Tape:
         return 0.0 if self.is_simulated else -time - _WALL
 
     def finish(self) -> None:
-        """The test is over."""
+        """End the recording of a test."""
         for last in self.at_end:
             with suppress(Exception):  # a simulator that the test has closed already
                 last()
         self.at_end.clear()
 
     def told_by(self, clock: Callable[[], float]) -> None:
-        """From now on this tells the simulated time, s."""
+        """Use this function for the simulated time, s."""
         self.clock, self.is_simulated = clock, True
 
     def _told(self) -> float | None:
@@ -118,7 +118,7 @@ class Tape:
         size: tuple[float, float, float] | None,
         radii: tuple[float, ...] = (),
     ) -> Track:
-        """The track of this name; a new one was not there before now."""
+        """Return the track of this name; a new one begins at the current moment."""
         found = self.recording.tracks.get(name)
         if found is None:
             found = self.recording.tracks[name] = Track(name, kind, array("f"), unit, size, radii)
@@ -126,7 +126,7 @@ class Tape:
         return found
 
     def close_moment(self, now: float) -> None:
-        """All tracks have been read at this moment, bar those of other feeds."""
+        """Add a moment; tracks that were not read at it get no value there."""
         times = self.recording.times
         times.append(now)
         for track in self.recording.tracks.values():
@@ -137,7 +137,7 @@ class Tape:
             self._thin()
 
     def note(self, now: float, what: str, text: str) -> None:
-        """Something happened."""
+        """Record an event."""
         if len(self.recording.moments) < _MOST_EVENTS:
             self.recording.moments.append(RecordedMoment(now, what, text))
         else:
@@ -160,20 +160,20 @@ class Tape:
             self.problem(text)
 
     def block(self, block: Block) -> None:
-        """Something that stands around."""
+        """Record a box that never moves."""
         if block not in self.recording.blocks:
             self.recording.blocks = (*self.recording.blocks, block)
 
     @contextmanager
     def reading(self, what: str) -> Iterator[None]:
-        """Whatever the user's code raises here becomes a problem with ``what``; his test must go on."""
+        """Turn errors of the user's code into a problem with ``what``, so that the test continues."""
         try:
             yield
         except Exception as error:
             self.problem(f"{what}: {type(error).__name__}: {error}")
 
     def problem(self, text: str) -> None:
-        """Something cannot be recorded."""
+        """Note why something cannot be recorded."""
         if text not in self.recording.problems:
             self.recording.problems.append(text)
 
@@ -203,7 +203,7 @@ def running() -> Tape | None:
 
 
 def begin(film: PictureWriter | None = None) -> Tape:
-    """A test begins that is to be recorded, and maybe filmed."""
+    """Begin to record a test, and to film it if asked."""
     global _tape  # noqa: PLW0603  # simulators know this module, not an object of ours
     _tape = Tape(film)
     return _tape

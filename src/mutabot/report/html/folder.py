@@ -334,7 +334,7 @@ def _slopes(times: Sequence[float], rows: Sequence[Row], first: int, last: int) 
 
 
 def _gaps(times: Sequence[float], when: Sequence[float]) -> list[list[int]]:
-    """From when to when (ms) something was not there."""
+    """The gaps, from and to in ms, in which a thing did not exist."""
     there, ends = {*when}, [*times[1:], times[-1] + 1e-3]
     runs = groupby(zip(times, ends, strict=True), key=lambda moment: moment[0] in there)
     absent = [list(run) for is_there, run in runs if not is_there]
@@ -416,7 +416,7 @@ class Recorded:
     originals: dict[tuple[int, str], Any] = field(default_factory=dict)
 
     def of(self, result: MutantResult) -> Iterator[dict[str, Any]]:
-        """What was recorded of a mutant, the round and test that went farthest from the original first."""
+        """The recordings of a mutant; the round and test farthest from the original come first."""
         for round, test in self._places(result):
             original, mutant = mapped(self.evidence.pair(result.mutant.id, round, test), self.clean)
             if mutant is not None:
@@ -428,7 +428,7 @@ class Recorded:
                 }
 
     def count(self, result: MutantResult) -> int:
-        """How many recordings there are of a mutant."""
+        """Count the recordings of a mutant."""
         return sum(len(self.evidence.tests(result.mutant.id, number)) for number in range(len(result.rounds)))
 
     def _places(self, result: MutantResult) -> Iterator[tuple[int, str]]:

@@ -1,4 +1,4 @@
-"""The files of a report while its campaign runs, made from the journal as it is now."""
+"""The files of a report while its campaign runs, made from the current journal."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class ReportPages:
         return legible(text)
 
     def read(self, version: int) -> None:
-        """Read the journal: from now on the data are those that it has now.
+        """Read the journal again: later scripts hold its current data.
 
         ``version``: stands in the data of the campaign, by which a browser knows them.
         """
@@ -61,7 +61,7 @@ class ReportPages:
             self._campaign, self._clean = portable(stored), Cleaner(stored.meta.get("root"))
 
     def campaign(self) -> bytes:
-        """Return the script with the list of mutants; nothing as long as there is no plan."""
+        """Return the script with the list of mutants; empty until there is a plan."""
         if self._campaign is None:
             return b""
         if "campaign" not in self._whole:
@@ -70,7 +70,7 @@ class ReportPages:
         return self._whole["campaign"]
 
     def sources(self) -> bytes:
-        """Return the script with the texts of the mutated files; nothing as long as there is no plan."""
+        """Return the script with the texts of the mutated files; empty until there is a plan."""
         if self._campaign is None:
             return b""
         if "sources" not in self._whole:
