@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import mujoco
 import numpy as np
@@ -70,6 +70,7 @@ class Arm:
         self._lost: PathLost | None = None
         self._stop: ProtectiveStop | None = None
         self._lag = robot.lag()
+        self._compared: Callable[[], Array] | None = None
         fed = self._model.is_fed_forward
         self._feed_forward = FeedForward(self._model, robot.stiffness()) if fed else None
         self._flange = _flange_in_tool(self._model)
@@ -518,8 +519,22 @@ class Arm:
         if self._streamed >= len(self._stream):
             self._stream = self._move = None
 
+    @property
+    def setpoint(self) -> Array:
+        """What the encoders should read now, as planned, shape (joints,), rad."""
+        return self._setpoint
+
+    def compare_with(self, setpoints: Callable[[], Array]) -> None:
+        """Let the protective stop compare encoders with these instead of what is planned, such as later ones.
+
+        Args:
+            setpoints: gives what the encoders should read, shape (joints,), rad.
+        """
+        self._compared = setpoints
+
     def _following_error(self) -> Array:
-        error: Array = self._setpoint - self._robot.encoders()
+        wanted = self._setpoint if self._compared is None else self._compared()
+        error: Array = wanted - self._robot.encoders()
         return error
 
     def _watch(self) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from dataclasses import replace
 
 import numpy as np
 
@@ -29,6 +30,8 @@ class ConveyorBelt:
         name: of the fixture whose surface moves.
         direction: unit vector of positive speed, shape (3,), world frame, as it was when the cell was made:
             the controller is not told of a conveyor that is moved afterwards.
+        drive_factor, encoder_factor: what part of the commanded speed the drive gives, and of the travel the
+            encoder reads; 1 for a belt without an error.
     """
 
     def __init__(self, simulation: Simulation, name: str, belt: Belt, noise: SeededNoise) -> None:
@@ -41,6 +44,7 @@ class ConveyorBelt:
         self._along: Array = along / np.linalg.norm(along)
         frame = simulation.data.geom_xmat[self._geom].reshape(3, 3)
         self.direction: Array = frame @ self._along
+        self.drive_factor = self.encoder_factor = 1.0
         self._commanded = 0.0
         self._drive_speed = 0.0
         self._wander = 0.0
@@ -87,7 +91,11 @@ class ConveyorBelt:
             SensorError: `at` is in the future or too long ago.
         """
         count = self._belt.resolution
-        return math.floor(self._travelled(at) / count + 1e-6) * count
+        return math.floor(self.encoder_factor * self._travelled(at) / count + 1e-6) * count
+
+    def set_jitter(self, deviation: float) -> None:
+        """Let the speed wander from now on by this standard deviation, as part of the commanded one."""
+        self._belt = replace(self._belt, jitter=deviation)
 
     def speed(self) -> float:
         """Mean speed over the last 0.1 s as the encoder tells it, m/s."""
@@ -131,7 +139,7 @@ class ConveyorBelt:
         change = self._belt.acceleration * TICK
         missing = self._commanded - self._drive_speed
         self._drive_speed += math.copysign(min(change, abs(missing)), missing)
-        self._speed = self._drive_speed * (1.0 + self._wandered())
+        self._speed = self.drive_factor * self._drive_speed * (1.0 + self._wandered())
         self._simulation.model.geom_surfacevel[self._geom, :3] = self._speed * self._along
         self._past.append(self._past[-1] + self._speed * TICK)
         self._known += 1

@@ -46,6 +46,7 @@ class Gripper:
         self._other_ticks = 0
         self._read: tuple[int, float] = (-1, 0.0)
         self._planned: list[float] = []
+        self._newtons, self._strength = 0.0, 1.0
         self.set_force(fingers.force if force is None else force)
         self.set_speed(fingers.speed if speed is None else speed)
         simulation.before_tick.append(self._drive)
@@ -62,7 +63,19 @@ class Gripper:
         low, high = self._fingers.force_range
         if not low <= newtons <= high:
             raise BadArgument(f"Expected {low} <= force <= {high} N but got force={newtons!r}")
-        self._force = float(newtons) * self._fingers.force_ratio
+        self._newtons = float(newtons)
+        self._apply_force()
+
+    def set_strength(self, strength: float) -> None:
+        """Wear the gripper: it grips with this part of the force that it is set to, now and from now on.
+
+        Its object detection goes by the motor's current, and knows no better.
+        """
+        self._strength = max(strength, 0.0)
+        self._apply_force()
+
+    def _apply_force(self) -> None:
+        self._force = self._strength * self._newtons * self._fingers.force_ratio
         self._simulation.model.actuator_forcerange[self._servo] = (-self._force, self._force)
 
     def set_speed(self, metres_per_second: float) -> None:

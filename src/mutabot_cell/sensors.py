@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import mujoco
 import numpy as np
@@ -12,7 +13,7 @@ from mutabot_cell.models.sleeping import awake
 from mutabot_cell.motion.kinematics import Kinematics
 
 from .errors import SensorError
-from .geometry import Pose, Position, pose_of
+from .geometry import Array, Pose, Position, pose_of
 from .light_barrier import SOLID, LightBarriers
 from .parts import Part
 from .robot import Robot
@@ -28,6 +29,9 @@ class Sensors:
 
     Attributes:
         light_barriers: those of the scene.
+        camera: where the camera stands, shape (3,), world frame, m.
+        hidden: functions that say, once for each picture, whether the camera sees no part in it.
+        balls: what else hides parts from the camera: the middle of each, shape (3,), m, and its radius, m.
     """
 
     def __init__(
@@ -54,7 +58,9 @@ class Sensors:
         self._seen_at = -1
         self._seen: dict[str, Position | None] = {}
         self._picture = mujoco.MjData(simulation.model)
-        self._camera = np.array(scene.camera)
+        self.camera: Array = np.array(scene.camera)
+        self.hidden: list[Callable[[], bool]] = []
+        self.balls: list[tuple[Array, float]] = []
         self._ranged: tuple[int, float] = (-1, 0.0)
 
     def tool_pose(self) -> Pose:
@@ -98,23 +104,34 @@ class Sensors:
         """Where the picture shows the box; None if less than a third of it can be seen."""
         body, geom = self._simulation.id_of("body", box.name), self._simulation.model.geom(box.name).id
         centre, rotation = self._picture.xpos[body], self._picture.xmat[body].reshape(3, 3)
-        rays = centre + np.array(box.points()) @ rotation.T - self._camera
+        rays = centre + np.array(box.points()) @ rotation.T - self.camera
         hits = np.zeros(len(rays), dtype=np.int32)
         for index, ray in enumerate(rays):
             mujoco.mj_ray(
                 self._simulation.model,
                 self._picture,
-                self._camera,
+                self.camera,
                 ray,
                 SOLID,
                 1,
                 -1,
                 hits[index : index + 1],
             )
-        if 3 * int((hits == geom).sum()) < len(rays):
+        seen = (hits == geom) & np.logical_not(self._hidden_by_balls(rays))
+        is_hidden = [hides() for hides in self.hidden]
+        if 3 * int(seen.sum()) < len(rays) or any(is_hidden):
             return None
         bottom = (centre + rotation @ box.foot).tolist()
         return Position(*(self._noise.add("box position", value) for value in bottom))
+
+    def _hidden_by_balls(self, rays: Array) -> Array:
+        """Which of these rays from the camera, shape (rays, 3), a ball is in the way of."""
+        found = np.zeros(len(rays), dtype=bool)
+        for centre, radius in self.balls:
+            way = centre - self.camera
+            along = np.clip(rays @ way / (rays * rays).sum(axis=1), 0.0, 1.0)
+            found |= np.linalg.norm(along[:, None] * rays - way, axis=1) < radius
+        return found
 
     def colour_number(self, name: str | None = None) -> int:
         """Colour as a whole number 1..10: even is red, odd is blue. Drawn once per round.

@@ -47,6 +47,8 @@ class Simulation:
         after_tick: called after each tick, in order; they may raise.
         travels: by the name of a belt's fixture, how far it has run, m; for pictures.
         foresight: says of hooks how they do without being called at each tick.
+        camera_interval: from one picture of the camera to the next, s; see `set_camera`.
+        camera_latency: age of a picture when it can be read first, s.
     """
 
     def __init__(self, scene: Scene, robots: Mapping[str, RobotModel]) -> None:
@@ -67,6 +69,7 @@ class Simulation:
         self._stepping = Stepping(self.model, self.data)
         self._stretch = Stretch(self.model, self.data, self._stepping, STEPS_PER_TICK)
         self._ticks = self._quiet = 0
+        self.camera_interval, self.camera_latency = FRAME_TICKS * TICK, LATENCY_TICKS * TICK
         self._frames: deque[tuple[int, Array]] = deque([(0, self.data.qpos.copy())], maxlen=_KEPT_FRAMES)
         self._ids: dict[tuple[str, str], int] = {}
         # views of the physics' own memory
@@ -84,8 +87,22 @@ class Simulation:
 
     def frame(self) -> tuple[int, Array]:
         """What the camera's newest readable picture shows: its tick, and `qpos` at that time."""
-        latest = self._ticks - LATENCY_TICKS
-        return next((frame for frame in reversed(self._frames) if frame[0] <= latest), self._frames[0])
+        latest, every = self._ticks - round(self.camera_latency / TICK), round(self.camera_interval / TICK)
+        taken = (frame for frame in reversed(self._frames) if frame[0] <= latest and not frame[0] % every)
+        return next(taken, self._frames[0])
+
+    def set_camera(self, *, interval: float | None = None, latency: float | None = None) -> None:
+        """Let the camera be slower, or its pictures later, from now on.
+
+        Args:
+            interval: from one picture to the next, s, rounded up to a multiple of 40 ms.
+            latency: age of a picture when it can be read first, s, in whole control ticks.
+        """
+        step = FRAME_TICKS * TICK
+        self.camera_interval = step * max(1, math.ceil((interval or self.camera_interval) / step - 1e-9))
+        self.camera_latency = self.camera_latency if latency is None else max(latency, 0.0)
+        kept = 1 + math.ceil((self.camera_latency + self.camera_interval) / step)
+        self._frames = deque(self._frames, maxlen=max(kept, _KEPT_FRAMES))
 
     @property
     def robot(self) -> Robot:

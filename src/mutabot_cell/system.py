@@ -23,6 +23,8 @@ class RobotSystem:
     Attributes:
         arm, sensors: as the robot program uses them.
         force_sensor: between the robot's flange and its tool.
+        robot: in the physics.
+        noise: of its sensors.
     """
 
     def __init__(
@@ -36,6 +38,7 @@ class RobotSystem:
         grip_force: float | None,
         finger_speed: float | None,
     ) -> None:
+        self.robot, self.noise = robot, noise
         self.force_sensor = ForceSensor(simulation, robot, noise)
         has_six = len(robot.model.joints) == 6
         arm = SixJointArm if has_six else Arm

@@ -20,7 +20,7 @@ _Seeds = Annotated[
     typer.Option(
         "--seeds",
         metavar="N",
-        min=3,
+        min=5,
         max=_MOST_SEEDS,
         help="New seeds for the tolerances, and as many for the proof.",
     ),
@@ -31,7 +31,7 @@ def suggest(
     context: CommandContext,
     only: list[str] | None = None,
     skip: list[str] | None = None,
-    seeds: _Seeds = 5,
+    seeds: _Seeds = 20,
     jobs: int | None = None,
     json: bool = False,
 ) -> None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import weakref
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
+from inspect import signature
 from random import Random
 from typing import Any, NamedTuple
 
@@ -34,11 +36,13 @@ class WorldFault(ActiveFault):
             case "made":
                 # those that are there may be of the test, or left of others: that is known at its end
                 with suppress(LookupError):
-                    self._earlier = [
-                        one for one in live(self.data["of"]) if self._disturb(one, is_told=False)
-                    ]
+                    found = live(self.data["of"])
+                    self._earlier = [one for one in found if self._disturb(one, is_told=False)]
                 for reference in self.data["of"]:
                     self._wrap(reference, after=lambda _, world: self._meet(world))
+            case "making":
+                for reference in self.data["of"]:
+                    self._wrap(reference, before=partial(self._make_otherwise, reference))
             case "call":
                 self._wrap(moment["call"], before=_Nth(int(moment["number"]), self._disturb_all))
             case "while":
@@ -82,6 +86,16 @@ class WorldFault(ActiveFault):
                     self._disturb(world)
                 elif id(world) in self._disturbed:
                     self._let_go(id(world))
+
+    def _make_otherwise(self, reference: str, *arguments: Any, **named: Any) -> Any:
+        """Change what a world is made with: the function gets these arguments by name, instead of a world."""
+        found = resolve(reference)[2]
+        makes: Any = vars(found)["__init__"] if isinstance(found, type) else found
+        bound = signature(makes).bind(*arguments, **named)
+        bound.apply_defaults()
+        if self._disturb(bound.arguments):
+            return bound.args, bound.kwargs
+        return None
 
     def _meet(self, world: Any) -> None:
         """The test has made a world: those that were there before are of other tests."""

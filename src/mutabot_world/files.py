@@ -27,6 +27,13 @@ def parameters_of(table: WorldTable, root: Path) -> list[ParameterTable]:
     if unused:
         known = ", ".join(one.name for one in found) or "there are none"
         raise UsageError(f"world.only: no parameter is named {unused[0]!r}; the files have: {known}")
+    stray = next((one for one in table.names if one not in [other.name for other in kept]), None)
+    if stray is not None:
+        raise UsageError(f"world.names: no parameter of the files is named {stray!r}")
+    kept = [
+        one.model_copy(update={"names": table.names[one.name]}) if one.name in table.names else one
+        for one in kept
+    ]
     kept += _with_maker(table.parameter, table.of, "the configuration")
     names = [one.name for one in kept]
     twice = next((name for name in names if names.count(name) > 1), None)

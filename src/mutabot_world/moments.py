@@ -10,6 +10,7 @@ _NUMBER = r"\d{1,6}(?:\.\d{1,6})?"
 _REFERENCE = r"[A-Za-z_][\w.]*:[A-Za-z_][\w.]*"
 _FORMS = {
     "made": re.compile("made"),
+    "making": re.compile("making"),
     "time": re.compile(rf"(?P<number>{_NUMBER}) ?s"),
     "call": re.compile(rf"call (?P<number>[1-9]\d{{0,5}}) of (?P<call>{_REFERENCE})"),
     "while": re.compile(rf"while (?P<condition>{_REFERENCE}) at (?P<call>{_REFERENCE})"),
@@ -21,9 +22,9 @@ class Beginning:
     """When a disturbance begins.
 
     Attributes:
-        kind: ``made``: as soon as the world is; ``time``: at a simulated time of the test; ``call``: before
-            the n-th call of a function in a test; ``while``: as long as a condition of the world holds, which
-            is asked before each call of a function.
+        kind: ``made``: as soon as the world is; ``making``: in what it is made with; ``time``: at a simulated
+            time of the test; ``call``: before the n-th call of a function in a test; ``while``: as long as a
+            condition of the world holds, which is asked before each call of a function.
         number: the time, s, or the number of the call, from 1.
         call: the function, ``module:name``.
         condition: likewise; it gets the world.
@@ -46,8 +47,8 @@ class Beginning:
                 parts: dict[str, Any] = found.groupdict()
                 return cls(kind, float(parts.pop("number", 0.0)), **parts)
         raise ValueError(
-            f'{text!r} is not a moment of a disturbance; write "made", "2.5 s", "call 3 of module:function" '
-            'or "while module:condition at module:function"'
+            f'{text!r} is not a moment of a disturbance; write "made", "making", "2.5 s", '
+            '"call 3 of module:function" or "while module:condition at module:function"'
         )
 
     @property

@@ -10,8 +10,8 @@ from typing import Any
 
 from .change import Undo
 
-#: called before the function, with its arguments
-Before = Callable[..., object]
+#: called before the function, with its arguments; what it returns, if anything, are others in their place
+Before = Callable[..., tuple[tuple[Any, ...], dict[str, Any]] | None]
 #: called after the function, with its first argument (of a method, the object) and its result
 After = Callable[[Any, Any], object]
 #: marks an exception as one of the function's own, and returns it
@@ -50,8 +50,9 @@ def wrap(reference: str, own: Own, *, before: Before | None = None, after: After
 
     def around(*arguments: Any, **named: Any) -> Any:
         nonlocal depth
-        if before is not None and not depth:
-            before(*arguments, **named)
+        replaced = before(*arguments, **named) if before is not None and not depth else None
+        if replaced is not None:
+            arguments, named = replaced
         depth += 1
         try:
             result = found(*arguments, **named)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, field_validator, model_validator
@@ -114,6 +115,11 @@ class WorldTable(Table):
     """Names of the parameters to take from these files; `*` stands for any text. All without.
 
         only = ["part mass", "camera *"]
+    """
+    names: Mapping[str, str] = {}
+    """Which things of the world a parameter of these files means, by its name; `*` stands for any text.
+
+        names = { mass = "obj*" }
     """
     of: _TextList = ()
     """What makes the world of all parameters here that do not say it: `module:Class` or `module:function`.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import random
+from collections.abc import Callable
 
 STANDARD_DEVIATIONS = {
     "joint angle": 0.005,  # deg; makes 0.1 mm and 0.015 deg at the tool
@@ -24,12 +25,16 @@ class SeededNoise:
         seed: of the round.
         enabled: False makes every reading exact.
         scope: before the names of all streams, so that each robot has its own.
+
+    Attributes:
+        errors: by the name of a sensor, what it makes of each true value beside its noise; none at first.
     """
 
     def __init__(self, seed: int, *, enabled: bool = True, scope: str = "") -> None:
         self._seed, self._scope = seed, scope
         self._enabled = enabled
         self._streams: dict[str, random.Random] = {}
+        self.errors: dict[str, Callable[[float], float]] = {}
 
     def stream(self, name: str) -> random.Random:
         """The generator of `name`; also used for what is drawn once per round."""
@@ -39,6 +44,8 @@ class SeededNoise:
 
     def add(self, name: str, value: float) -> float:
         """`value` plus noise of the sensor `name`, in the sensor's unit."""
+        if self.errors and name in self.errors:
+            value = self.errors[name](value)
         if not self._enabled:
             return value
         return value + self.stream(name).gauss(0.0, STANDARD_DEVIATIONS[name])

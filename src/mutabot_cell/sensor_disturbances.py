@@ -1,0 +1,103 @@
+"""Disturbances of a cell's sensors: what `world.toml` of this package names. See `disturbances`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from itertools import cycle
+from random import Random
+
+from .cell import Cell
+from .disturbances import Changed, robots
+
+_AXES = "xyz"
+#: readings of one look of a sensor: the camera tells x, y and z
+_PER_LOOK = {"box position": 3}
+
+
+def bias(
+    cell: Cell, change: Changed, *, names: str, random: Random, sensor: str, axis: str = "", unit: float = 1.0
+) -> None:
+    """A constant error of a sensor, or a part of what it reads.
+
+    Args:
+        names: of robots.
+        sensor: as `models.noise` names it: "box position", "distance", "opening", "joint angle" …
+        axis: of positions; all without.
+        unit: how many of the SI's unit the sensor's own is.
+    """
+    number = _AXES.index(axis) if axis else None
+
+    def read(count: int, value: float) -> float:
+        return change(value * unit) / unit if number in (None, count) else value
+
+    _disturb(cell, names, sensor, read)
+
+
+def drift(
+    cell: Cell, change: Changed, *, names: str, random: Random, sensor: str, axis: str = "", unit: float = 1.0
+) -> None:
+    """An error that grows by this each second; otherwise as `bias`."""
+    number, begin = _AXES.index(axis) if axis else None, cell.time
+
+    def read(count: int, value: float) -> float:
+        return value + change(0.0) / unit * (cell.time - begin) if number in (None, count) else value
+
+    _disturb(cell, names, sensor, read)
+
+
+def noise(cell: Cell, change: Changed, *, names: str, random: Random, sensor: str, unit: float = 1.0) -> None:
+    """Normal noise beside the sensor's own, of this standard deviation."""
+    _disturb(cell, names, sensor, lambda count, value: value + random.gauss(0.0, change(0.0) / unit))
+
+
+def dropout(cell: Cell, change: Changed, *, names: str, random: Random) -> None:
+    """Share of pictures in which the camera sees no part: reading it raises `SensorError`."""
+    for system in robots(cell, names):
+        system.sensors.hidden.append(lambda *_: random.random() < change(0.0))
+
+
+def outage(cell: Cell, change: Changed, *, names: str, random: Random, begin: float = 0.0) -> None:
+    """For how long the camera sees no part, s, from a simulated time on."""
+    for system in robots(cell, names):
+        system.sensors.hidden.append(lambda *_: begin <= cell.time < begin + change(0.0))
+
+
+def occlusion(
+    cell: Cell, change: Changed, *, names: str, random: Random, part: str = "", share: float = 0.5
+) -> None:
+    """Radius of a ball that stands in the camera's line of sight to a part as it lies now, m.
+
+    Args:
+        names: of robots.
+        part: the first one without.
+        share: where it stands, from the camera (0) to the part (1).
+    """
+    parts = [one.name for one in cell.simulation.scene.parts]
+    if not parts:
+        raise LookupError("there is no part")
+    target = cell.simulation.data.xpos[cell.simulation.id_of("body", part or parts[0])]
+    for system in robots(cell, names):
+        camera = system.sensors.camera
+        system.sensors.balls.append((camera + share * (target - camera), change(0.0)))
+
+
+def latency(cell: Cell, change: Changed, *, names: str, random: Random) -> None:
+    """Age of a picture of the camera when it can be read first, s, in whole control ticks."""
+    cell.simulation.set_camera(latency=change(cell.simulation.camera_latency))
+
+
+def interval(cell: Cell, change: Changed, *, names: str, random: Random) -> None:
+    """Time from one picture of the camera to the next, s; a multiple of that of the camera."""
+    cell.simulation.set_camera(interval=change(cell.simulation.camera_interval))
+
+
+def _disturb(cell: Cell, names: str, sensor: str, read: Callable[[int, float], float]) -> None:
+    """Let a sensor read something else; `read` gets the number of the value within a look."""
+    for system in robots(cell, names):
+        numbers = cycle(range(_PER_LOOK.get(sensor, 1)))
+        system.noise.errors[sensor] = partial(_read_next, numbers, read)
+
+
+def _read_next(numbers: Iterator[int], read: Callable[[int, float], float], value: float) -> float:
+    return read(next(numbers), value)

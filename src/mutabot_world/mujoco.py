@@ -1,0 +1,180 @@
+"""Disturbances of any program on MuJoCo: what ``mujoco.toml`` names.
+
+Each is a function of a model as it was made, of the change in SI units and, by name, of ``names``, in which
+``*`` stands for any text. A model that tests share stays changed as long as the process of the test lives.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from fnmatch import fnmatchcase
+from random import Random
+from typing import Any
+
+from .change import NothingThereError, NumberChange
+
+_LEAST = 1e-9
+_AXES = "xyz"
+#: what lets a state follow a model, so that positions are to be right when it begins
+_STEPS = ("mj_step", "mj_step1", "mj_forward")
+
+
+def mass(model: Any, change: NumberChange, *, names: str, random: Random) -> None:
+    """Mass of bodies, kg, with their inertia."""
+    for body in _named(model, "body", names, lambda number: model.body_mass[number] > 0.0):
+        before = float(model.body_mass[body])
+        factor = max(float(change(before)), _LEAST) / before
+        model.body_mass[body] *= factor
+        model.body_inertia[body] *= factor
+    _settle(model)
+
+
+def centre_of_mass(model: Any, change: NumberChange, *, names: str, random: Random, axis: str) -> None:
+    """Centre of mass of bodies along an axis of theirs, m."""
+    bodies = list(_named(model, "body", names, lambda number: model.body_mass[number] > 0.0))
+    if hasattr(model, "body_simple") and any(model.body_simple[body] for body in bodies):
+        raise NothingThereError(
+            f"the body {names!r} was compiled as a simple one, whose centre of mass is fixed"
+        )
+    for body in bodies:
+        place = model.body_ipos[body]
+        place[_AXES.index(axis)] = change(float(place[_AXES.index(axis)]))
+    _settle(model)
+
+
+def friction(model: Any, change: NumberChange, *, names: str, random: Random) -> None:
+    """Sliding friction of shapes, and of pairs with one of them, which goes before that of the shapes."""
+    geoms = set(_named(model, "geom", names))
+    for geom in geoms:
+        model.geom_friction[geom, 0] = max(float(change(float(model.geom_friction[geom, 0]))), 1e-5)
+    for pair in range(model.npair):
+        if geoms & {int(model.pair_geom1[pair]), int(model.pair_geom2[pair])}:
+            model.pair_friction[pair, :2] = [
+                max(float(change(float(x))), 1e-5) for x in model.pair_friction[pair, :2]
+            ]
+
+
+def position(model: Any, change: NumberChange, *, names: str, random: Random, axis: str) -> None:
+    """Where bodies are in the frame of the body above, m; also after a framework has put them elsewhere."""
+    number, written = _AXES.index(axis), dict[int, float]()
+    bodies = list(_named(model, "body", names, lambda body: body > 0))
+
+    def move() -> None:
+        for body in bodies:
+            now = float(model.body_pos[body][number])
+            if written.get(body) != now:
+                model.body_pos[body][number] = written[body] = float(change(now))
+
+    move()
+    _before_steps(model, move)
+
+
+def gain(model: Any, change: NumberChange, *, names: str, random: Random) -> None:
+    """Gain of actuators, with the stiffness of those that are servos."""
+    for actuator in _named(model, "actuator", names):
+        before = float(model.actuator_gainprm[actuator, 0])
+        model.actuator_gainprm[actuator, 0] = change(before)
+        if float(model.actuator_biasprm[actuator, 1]) == -before:  # a servo for positions
+            model.actuator_biasprm[actuator, 1] = -change(before)
+
+
+def strength(model: Any, change: NumberChange, *, names: str, random: Random) -> None:
+    """Largest force of actuators, N or Nm, of those that have a limit."""
+    for actuator in _named(model, "actuator", names, lambda one: bool(model.actuator_forcelimited[one])):
+        model.actuator_forcerange[actuator] = [
+            change(float(one)) for one in model.actuator_forcerange[actuator]
+        ]
+
+
+def damping(model: Any, change: NumberChange, *, names: str, random: Random) -> None:
+    """Damping of joints, N·s/m or N·m·s/rad."""
+    _of_joints(model, change, names, model.dof_damping)
+
+
+def joint_friction(model: Any, change: NumberChange, *, names: str, random: Random) -> None:
+    """Dry friction of joints, N or Nm."""
+    _of_joints(model, change, names, model.dof_frictionloss)
+
+
+def gravity(model: Any, change: NumberChange, *, names: str, random: Random) -> None:
+    """Gravity along the vertical, m/s²; more of it pulls harder."""
+    model.opt.gravity[2] = -float(change(-float(model.opt.gravity[2])))
+
+
+def sensor(model: Any, change: NumberChange, *, names: str, random: Random) -> None:
+    """What sensors of a model read, in their own units."""
+    parts = [
+        slice(int(model.sensor_adr[one]), int(model.sensor_adr[one] + model.sensor_dim[one]))
+        for one in _named(model, "sensor", names)
+    ]
+
+    def read(data: Any) -> None:
+        for part in parts:
+            data.sensordata[part] = change(data.sensordata[part])
+
+    _after_steps(model, read)
+
+
+def _of_joints(model: Any, change: NumberChange, names: str, values: Any) -> None:
+    dofs = {0: 6, 1: 3, 2: 1, 3: 1}
+    for joint in _named(model, "joint", names, lambda one: int(model.jnt_type[one]) in (2, 3)):
+        first = int(model.jnt_dofadr[joint])
+        for dof in range(first, first + dofs[int(model.jnt_type[joint])]):
+            values[dof] = max(float(change(float(values[dof]))), 0.0)
+    _settle(model)
+
+
+def _named(
+    model: Any, kind: str, names: str, fits: Callable[[int], bool] = lambda number: True
+) -> Iterator[int]:
+    """Yield the numbers of the things that are meant. Raises NothingThereError if there are none."""
+    count = {"body": "nbody", "geom": "ngeom", "joint": "njnt", "actuator": "nu", "sensor": "nsensor"}[kind]
+    known = {number: getattr(model, kind)(number).name for number in range(getattr(model, count))}
+    found = [number for number, name in known.items() if fnmatchcase(name, names) and fits(number)]
+    if not found:
+        there = ", ".join(sorted({name for number, name in known.items() if name and fits(number)})) or "none"
+        raise NothingThereError(f"no {kind} is named {names!r}; there are: {there}")
+    yield from found
+
+
+def _settle(model: Any) -> None:
+    """Let constants follow; with the program's own data its state would be thrown back."""
+    import mujoco  # noqa: PLC0415  # the program's, which a project may not have
+
+    mujoco.mj_setConst(model, mujoco.MjData(model))
+
+
+def _before_steps(model: Any, then: Callable[[], None]) -> None:
+    import mujoco  # noqa: PLC0415
+
+    for name in _STEPS:
+        setattr(mujoco, name, _Around(getattr(mujoco, name), model, lambda data: then(), None))
+
+
+def _after_steps(model: Any, then: Callable[[Any], None]) -> None:
+    import mujoco  # noqa: PLC0415
+
+    for name in ("mj_step", "mj_forward"):
+        setattr(mujoco, name, _Around(getattr(mujoco, name), model, None, then))
+
+
+class _Around:
+    """A function of MuJoCo, with something before and after it if it is called for one model."""
+
+    def __init__(
+        self,
+        function: Any,
+        model: Any,
+        before: Callable[[Any], None] | None,
+        after: Callable[[Any], None] | None,
+    ) -> None:
+        self.__wrapped__ = function
+        self._model, self._before, self._after = model, before, after
+
+    def __call__(self, model: Any, data: Any, *arguments: Any, **named: Any) -> Any:
+        if model is self._model and self._before is not None:
+            self._before(data)
+        result = self.__wrapped__(model, data, *arguments, **named)
+        if model is self._model and self._after is not None:
+            self._after(data)
+        return result
