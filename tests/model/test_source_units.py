@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ast
+import gc
 from textwrap import dedent
 
 import pytest
@@ -95,9 +97,17 @@ def test_who_reads_program_text_depends_on_all_of_the_file() -> None:
 
 def test_what_cannot_be_parsed_counts_whole() -> None:
     one = file("def (:\n")
-    assert one.nodes is None
+    assert not one.is_python
     assert one.names_at((MODULE,)) is None
     assert one.lines_of({"x"}) == (WHOLE,)
+
+
+def test_a_file_keeps_no_syntax_tree() -> None:
+    one = file("def only_here():\n    pass\n")
+    assert one.is_python
+    assert "only_here" in one.said
+    kept = (node for node in gc.get_objects() if isinstance(node, ast.FunctionDef))
+    assert not any(node.name == "only_here" for node in kept)
 
 
 def test_lines_move_where_the_unit_says_the_same() -> None:

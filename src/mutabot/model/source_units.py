@@ -14,6 +14,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from copy import copy
 from functools import cached_property
+from typing import NamedTuple
 
 #: in the place of a line: the module level, or the text of the whole file
 MODULE, WHOLE = -1, 0
@@ -119,6 +120,20 @@ def _is_mark(decorator: ast.expr) -> bool:
     return is_mark and all(one is decorator or last_name(one) == "param" for one in calls)
 
 
+class _Units(NamedTuple):
+    """What is known of the units of a file.
+
+    Attributes:
+        lines: their lines, by name, as executed units are told.
+        said: what they say, as digests, by name.
+        is_quiet: whether nothing happens at the module level but that names are given to what is plain.
+    """
+
+    lines: Mapping[str, int]
+    said: Mapping[str, str]
+    is_quiet: bool
+
+
 class File:
     """What stands in a Python file.
 
@@ -136,7 +151,19 @@ class File:
         return digest(self._text)
 
     @cached_property
-    def nodes(self) -> dict[str, ast.AST] | None:
+    def _units(self) -> _Units | None:
+        """What is asked of its units; None if it cannot be parsed. Trees need a hundred times its memory."""
+        nodes = self._nodes()
+        if nodes is None:
+            return None
+        module = nodes[""]
+        return _Units(
+            {name: getattr(node, "lineno", MODULE) for name, node in nodes.items()},
+            {name: self._said_by(node) for name, node in nodes.items()},
+            isinstance(module, ast.Module) and all(map(_is_quiet, module.body)),
+        )
+
+    def _nodes(self) -> dict[str, ast.AST] | None:
         """Its units by name, the module level by the empty name; None if it cannot be parsed."""
         try:
             with warnings.catch_warnings():
@@ -153,32 +180,34 @@ class File:
         found[""] = _ModuleLevel(is_test_file(self.name)).visit(tree)
         return found
 
+    @property
+    def is_python(self) -> bool:
+        """Whether it can be parsed."""
+        return self._units is not None
+
     @cached_property
-    def said(self) -> dict[str, str]:
+    def said(self) -> Mapping[str, str]:
         """What each unit says, as a digest, by its name; of a file that cannot be parsed, the text."""
-        if self.nodes is None:
-            return {"": self.digest}
-        return {name: self._said_by(node) for name, node in self.nodes.items()}
+        return {"": self.digest} if self._units is None else self._units.said
 
     @property
     def is_quiet(self) -> bool:
         """Whether nothing happens when it is imported but that names are given to what is plain."""
-        tree = (self.nodes or {}).get("")
-        return isinstance(tree, ast.Module) and all(map(_is_quiet, tree.body))
+        return self._units is not None and self._units.is_quiet
 
     def names_at(self, lines: tuple[int, ...]) -> set[str] | None:
         """The names of the units at these lines; None if the whole text counts."""
-        if self.nodes is None or WHOLE in lines:
+        if self._units is None or WHOLE in lines:
             return None
-        by_line = {getattr(node, "lineno", MODULE): name for name, node in self.nodes.items()}
+        by_line = {line: name for name, line in self._units.lines.items()}
         found = {by_line.get(line) for line in lines}
         return None if None in found else {name for name in found if name is not None}
 
     def lines_of(self, names: Iterable[str] | None) -> tuple[int, ...]:
         """The lines by which these units are recorded; None: the whole text."""
-        if self.nodes is None or names is None:
+        if self._units is None or names is None:
             return (WHOLE,)
-        return tuple(sorted(getattr(self.nodes[name], "lineno", MODULE) for name in names))
+        return tuple(sorted(map(self._units.lines.__getitem__, names)))
 
     def shown(self, name: str) -> str:
         """Return a unit as text: ``place() in sorting.py``."""
@@ -187,10 +216,11 @@ class File:
     def moves_to(self, new: File) -> dict[NodeExtent, NodeExtent | None]:
         """Map lines and nodes of this text to those of a new one; None where that is ambiguous."""
         found: dict[NodeExtent, NodeExtent | None] = {}
-        for name, node in (self.nodes or {}).items():
-            if new.nodes is None or self.said[name] != new.said.get(name):
+        nodes, others = self._nodes() or {}, new._nodes() or {}
+        for name, node in nodes.items():
+            if name not in others or self.said[name] != new.said.get(name):
                 continue
-            for before, now in zip(ast.walk(node), ast.walk(new.nodes[name]), strict=True):
+            for before, now in zip(ast.walk(node), ast.walk(others[name]), strict=True):
                 was, is_now = _extent(before), _extent(now)
                 for part in (slice(None), slice(0, 1), slice(2, 3)) if was and is_now else ():
                     if found.setdefault(was[part], is_now[part]) != is_now[part]:

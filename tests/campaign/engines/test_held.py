@@ -6,6 +6,7 @@ import pickle
 
 from mutabot.campaign.baseline.baseline import observation
 from mutabot.campaign.engines.forks import _ForkOutcome
+from mutabot.evidence.recording import Recording, to_text
 from mutabot.model.events import TestEnd
 from mutabot.model.mutant import Mutant, Place, Role, Site, Span
 
@@ -30,7 +31,8 @@ def test_what_waits_takes_less_than_a_third_of_itself() -> None:
 
 
 def test_short_tests_are_packed_together_and_take_less_than_a_fifth() -> None:
-    ends = [TestEnd(f"tests/test_mission.py::test_{number}", "passed", hits=1) for number in range(1010)]
+    names = [f"tests/test_mission.py::test_{number}" for number in range(1010)]
+    ends = [TestEnd(name, "passed", hits=1, recording=to_text(Recording())) for name in names]
     run = _ForkOutcome(MOVE, 0, tuple(end.test for end in ends))
     for end in ends:
         run.hold(end, observation(end, {}))

@@ -47,6 +47,8 @@ _MISSED = "not all processes that it started from a fork ran as the mutant"
 _QUICKLY = 1
 #: short tests of a fork that are packed together, since they are much alike; long ones weigh more
 _TOGETHER = 50
+#: characters of a recording that weigh as much as a short test
+_CHARACTERS = 1000
 
 _HeldEnd = tuple[events.TestEnd, "Observation | None"]
 
@@ -153,7 +155,7 @@ class _ForkOutcome(Run):
     def hold(self, end: events.TestEnd, seen: Observation | None) -> None:
         """One of its tests has ended. ``seen``: what is compared of it, if anything is."""
         self.held.append((end, seen))
-        self.weight += 1 + len(end.trace) + len(end.recording or "")
+        self.weight += 1 + len(end.trace) + len(end.recording or "") // _CHARACTERS
         if self.weight >= _TOGETHER:
             self.packed.append(zlib.compress(pickle.dumps(self.held), _QUICKLY))
             self.held.clear()

@@ -16,7 +16,7 @@ import re
 import tomllib
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -70,7 +70,7 @@ class SourceTree:
         return self._files[name]
 
     @cached_property
-    def said(self) -> dict[str, dict[str, str] | None]:
+    def said(self) -> dict[str, Mapping[str, str] | None]:
         """What each unit of each file says."""
         files = {name: self.file(name) for name in self.digests}
         return {name: file.said if file is not None else None for name, file in files.items()}
@@ -86,7 +86,7 @@ class SourceTree:
             if name not in self.digests or self.digests[name] == new.digests.get(name):
                 return match[0]
             extent = tuple(int(part) for part in match.groups()[1:] if part is not None)
-            found = before.moves_to(now).get(extent) if before is not None and now is not None else None
+            found = _moves(before, now).get(extent) if before is not None and now is not None else None
             if found is None:
                 gone = True
                 return match[0]
@@ -99,6 +99,9 @@ class SourceTree:
 
 #: a place as outcomes name it: ``file:line``, or ``file:line:column-line:column``
 _PLACE = re.compile(r"(?<![\w./-])([\w./-]+\.py):(\d+)(?::(\d+)-(\d+):(\d+))?")
+
+#: of two files: most places that are moved lie in the same ones
+_moves = lru_cache(8)(File.moves_to)
 
 
 @frozen
@@ -468,7 +471,7 @@ def _differing(names: Mapping[str, set[str] | None], old: SourceTree, new: Sourc
         if old.digests.get(name) == new.digests.get(name):
             continue
         before, now = old.file(name), new.file(name)
-        if units is None or before is None or now is None or before.nodes is None or now.nodes is None:
+        if units is None or before is None or now is None or not (before.is_python and now.is_python):
             state = "is new" if name not in old.digests else "changed"
             found.append(f"{name} {state if name in new.digests else 'is gone'}")
             continue
