@@ -126,14 +126,23 @@ class Runs:
             yield from off(f"{which}duration", text, float(cell.times[-1]), 0.15, 0.0)
 
     def late(self, told: Told) -> Iterator[str]:
-        """The same, later or earlier."""
+        """The same, later or earlier; how much that is may not be told."""
         yield from self._same_world()
+        sign = -1.0 if told.get("way") == "earlier" else 1.0
+        if "far" in told:
+            yield from off("delay", told["far"], max(sign * delay for delay in self._delays()), 0.15, 0.1)
+
+    def no_delay(self, told: Told) -> Iterator[str]:
+        """The same at nearly the same times."""
+        yield from self._same_world()
+        yield from off("delay", "0 s", max(map(abs, self._delays())), 0.15, 0.0)
+
+    def _delays(self) -> list[float]:
         delays = [float(self.mutant.times[-1] - self.original.times[-1])]
         for tool in self.original.tools:
             one, other = self.original.starts(tool), self.mutant.starts(tool)
             delays += (other - one).tolist() if len(one) == len(other) else []
-        sign = -1.0 if told.get("way") == "earlier" else 1.0
-        yield from off("delay", told.get("far", "0 s"), max(sign * delay for delay in delays), 0.15, 0.1)
+        return delays
 
     def _same_world(self) -> Iterator[str]:
         for name, one in self.original.poses.items():
@@ -235,6 +244,7 @@ CHECKS: dict[str, Callable[[Runs, Told], Iterator[str]]] = {
     rf"(?P<part>.+) moved at up to {_BOTH}": Runs.speed,
     rf"(?P<part>.+) fell to {_BOTH}": Runs.margin,
     rf"the same movements happened up to (?P<far>{_AMOUNT}) (?P<way>later|earlier)": Runs.late,
+    rf"the same movements happened at most (?P<far>{_AMOUNT}) earlier or later": Runs.no_delay,
     "the same movements happened at other times": Runs.late,
     rf"the test took {_BOTH}": Runs.duration,
     rf"(?P<part>.+) ended turned by (?P<far>{_AMOUNT})": Runs.ended_turned,

@@ -148,7 +148,7 @@ def test_what_differs_in_nothing_is_not_kept(
     folder, same = tmp_path / "project", recorded[1]["arm.grip#2:call:repeat"]
     shutil.copytree(recorded[0], folder)
     again = same.diverged[0]  # it takes a step longer
-    assert again.story == "the same movements happened at other times"
+    assert again.story == "the same movements happened at most 0.1 s earlier or later"
     mission = (folder / "mission.py").read_text()
     (folder / "mission.py").write_text(
         mission.replace("arm.move_by(-0.25)", "arm.move_by(-0.25); arm.move_by(1e-9)")

@@ -139,8 +139,8 @@ def with_margin(*margins: float) -> Recording:
     ("margins", "story"),
     [
         ((40.0, 2.1, 40.0), "joint limit margin fell to 2.1 deg (original: 38 deg)"),
-        ((40.0, 30.0, 40.0), "the same movements happened at other times"),
-        ((40.0, 39.0, 60.0), "the same movements happened at other times"),
+        ((40.0, 30.0, 40.0), "the same movements happened at most 0.1 s earlier or later"),
+        ((40.0, 39.0, 60.0), "the same movements happened at most 0.1 s earlier or later"),
     ],
 )
 def test_how_near_to_a_limit_is_told_if_it_is_much_nearer(margins: tuple[float, ...], story: str) -> None:

@@ -258,9 +258,11 @@ class _ComparedRuns:
     def _delay(self) -> str:
         """By how much the same things happened later or earlier."""
         delays = [after - before for before, after in self._same_moments()]
-        worst = max(delays, key=abs, default=0.0)
-        if abs(worst) <= _NO_DELAY:
+        if not delays:
             return "the same movements happened at other times"
+        worst = max(delays, key=abs)
+        if abs(worst) <= _NO_DELAY:
+            return f"the same movements happened at most {_NO_DELAY} s earlier or later"
         return f"the same movements happened up to {abs(worst):.1f} s {'later' if worst > 0 else 'earlier'}"
 
     def _same_moments(self) -> Iterator[tuple[float, float]]:
