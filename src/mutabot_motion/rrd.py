@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -59,6 +59,8 @@ class _Side:
     def log(self) -> None:
         for name in things_in(self._recorded):
             self._log_thing(name)
+        for name in self._recorded.lines:
+            self._log_line(name)
         for name in values_in(self._recorded):
             self._log_value(name)
         self._log_events()
@@ -84,6 +86,15 @@ class _Side:
         line = rerun.LineStrips3D([way.points], radii=_LINE, colors=self._colour)
         self._stream.log(self._path("paths", name), line, static=True)
 
+    def _log_line(self, name: str) -> None:
+        """Log an arm at each moment; Rerun draws a strip as thick all along."""
+        line = self._recorded.lines[name]
+        path, strips = self._path("robot", name), [_points(row) for row in line.rows]
+        radius = sum(line.track.radii) / len(line.track.radii)
+        moved = rerun.LineStrips3D.columns(strips=strips)
+        self._stream.log(path, rerun.LineStrips3D.from_fields(radii=radius, colors=self._colour), static=True)
+        self._stream.send_columns(path, [self._times(line.when)], moved)
+
     def _log_value(self, name: str) -> None:
         path, way = self._path("values", name), self._recorded.paths[name]
         unit = f", {way.track.unit}" if way.track.unit else ""
@@ -106,6 +117,10 @@ class _Side:
 
     def _path(self, *parts: str) -> str:
         return str(rerun.new_entity_path([self._name, *parts]))
+
+
+def _points(row: Sequence[float]) -> list[Sequence[float]]:
+    return [row[start : start + 3] for start in range(0, len(row), 3)]
 
 
 def _log_block(stream: rerun.RecordingStream, block: DrawnBlock) -> None:

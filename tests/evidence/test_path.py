@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Sequence
-from math import cos, dist, sin
+from math import cos, dist, nan, sin
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -90,3 +91,9 @@ def test_a_corner_between_two_moments_may_be_anywhere_between_them(share: float)
     before = path_of([*along, *((0.0, (number - share) / 10, 0.0) for number in range(1, 5))])
     assert aside([(0.0, 0.0, 0.0)], before.outline) > 0.01
     assert aside([(0.0, 0.0, 0.0)], before.outline, before.bows) == 0.0
+
+
+def test_a_line_is_not_there_as_long_as_one_of_its_points_is_not() -> None:
+    values = array("f", [0.0, 0.0, 0.0, nan, nan, nan, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0])
+    line = Track("arm", TrackKind.LINE, values, radii=(0.1, 0.1))
+    assert TrackPath(line, [0.0, 0.1]).when == [0.1]

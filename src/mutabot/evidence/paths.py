@@ -152,6 +152,8 @@ class TrackPath:
         """The moments at which it was there, with their numbers."""
         values = [iter(self.track.values)] * self.track.width
         rows = zip(self.times, zip(*values, strict=True), strict=False)
+        if self.track.kind is TrackKind.LINE:  # each of its points may be missing
+            return [(time, row) for time, row in rows if not any(map(isnan, row))]
         return [(time, row) for time, row in rows if not isnan(row[0])]
 
     @cached_property

@@ -5,7 +5,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from itertools import combinations, product
+from itertools import combinations, pairwise, product
 from math import isnan
 from operator import ne
 
@@ -19,6 +19,7 @@ from .lettering import letters
 _WIDTH, _HEIGHT = 600, 600
 _EDGE, _LABEL = 16, 20
 _GROUND, _BLOCK, _OUTLINE, _TEXT = "#f7f8fa", "#dfe3e8", "#aab2bc", "#343a42"
+_ARM = "#c8d0d9"
 #: of things that move, told apart by people with any kind of sight
 _COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8a6d00", "#5a5a5a")
 #: corners of the views: which axis goes to the right, and which goes up
@@ -52,6 +53,7 @@ class Drawn:
     def __init__(self, recording: RecordedPaths, others: Iterable[RecordedPaths] = ()) -> None:
         self.end = end_of(recording)
         self._paths = {name: recording.paths[name] for name in things_in(recording)}
+        self._lines = [*recording.lines.values()]
         self._views = _views(_room([recording, *others]))
         self._empty = Image.new("RGB", (_WIDTH, _HEIGHT), _GROUND)
         draw = ImageDraw.Draw(self._empty)
@@ -68,6 +70,8 @@ class Drawn:
         """How it was at a time, s: paths until then, and where things were."""
         image = self._empty.copy()
         draw = ImageDraw.Draw(image)
+        for line, view in product(self._lines, self._views):
+            _draw_line(draw, view, line.rows[line.at(time)], line.track.radii)
         for number, path in enumerate(self._paths.values()):
             until = bisect_right(path.when, time + 1e-6)
             for view in self._views:
@@ -77,6 +81,18 @@ class Drawn:
                 if trail:
                     _draw_thing(draw, view, path.rows[until - 1], path.track.size, _colour(number))
         return image
+
+
+def _draw_line(
+    draw: ImageDraw.ImageDraw, view: _PixelView, row: Sequence[float], radii: Sequence[float]
+) -> None:
+    """An arm, link by link."""
+    points = [view.pixel(row[start : start + 3]) for start in range(0, len(row), 3)]
+    for number, ends in enumerate(pairwise(points)):
+        draw.line(ends, fill=_ARM, width=max(2, round(2 * view.scale * radii[number])))
+    for (x, y), radius in zip(points, radii, strict=True):
+        wide = max(1.0, view.scale * radius)
+        draw.ellipse((x - wide, y - wide, x + wide, y + wide), fill=_ARM, outline=_OUTLINE)
 
 
 def _colour(number: int) -> str:

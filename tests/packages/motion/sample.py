@@ -16,16 +16,18 @@ PLACE = "tests/test_box.py::test_arrives"
 
 def recording(*, lets_go: bool = False, **changes: Any) -> Recording:
     times = array("d", (number / 10 for number in range(STEPS)))
-    tool, box, opening = array("f"), array("f"), array("f")
+    tool, box, opening, arm = array("f"), array("f"), array("f"), array("f")
     for number in range(STEPS):
         x, is_held = number / 20, not (lets_go and number > 10)
         tool.extend((x, 0.0, 0.3, 1.0, 0.0, 0.0, 0.0))
         box.extend((x if is_held else 0.5, 0.0, 0.3 if is_held else 0.025))
+        arm.extend((0.0, 0.0, 0.0, 0.0, 0.0, 0.5, x, 0.0, 0.3))
         opening.append(0.05 if is_held else 0.1)
     tracks = {
         "tool": Track("tool", TrackKind.POSE, tool),
         "a box": Track("a box", TrackKind.POINT, box, size=(0.05, 0.05, 0.05)),
         "opening": Track("opening", TrackKind.VALUE, opening, "m"),
+        "arm": Track("arm", TrackKind.LINE, arm, radii=(0.05, 0.05, 0.04)),
     }
     calls = [
         RecordedCall(0.0, 2.0, "robot:Arm.move_by", "mission.py:3", None, {"dx": 1.0, "dy": 0}, {}),

@@ -88,3 +88,9 @@ def test_without_a_screen_the_viewer_is_not_opened_and_that_is_said(
     said = sight(shown())
     assert (tmp_path / "mutant-7-round-2.rrd").read_bytes().startswith(b"RRF2")
     assert "there is no screen to open its viewer on" in said
+
+
+def test_an_arm_is_a_strip_at_each_moment(written: list[Any]) -> None:
+    strips = column(written, "/mutant/robot/arm", "LineStrips3D:strips")
+    assert len(strips) == STEPS
+    assert strips[10] == [[0.0, 0.0, 0.0], [0.0, 0.0, 0.5], pytest.approx([0.5, 0.0, 0.3])]

@@ -16,6 +16,7 @@ from packages.motion.sample import recording, shown
 
 av = pytest.importorskip("av")
 Image = pytest.importorskip("PIL.Image")
+ImageChops = pytest.importorskip("PIL.ImageChops")
 
 from mutabot_motion.pictures import video  # noqa: E402
 from mutabot_motion.pictures.drawn import Drawn  # noqa: E402
@@ -256,3 +257,14 @@ def test_how_far_a_film_is_counts_the_simulated_seconds_of_both_sides(tmp_path: 
         film(tmp_path / "original.film", 12, 60)
     assert progress.stages == [("film, simulated seconds", 4)]
     assert progress.steps == 4
+
+
+def test_an_arm_is_drawn_where_it_is_at_each_moment() -> None:
+    found = recording()
+    drawn = Drawn(RecordedPaths(found))
+    del found.tracks["arm"]
+    bare = Drawn(RecordedPaths(found))
+    begin, end = (ImageChops.difference(drawn.at(time), bare.at(time)).getbbox() for time in (0.0, 2.0))
+    assert begin is not None
+    assert end is not None
+    assert end[2] > begin[2] + 100, "the arm reaches farther to the right"
