@@ -43,7 +43,7 @@ _OF_PROCESSES = ("operators", "middlewares", "environments", "futures", "failure
 #: kinds of parts that are code or data of a package
 _REFERRING = (
     *_OF_PROCESSES, "vocabularies", "executors", "templates", "tables", "commands", "formats", "sections",
-    "simulations", "faults",
+    "simulations", "faults", "guards",
 )  # fmt: skip
 #: those that are modules of the packages themselves
 _OWN = ("operators", "middlewares", "environments")
@@ -104,6 +104,8 @@ class Extension:
         faults: subclasses of ``mutabot.faults.FaultProvider``, by the providers' names.
         languages: objects that keep ``mutabot.languages.front_end.FrontEnd``, by the languages' names: robot
             programs in them run in an interpreter that is written in Python.
+        guards: subclasses of ``mutabot.api.processes.CallGuard``, by the names of the tables that they get: a
+            project whose configuration has such a table has the guard before every operation.
     """
 
     interface: int
@@ -124,6 +126,7 @@ class Extension:
     simulations: Mapping[str, str] = field(default_factory=dict)
     faults: Mapping[str, str] = field(default_factory=dict)
     languages: Mapping[str, str] = field(default_factory=dict)
+    guards: Mapping[str, str] = field(default_factory=dict)
 
 
 @frozen

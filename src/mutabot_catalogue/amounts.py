@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from mutabot.api.faults import Context, Example, Subject, ValueOperator
-from mutabot.api.values import Kind, Mode, Operation, Path, Quantity, Value
+from mutabot.api.values import Kind, Mode, Operation, Path, Quantity
 
 from .values import CATALOGUE, like, middle_of, within
 
@@ -50,12 +50,12 @@ class _OtherUnit(ValueOperator):
     def variants_of(self, quantity: Quantity) -> Iterable[str]:
         return (f"{way}-{self.units[quantity.unit or '']}" for way in self.ways)
 
-    def change(self, value: Value, context: Context) -> Value | None:
+    def change(self, value: Any, context: Context) -> Any | None:
         way, _, other = context.subject.variant.partition("-")
         convert = context.quantity.from_unit if way == _TAKEN else context.quantity.to_unit
         return context.quantity.map_numbers(value, lambda number: like(number, convert(number, other)))
 
-    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+    def describe(self, subject: Subject, before: Any | None, after: Any | None) -> str:
         told = super().describe(subject, before, after)
         how = "taken for" if subject.variant.startswith(_TAKEN) else "given in"
         return f"{told} ({how} {self.units[subject.required_quantity.unit or '']})"
@@ -169,7 +169,7 @@ class _Factor(ValueOperator):
     variants: ClassVar[Mapping[str, float]] = {"x0.5": 0.5, "x2": 2.0}
     is_limited: ClassVar[bool] = True
 
-    def change(self, value: Value, context: Context) -> Value | None:
+    def change(self, value: Any, context: Context) -> Any | None:
         limits = context.quantity.range if self.is_limited else None
         return context.quantity.map_numbers(
             value, lambda number: like(number, within(context.option * number, limits))
@@ -265,7 +265,7 @@ class PartialOpening(ValueOperator):
     def fits(self, quantity: Quantity, whole: Subject) -> bool:
         return quantity.kind is Kind.OPENING and _has_limits(quantity)
 
-    def change(self, value: Value, context: Context) -> Value | None:
+    def change(self, value: Any, context: Context) -> Any | None:
         low, high = middle_of(context.quantity, 1.0)
 
         def half(number: float) -> float:
@@ -292,7 +292,7 @@ class SilentLimit(ValueOperator):
         is_number = quantity.is_measured or quantity.kind in (Kind.OPENING, Kind.OUTPUT)
         return is_number and _has_limits(quantity) and not quantity.is_whole
 
-    def change(self, value: Value, context: Context) -> Value | None:
+    def change(self, value: Any, context: Context) -> Any | None:
         limits = middle_of(context.quantity, 0.8)
         return context.quantity.map_numbers(value, lambda number: like(number, within(number, limits)))
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from mutabot.api.faults import CommandOperator, Context, Example, Need, Subject, Unchanged, ValueOperator
-from mutabot.api.values import Call, Kind, Operation, Proceed, Quantity, Reply, Value
+from mutabot.api.values import Call, Kind, Operation, Proceed, Quantity, Reply
 
 from ._examples import CLOSE, GRIP, MOVE_BY, MOVE_TO
 from .values import CATALOGUE, like
@@ -98,7 +98,7 @@ class HalfWait(ValueOperator):
         Example.unchanged(_WAIT, 0.0, "there is nothing to shorten"),
     )
 
-    def change(self, value: Value, context: Context) -> Value | None:
+    def change(self, value: Any, context: Context) -> Any | None:
         return context.quantity.map_numbers(value, lambda number: like(number, number / 2.0))
 
 
@@ -111,7 +111,7 @@ class NoWait(HalfWait):
         Example.unchanged(_WAIT, 0.0, "there is nothing to shorten"),
     )
 
-    def change(self, value: Value, context: Context) -> Value | None:
+    def change(self, value: Any, context: Context) -> Any | None:
         return context.quantity.map_numbers(value, lambda number: like(number, 0.0))
 
 

@@ -7,10 +7,10 @@ from abc import abstractmethod
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import combinations
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from mutabot.api.faults import Context, Example, Need, Subject, Unchanged, ValueOperator
-from mutabot.api.values import Kind, Mode, Operation, Path, Quantity, Value
+from mutabot.api.values import Kind, Mode, Operation, Path, Quantity
 
 from ._examples import MOVE_TO
 from .values import CATALOGUE, Exchange, is_alike, like
@@ -120,7 +120,7 @@ class LeftHanded(ValueOperator):
                 if is_place and quantity.axis == "y" and any(map(_turns, side)):
                     yield replace(whole, quantity=quantity)
 
-    async def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
+    async def changes(self, values: Mapping[str, Any], context: Context) -> Mapping[str, Any]:
         quantity = context.quantity
         value = context.subject.given(values, quantity.name)
         found = {quantity.name: quantity.map_numbers(value, _negative)}
@@ -129,7 +129,7 @@ class LeftHanded(ValueOperator):
                 found[one.name] = _mirrored(one, values[one.name])
         return found
 
-    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+    def describe(self, subject: Subject, before: Any | None, after: Any | None) -> str:
         verb = "" if subject.is_written else "reads "
         name = subject.required_quantity.label
         return f"{verb}the pose mirrored: {name} and the turns about x and z negated"
@@ -145,7 +145,7 @@ def _negative(number: float) -> float:
     return -number if number else number
 
 
-def _mirrored(quantity: Quantity, value: Value) -> Value | None:
+def _mirrored(quantity: Quantity, value: Any) -> Any | None:
     if not quantity.is_whole:
         return quantity.map_numbers(value, _negative)
     return quantity.rotated(value, lambda one: one._replace(x=-one.x, z=-one.z))
@@ -181,8 +181,8 @@ class BaseForTool(ValueOperator):
         if whole.current is not None and moved:
             yield replace(whole, quantity=moved[0])
 
-    async def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
-        before: dict[str, Value] = {one.name: values.get(one.name) for one in _moved(context.subject)}
+    async def changes(self, values: Mapping[str, Any], context: Context) -> Mapping[str, Any]:
+        before: dict[str, Any] = {one.name: values.get(one.name) for one in _moved(context.subject)}
         if not all(map(context.quantity.is_scalar, before.values())):
             raise Unchanged(context.subject.why_missing)
         asked = (
@@ -197,7 +197,7 @@ class BaseForTool(ValueOperator):
         parts = (0.0 if abs(part) < least else part for part in turn.rotated(vector))
         return dict(zip(before, parts, strict=True))
 
-    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+    def describe(self, subject: Subject, before: Any | None, after: Any | None) -> str:
         frame = subject.required_quantity.frame
         names = ", ".join(one.label for one in _moved(subject))
         return f"{names} along the axes of the {_TOOL if frame == _BASE else _BASE}"
@@ -235,7 +235,7 @@ class _WrongTcp(ValueOperator):
     def fits(self, quantity: Quantity, whole: Subject) -> bool:
         return bool(quantity.tcp)
 
-    def change(self, value: Value, context: Context) -> Value | None:
+    def change(self, value: Any, context: Context) -> Any | None:
         offset = self.sign * (context.quantity.tcp or 0.0)
         return context.quantity.map_numbers(value, lambda number: number + offset)
 
@@ -283,7 +283,7 @@ class JointTurn(ValueOperator):
         is_joint = quantity.axis is not None and quantity.axis.startswith("j")
         return is_joint and quantity.kind is Kind.ROTATION and quantity.mode is Mode.TO
 
-    def change(self, value: Value, context: Context) -> Value | None:
+    def change(self, value: Any, context: Context) -> Any | None:
         quantity = context.quantity
         turn = 360.0 if quantity.unit == "deg" else quantity.from_unit(2.0 * math.pi, "rad")
         return quantity.map_numbers(value, lambda number: like(number, number + context.option * turn))
@@ -303,7 +303,7 @@ class _OtherNumbers(ValueOperator):
     def numbers(self, numbers: list[float], context: Context) -> list[float]:
         """The other numbers."""
 
-    def change(self, value: Value, context: Context) -> Value | None:
+    def change(self, value: Any, context: Context) -> Any | None:
         quantity = context.quantity
         if quantity.orientation(value) is None:
             raise Unchanged("its value is not an orientation")

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any, ClassVar, TypeVar
 
 from mutabot.api.faults import CommandOperator, Context, Example, Magnitudes, Need, Subject, Unchanged
-from mutabot.api.values import Call, CallFault, Form, Proceed, Reply, Value
+from mutabot.api.values import Call, CallFault, Form, Proceed, Reply
 
 from ._examples import CALL, CALL_TO, GOAL, PUBLISH, RECEIVE, TICK
 from .values import MIDDLEWARE, comes_by_itself
@@ -59,7 +59,7 @@ class Drop(MessageOperator):
         Example.whole(PUBLISH, 0.3, variant=_THIRD, earlier=(0.2,), away="only the second"),
     )
 
-    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+    def describe(self, subject: Subject, before: Any | None, after: Any | None) -> str:
         return self.words(subject, which=self.variants[subject.variant])
 
     def least_calls(self, subject: Subject) -> int:
@@ -266,7 +266,7 @@ class JumpClock(_Mishap):
         Example(Subject(TICK, variant="10"), earlier=({},), away="it has happened already"),
     )
 
-    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+    def describe(self, subject: Subject, before: Any | None, after: Any | None) -> str:
         way = "back" if subject.variant.startswith("-") else "ahead"
         return self.words(subject, way=way)
 

@@ -7,10 +7,10 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import pairwise
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from mutabot.api.faults import CommandOperator, Context, Example, Need, Subject, Unchanged, ValueOperator
-from mutabot.api.values import Call, Kind, Operation, Path, Proceed, Quantity, Reply, Value
+from mutabot.api.values import Call, Kind, Operation, Path, Proceed, Quantity, Reply
 
 from .values import CATALOGUE, Exchange, comes_by_itself, is_alike, like, middle_of, within
 
@@ -79,7 +79,7 @@ class Dropout(CommandOperator):
             return reply.as_is("its value is not a number")
         return reply.with_value(quantity, nothing)
 
-    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+    def describe(self, subject: Subject, before: Any | None, after: Any | None) -> str:
         quantity = subject.required_quantity
         gets = {_NONE: "reads None", _NAN: "reads not a number"}
         what = gets.get(quantity.missing or "", f"raises {quantity.missing}")
@@ -114,14 +114,14 @@ class OldReading(_ChangedReading):
     def least_calls(self, subject: Subject) -> int:
         return self.variants[subject.variant] + 1
 
-    def change(self, value: Value, context: Context) -> Value | None:
+    def change(self, value: Any, context: Context) -> Any | None:
         context.memory.append(_kept(value))
         old = context.memory.pop(0) if len(context.memory) > context.option else None
         if old is None:
             raise Unchanged("no reading is that old yet")
         return old
 
-    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+    def describe(self, subject: Subject, before: Any | None, after: Any | None) -> str:
         calls = "1 call" if subject.variant == "1" else f"{subject.variant} calls"
         return f"reads the {subject.required_quantity.label} of {calls} ago"
 
@@ -140,17 +140,17 @@ class StuckReading(_ChangedReading):
         Example.unchanged(_MEASURE, 0.2, "it is the first reading"),
     )
 
-    def change(self, value: Value, context: Context) -> Value | None:
+    def change(self, value: Any, context: Context) -> Any | None:
         if not context.memory:
             context.memory.append(_kept(value))
             raise Unchanged("it is the first reading")
         return _kept(context.memory[0])
 
-    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+    def describe(self, subject: Subject, before: Any | None, after: Any | None) -> str:
         return f"reads the first {subject.required_quantity.label} again and again"
 
 
-def _kept(value: Value) -> Value:
+def _kept(value: Any) -> Any:
     """Return a copy of a value, which later changes of the value do not reach."""
     return copy.copy(value) if hasattr(value, "__len__") and not isinstance(value, str | bytes) else value
 
@@ -172,7 +172,7 @@ class Spike(_ChangedReading):
         Example.unchanged(_MEASURE, 0.2, "nine of ten", "10%"),
     )
 
-    def change(self, value: Value, context: Context) -> Value | None:
+    def change(self, value: Any, context: Context) -> Any | None:
         context.by_chance()
         limits = context.quantity.range
         if limits is None:
@@ -181,7 +181,7 @@ class Spike(_ChangedReading):
             value, lambda number: like(number, max(limits, key=lambda end: abs(end - number)))
         )
 
-    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+    def describe(self, subject: Subject, before: Any | None, after: Any | None) -> str:
         quantity = subject.required_quantity
         jump = "the far end of its range" if quantity.range is not None else "10 times as much"
         return f"reads {quantity.label} {quantity.text(before)}, now and then {jump}"
@@ -203,7 +203,7 @@ class SaturatedReading(_ChangedReading):
         Example.unchanged(_MEASURE, 0.1, "it is less than 80 % of the first", earlier=(0.5,)),
     )
 
-    def change(self, value: Value, context: Context) -> Value | None:
+    def change(self, value: Any, context: Context) -> Any | None:
         quantity, memory = context.quantity, context.memory
         if quantity.range is not None:
             limits = middle_of(quantity, 0.8)
@@ -258,7 +258,7 @@ class WrongObject(ValueOperator):
     def fits(self, quantity: Quantity, whole: Subject) -> bool:
         return bool(whole.read) and quantity.kind is Kind.OUTPUT and len(quantity.values or ()) > 1
 
-    def change(self, value: Value, context: Context) -> Value | None:
+    def change(self, value: Any, context: Context) -> Any | None:
         return context.next_value(value)
 
 
@@ -279,11 +279,11 @@ class ConfusedLabel(_ChangedReading):
     def fits(self, quantity: Quantity, whole: Subject) -> bool:
         return quantity.kind in (Kind.LABEL, Kind.FLAG) and len(quantity.values or ()) > 1
 
-    def change(self, value: Value, context: Context) -> Value | None:
+    def change(self, value: Any, context: Context) -> Any | None:
         context.by_chance()
         return context.next_value(value)
 
-    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+    def describe(self, subject: Subject, before: Any | None, after: Any | None) -> str:
         return f"reads another {subject.required_quantity.label}, with a probability of {subject.variant}"
 
 

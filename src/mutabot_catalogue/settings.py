@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from mutabot.api.faults import Context, Example, Subject, Unchanged, ValueOperator
-from mutabot.api.values import Form, Kind, Operation, Quantity, Value
+from mutabot.api.values import Form, Kind, Operation, Quantity
 
 from . import _examples as calls
 from .values import MIDDLEWARE
@@ -23,7 +23,7 @@ class _FreeValueOperator(ValueOperator):
     family = MIDDLEWARE
     takes_any = True
 
-    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+    def describe(self, subject: Subject, before: Any | None, after: Any | None) -> str:
         quantity = subject.required_quantity
         one, other = quantity.texts(before, after)
         return f"{quantity.name} {one or '“”'} → {other or '“”'}"
@@ -46,7 +46,7 @@ class WrongFrame(_FreeValueOperator):
     def variants_of(self, quantity: Quantity) -> Iterable[str]:
         return ("" if quantity.values else _UNKNOWN, _EMPTY)
 
-    def change(self, value: Value, context: Context) -> Value | None:
+    def change(self, value: Any, context: Context) -> Any | None:
         if context.subject.variant == _EMPTY:
             return ""
         if context.subject.variant == _UNKNOWN:
@@ -72,7 +72,7 @@ class ShiftStamp(_FreeValueOperator):
         Example.unchanged(calls.SEND_STAMP, 2.0, "no stamp is before zero", "-5"),
     )
 
-    def change(self, value: Value, context: Context) -> Value | None:
+    def change(self, value: Any, context: Context) -> Any | None:
         if not value:
             raise Unchanged("the stamp is empty")
         shifted = value + context.option
@@ -80,7 +80,7 @@ class ShiftStamp(_FreeValueOperator):
             raise Unchanged("no stamp is before zero")
         return shifted
 
-    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+    def describe(self, subject: Subject, before: Any | None, after: Any | None) -> str:
         when = "past" if subject.variant.startswith("-") else "future"
         return f"{subject.required_quantity.name} lies 5 s in the {when}"
 
@@ -96,12 +96,12 @@ class EmptyStamp(_FreeValueOperator):
         Example.unchanged(calls.SEND_STAMP, 0.0, "the stamp is empty already"),
     )
 
-    def change(self, value: Value, context: Context) -> Value | None:
+    def change(self, value: Any, context: Context) -> Any | None:
         if not value:
             raise Unchanged("the stamp is empty already")
         return 0.0
 
-    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+    def describe(self, subject: Subject, before: Any | None, after: Any | None) -> str:
         return f"{subject.required_quantity.name} is empty"
 
 
@@ -123,7 +123,7 @@ class _Setting(_FreeValueOperator):
     def fits(self, quantity: Quantity, whole: Subject) -> bool:
         return quantity.kind is Kind.SETTING and quantity.name == self.setting
 
-    async def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
+    async def changes(self, values: Mapping[str, Any], context: Context) -> Mapping[str, Any]:
         if self.setting not in values:  # a middleware need not have all that others have
             raise Unchanged("its middleware has no such setting, or chooses it itself")
         return await super().changes(values, context)
@@ -146,7 +146,7 @@ class WrongName(_Setting):
         Example.unchanged(calls.SUBSCRIBE, "gap", "its node has no namespace", _GLOBAL, quantity="name"),
     )
 
-    def change(self, value: Value, context: Context) -> Value | None:
+    def change(self, value: Any, context: Context) -> Any | None:
         if context.subject.variant == _MISSPELT:
             return f"{value}_misspelt"
         if str(value).startswith("/"):
@@ -172,14 +172,14 @@ class ShortQueue(_Setting):
         ),
     )
 
-    def change(self, value: Value, context: Context) -> Value | None:
+    def change(self, value: Any, context: Context) -> Any | None:
         return 1
 
 
 class _OtherOfTwo(_Setting):
     """Sets the other of two values."""
 
-    def change(self, value: Value, context: Context) -> Value | None:
+    def change(self, value: Any, context: Context) -> Any | None:
         values = context.quantity.values or ()
         if value not in values:
             raise Unchanged(f"{value} is neither {' nor '.join(map(str, values))}")
@@ -243,7 +243,7 @@ class WrongDeadline(_Setting):
         Example.unchanged(calls.ADVERTISE, 0.0, "it has no deadline", _NONE, quantity="deadline"),
     )
 
-    def change(self, value: Value, context: Context) -> Value | None:
+    def change(self, value: Any, context: Context) -> Any | None:
         if not value and context.subject.variant == _NONE:
             raise Unchanged("it has no deadline")
         return context.option
@@ -261,7 +261,7 @@ class WrongPeriod(_Setting):
         Example.unchanged(calls.TIMER, 0.0, "it has no period", "x2", quantity="period"),
     )
 
-    def change(self, value: Value, context: Context) -> Value | None:
+    def change(self, value: Any, context: Context) -> Any | None:
         if not context.quantity.is_scalar(value) or not value:
             raise Unchanged("it has no period")
         return value * context.option
@@ -286,17 +286,17 @@ class UseDefault(_FreeValueOperator):
     def fits(self, quantity: Quantity, whole: Subject) -> bool:
         return whole.operation.form is Form.PARAMETER and not quantity.path.steps
 
-    def change(self, value: Value, context: Context) -> Value | None:
+    def change(self, value: Any, context: Context) -> Any | None:
         default = context.call.values[_DEFAULT]
         if context.quantity.is_same(default, value):
             raise Unchanged(_IS_DEFAULT)
         return default
 
-    async def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
+    async def changes(self, values: Mapping[str, Any], context: Context) -> Mapping[str, Any]:
         if _DEFAULT not in context.call.values:
             raise Unchanged(_NO_DEFAULT)
         return await super().changes(values, context)
 
-    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+    def describe(self, subject: Subject, before: Any | None, after: Any | None) -> str:
         one, other = subject.required_quantity.texts(before, after)
         return f"the default {other} instead of {one}"

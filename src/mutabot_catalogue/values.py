@@ -5,9 +5,10 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
+from typing import Any
 
 from mutabot.api.faults import Context, Subject, Unchanged, ValueOperator
-from mutabot.api.values import Operation, Quantity, Value
+from mutabot.api.values import Operation, Quantity
 
 #: the families of this package's operators
 CATALOGUE, MIDDLEWARE = "catalogue", "middleware"
@@ -26,12 +27,12 @@ class Exchange(ValueOperator):
         for one, other in self.pairs(whole):
             yield replace(whole, quantity=one, variant=other.name.lstrip("."))
 
-    async def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
+    async def changes(self, values: Mapping[str, Any], context: Context) -> Mapping[str, Any]:
         one, other = context.quantity.name, _other_of(context.subject).name
         first, second = (context.subject.given(values, name) for name in (one, other))
         return {one: second, other: first}
 
-    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+    def describe(self, subject: Subject, before: Any | None, after: Any | None) -> str:
         one, other = subject.required_quantity, _other_of(subject)
         told = f"{one.label} {one.text(before)} and {other.label} {other.text(after)} exchanged"
         return told if subject.is_written else f"reads {told}"

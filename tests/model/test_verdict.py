@@ -12,6 +12,7 @@ PLACES = {
     "survived": (True, False),
     "timeout": (True, True),
     "refused": (False, False),
+    "guarded": (False, False),
     "invalid": (False, False),
     "no effect": (False, False),
     "not covered": (True, False),

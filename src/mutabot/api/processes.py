@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from mutabot.execution.task import Result as Result
     from mutabot.execution.task import Task as Task
     from mutabot.execution.workers import Workers as Workers
+    from mutabot.runtime.interception.guarding import CallGuard as CallGuard
     from mutabot.runtime.observer import CallOrigin as CallOrigin
     from mutabot.runtime.observer import Observer as Observer
     from mutabot.runtime.pytest_plugin import seed_of as seed_of
@@ -37,6 +38,7 @@ _HOMES = {
     "mutabot.execution.remote": ("RemoteExecutor",),
     "mutabot.execution.task": ("Result", "Task"),
     "mutabot.execution.workers": ("Workers",),
+    "mutabot.runtime.interception.guarding": ("CallGuard",),
     "mutabot.runtime.observer": ("CallOrigin", "Observer"),
     "mutabot.runtime.pytest_plugin": ("seed_of",),
     "mutabot.shared_memory": ("SharedMemory",),

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from mutabot.model.quantity import Kind as Kind
     from mutabot.model.quantity import Mode as Mode
     from mutabot.model.quantity import Quantity as Quantity
-    from mutabot.model.quantity import Value as Value
     from mutabot.model.signature import parse_signature as parse_signature
     from mutabot.runtime.targets.target import Finding as Finding
     from mutabot.runtime.targets.target import MiddlewareControls as MiddlewareControls
@@ -33,7 +32,7 @@ _HOMES = {
     "mutabot.model.call": ("Call", "CallFault", "Proceed", "Reply"),
     "mutabot.model.operation": ("Form", "Operation", "Vocabulary"),
     "mutabot.model.path": ("Path",),
-    "mutabot.model.quantity": ("Kind", "Mode", "Quantity", "Value"),
+    "mutabot.model.quantity": ("Kind", "Mode", "Quantity"),
     "mutabot.model.signature": ("parse_signature",),
     "mutabot.runtime.targets.target": ("Finding", "MiddlewareControls", "Names", "Where", "resolve"),
 }

@@ -14,7 +14,7 @@ from mutabot.campaign.project_files import ProjectListing
 from mutabot.config.configuration import Configuration
 from mutabot.config.options import AUTO, ENGINES, FORK, Sample, Shard
 from mutabot.errors import UsageError, unknown_name_text
-from mutabot.extensions import told_to_processes
+from mutabot.extensions import brought, told_to_processes
 from mutabot.families import USUAL
 from mutabot.faults import Project
 from mutabot.frozen import frozen
@@ -65,6 +65,18 @@ class ExecutorChoice(ABC):
 
         Raises UsageError for a value that cannot be meant.
         """
+
+    @classmethod
+    def implied(cls, table: Table) -> Self | None:
+        """Return the choice that a configuration with this table means if the command line names none.
+
+        None if tasks then run on this machine.
+        """
+        return None
+
+    def fitted(self, request: Request) -> Request:
+        """Return the request as it can be carried out here. Raises UsageError if it cannot."""
+        return request
 
     @abstractmethod
     def open(self, request: Request, tell: Callable[[str], None]) -> AbstractContextManager[Executor]:
@@ -226,6 +238,16 @@ class Request:
         """Seconds since some moment: what the campaign may spend is counted by these."""
         return time.monotonic()
 
+    @property
+    def guards(self) -> tuple[tuple[str, Mapping[str, Any]], ...]:
+        """What stands before every operation: the reference of each guard, and its table."""
+        tables = self.configuration.tables
+        return tuple(
+            (part.reference, tables[name].model_dump(mode="json"))
+            for name, part in (brought("guards") if tables else {}).items()
+            if name in tables
+        )
+
     def job(self, round: int, **details: Any) -> Job:
         """A job of this campaign in a round."""
         return Job(
@@ -240,6 +262,7 @@ class Request:
             oracle_nodes=self.configuration.oracle_nodes,
             evidence=self.evidence,
             extensions=told_to_processes(),
+            guards=self.guards,
             **details,
         )
 

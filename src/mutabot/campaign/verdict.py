@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 _MOST_LOOKED = 20
 #: tests of which it is kept how they differ from the original's
 _MOST_DIVERGED = 5
-_RECORDED = frozenset({Verdict.SURVIVED, Verdict.KILLED, Verdict.TIMEOUT, Verdict.REFUSED})
+_RECORDED = frozenset({Verdict.SURVIVED, Verdict.KILLED, Verdict.TIMEOUT, Verdict.REFUSED, Verdict.GUARDED})
 
 #: exit codes of pytest's that say nothing about the mutant: the mistake may be ours
 _OF_NO_TEST = {3: "an internal error", 4: "a wrong command line or configuration"}
@@ -294,6 +294,8 @@ def _ruling(run: Run, usual: int) -> Ruling:
         acted = acted or end.acted > 0
         if end.failure is not None:
             return Verdict.ERROR, end, end.failure
+        if end.guarded is not None:
+            return (Verdict.GUARDED if acted else Verdict.UNSTABLE), end, end.guarded
         if end.invalid:
             return Verdict.INVALID, end, end.message
         if end.timeout is not None:

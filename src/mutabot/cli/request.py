@@ -10,7 +10,7 @@ from typing import Unpack
 
 from mutabot.campaign.request import ExecutorChoice, Request
 from mutabot.campaign.simulation import with_simulation
-from mutabot.config.configuration import load_configuration
+from mutabot.config.configuration import Configuration, load_configuration
 from mutabot.config.options import AUTO, ENGINES, Sample, Shard, seconds_of
 from mutabot.config.vocabulary import load_vocabulary
 from mutabot.errors import UsageError, unknown_name_text
@@ -52,11 +52,8 @@ def request_of(
     configuration = load_configuration(project, families, given.get("settings") or ())
     root, families = configuration.root, families or configuration.families
     moments = map(Moment.parse_any, configuration.when)
-    chosen = None
-    if executor is not None:
-        kind = brought("executors")[executor[0]].load_class(ExecutorChoice)  # type: ignore[type-abstract]
-        chosen = kind.parse(executor[1], root, configuration.tables.get(executor[0]))
-    return Request(
+    chosen = _chosen(executor, configuration)
+    request = Request(
         configuration=configuration,
         vocabulary=load_vocabulary(configuration.vocabulary, configuration.root, families),
         rounds=given.get("rounds") or configuration.rounds,
@@ -80,6 +77,26 @@ def request_of(
         other_journal=given.get("journal"),
         budget=None if budget is None else seconds_of(budget),
     )
+    return request if chosen is None else chosen.fitted(request)
+
+
+def _chosen(executor: tuple[str, str] | None, configuration: Configuration) -> ExecutorChoice | None:
+    """Return the executor that the command line names, or else the configuration means.
+
+    None for this machine.
+    """
+    tables = configuration.tables
+    for name, part in brought("executors").items() if executor is not None or tables else ():
+        if name != executor[0] if executor is not None else name not in tables:
+            continue
+        kind = part.load_class(ExecutorChoice)  # type: ignore[type-abstract]
+        if executor is None:
+            found = kind.implied(tables[name])
+        else:
+            found = kind.parse(executor[1], configuration.root, tables.get(name))
+        if found is not None:
+            return found
+    return None
 
 
 def request_again(root: Path, results: Results, jobs: int | None) -> Request:

@@ -47,6 +47,7 @@ class TestEnd(Event):
         failure: the simulator's failure, or None.
         invalid: whether the mutated call rejected its arguments' types.
         refused: text of the refusal of a mutated call, or None.
+        guarded: which command a guard kept from the robot, and why; None if none did.
         refused_calls: in the baseline, the calls that the robot refused: site index, and the call's number
             among those of its site, from 1.
         live: in the baseline, indexes of sites that returned the robot's own memory, not a copy of it.
@@ -127,6 +128,7 @@ class TestEnd(Event):
     more_checks: int = 0
     recording: str | None = None
     hindered: str | None = None
+    guarded: str | None = None
     executed: Executed | None = None
 
     @property
@@ -137,7 +139,7 @@ class TestEnd(Event):
     @property
     def notices(self) -> bool:
         """Whether this test noticed its mutant, provided that the mutant had changed anything."""
-        if self.failure is not None or self.invalid:
+        if self.failure is not None or self.invalid or self.guarded is not None:
             return False
         is_refused = self.refused is not None and not self.caught
         return self.timeout is not None or (self.outcome == "failed" and not is_refused)
@@ -145,7 +147,7 @@ class TestEnd(Event):
     @property
     def is_decided(self) -> bool:
         """Whether this test alone decides about its mutant, so that no other test needs to run."""
-        if self.failure is not None or self.invalid or self.timeout is not None:
+        if self.failure is not None or self.invalid or self.timeout is not None or self.guarded is not None:
             return True
         return self.outcome == "failed" and (self.refused is None or self.caught)
 
@@ -509,13 +511,14 @@ class Did(Event):
 class Used(Event):
     """The time that the process has used in the running test; the last event counts.
 
-    ``exceeded`` names the limit that was exceeded.
+    ``exceeded`` names the limit that was exceeded, ``guarded`` the command that a guard kept from the robot.
     """
 
     operations: int
     commands: int
     simulated: float | None = None
     exceeded: str | None = None
+    guarded: str | None = None
 
 
 @frozen

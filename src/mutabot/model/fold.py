@@ -35,7 +35,7 @@ class ChildRecord:
         raised: what ended it otherwise.
         is_in_call: whether a mutated call has begun in it and not ended.
         acted: tests in which the mutant did something in it, in their order.
-        called, noted, did, places, used, exceeded: what it told during the running test.
+        called, noted, did, places, used, exceeded, guarded: what it told during the running test.
     """
 
     began: events.Began
@@ -51,6 +51,7 @@ class ChildRecord:
     places: set[int] = field(default_factory=set)
     used: events.Used | None = None
     exceeded: str | None = None
+    guarded: str | None = None
 
     @property
     def name(self) -> str:
@@ -86,6 +87,7 @@ class ChildRecord:
                 self.places.update(event.places)
             case events.Used():
                 self.used, self.exceeded = event, event.exceeded or self.exceeded
+                self.guarded = event.guarded or self.guarded
             case events.Raised():
                 self.raised = event
             case events.Found():
@@ -97,7 +99,7 @@ class ChildRecord:
         """The test is over."""
         for told in (self.called, self.noted, self.did, self.places):
             told.clear()
-        self.used, self.exceeded = None, None
+        self.used, self.exceeded, self.guarded = None, None, None
         if self.raised is not None and self.raised.in_thread:
             self.raised = None
 
@@ -306,6 +308,7 @@ def _with_ends(end: events.TestEnd, records: Sequence[ChildRecord], known: Known
         end,
         failure=failure,
         timeout=end.timeout or exceeded,
+        guarded=end.guarded or next((one.guarded for one in records if one.guarded is not None), None),
         hits=end.hits + len(died_at_work),
         acted=end.acted + len(died_at_work),
         hit_below=tuple(sorted({*end.hit_below, *(one.origin for one in died_at_work)})),

@@ -120,6 +120,7 @@ class Job:
         pictures: which test is filmed; None for none.
         extensions: references to what packages bring, by kind and name, see ``extensions.use``.
         active: how the mutant, or those to be forked, become active, by their ids.
+        guards: what stands before every operation: the reference of each ``CallGuard``, and its table.
         key: of the seals on its events, see ``event_file``.
     """
 
@@ -151,6 +152,7 @@ class Job:
     pictures: Pictures | None = None
     extensions: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     active: Mapping[str, Activation] = field(default_factory=dict)
+    guards: tuple[tuple[str, Mapping[str, Any]], ...] = ()
     key: str = ""
 
     @property

@@ -27,6 +27,7 @@ class Verdict(StrEnum):
     SURVIVED = "survived"  # valid, not killed
     TIMEOUT = "timeout"  # valid, killed, but shown apart
     REFUSED = "refused"  # outside: the robot refused the mutated command itself
+    GUARDED = "guarded"  # outside: a guard kept a command from the robot
     INVALID = "invalid"  # outside: no program or no command
     NO_EFFECT = "no effect"  # outside: it changed no value at any hit
     NOT_COVERED = "not covered"  # valid, not killed

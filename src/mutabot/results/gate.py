@@ -162,6 +162,8 @@ def _nothing_valid(results: Results) -> str:
         return f"no mutant is left to judge: {len(results.accepted)} of {len(results.mutants)} are accepted"
     if set(counts) == {Verdict.REFUSED}:
         return "the robot refused every mutant, so nothing is known about the tests"
+    if set(counts) <= {Verdict.REFUSED, Verdict.GUARDED}:
+        return "the robot or its guard refused every mutant, so nothing is known about the tests"
     ends = ", ".join(f"{count} {verdict}" for verdict, count in counts.items())
     return f"no mutant was valid ({ends}), so nothing is known about the tests"
 

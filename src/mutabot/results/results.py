@@ -28,7 +28,9 @@ from mutabot.results.statistics import Confirmed
 #: mutants that are named where a text fits several
 _SHOWN = 10
 #: verdicts outside the score, those first that most need a look; of several rounds the first names the state
-OUTSIDE = (Verdict.ERROR, Verdict.UNSTABLE, Verdict.REFUSED, Verdict.INVALID, Verdict.NO_EFFECT)
+OUTSIDE = (
+    Verdict.ERROR, Verdict.UNSTABLE, Verdict.REFUSED, Verdict.GUARDED, Verdict.INVALID, Verdict.NO_EFFECT,
+)  # fmt: skip
 
 
 @frozen

@@ -195,6 +195,7 @@ class Meter:
         started, now: simulated time at the test's first tick and at its last one, s; None before.
         used: simulated time that earlier clocks of the same test counted, s.
         exceeded: the limit that was exceeded, in words.
+        guarded: which command a guard kept from the robot, and why; None if none did.
         began: processor time of this process when it began with the test, s.
     """
 
@@ -205,6 +206,7 @@ class Meter:
     now: float | None = None
     used: float = 0.0
     exceeded: str | None = None
+    guarded: str | None = None
     began: float = field(default_factory=process_time)
 
     def go_on_in_copy(self) -> None:

@@ -20,6 +20,7 @@ from mutabot.runtime.inspection import Inspection
 from mutabot.runtime.interception.active_mutant import is_refusal
 from mutabot.runtime.interception.adapter import Adapter, SiteCall, handles_of
 from mutabot.runtime.interception.dispatcher import Dispatcher, Untracked
+from mutabot.runtime.interception.guarding import CallGuards, OperationGuard
 from mutabot.runtime.interception.trace import Answers, Locator, Recorder, seen_by
 from mutabot.runtime.observation.clock import ClockReader, Instances, ProgramTime
 from mutabot.runtime.observation.probes import Along, Reading, TestRecording, rehearse, take
@@ -69,6 +70,7 @@ class Session:
         fault: the fault of this process; idle in the original's.
         files: what keeps the files of this process apart; None in processes below the tests.
         fork_parent: forks for each mutant, while this process runs the original; else None.
+        guards: what stands before every operation; None if there are no guards.
     """
 
     call_sites: CallSites
@@ -98,6 +100,8 @@ class Session:
         self.noted: dict[Noted, None] = {}
         self.on_noted: Callable[[Noted], None] | None = None
         self._adapters: list[Adapter] = []
+        targets = frozenset(one.target for one in job.vocabulary.operations)
+        self.guards = CallGuards.load(job.guards, self.untracked, lambda: self.meter, targets)
         self._lately: dict[str, Mapping[str, Value]] = {}
         self._telling: list[Adapter] = []
         self._asking: list[tuple[str, str | None, Idle]] = []
@@ -199,7 +203,10 @@ class Session:
         readings = {name: vocabulary.operation(name) for name in operation.currents}
         told = partial(self.inspection.path_is_wrong, operation)
         time = (self._time.now, self._time.wait)
-        adapter = Adapter(operation, readings, told, self._lately, handles_of(vocabulary), *time)
+        parts = self._lately, handles_of(vocabulary), *time
+        adapter = Adapter(operation, readings, told, *parts)
+        if self.guards is not None:
+            adapter.guard = OperationGuard(self.guards, Adapter(operation, readings, told, *parts))
         self._adapters.append(adapter)
         adapter.handler = self.passing.handler(adapter)
         self._sees_itself.add(adapter.handler)
@@ -319,6 +326,8 @@ class Session:
             self.text.start_test(test)
             self._watch_text()
         self.reached.start_test()
+        if self.guards is not None:
+            self.guards.start_test()
         self.fault.start_test()
         self.recording.start(test, is_wanted=self.job.evidence)
 

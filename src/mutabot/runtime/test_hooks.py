@@ -298,6 +298,7 @@ class TestHooks:
             end,
             **of_evidence(end, evidence, self._failure or self._expected),
             timeout=meter.exceeded or end.timeout,
+            guarded=meter.guarded,
             # what the machine had to do with a time-out of the suite's own
             hindered=self._used.hindrance([os.getpid()]) if end.timeout is not None else None,
             refused_calls=tuple((one.site, one.refused) for one in session.noted if one.refused is not None),

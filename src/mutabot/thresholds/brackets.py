@@ -21,7 +21,7 @@ class MagnitudeResult(StrEnum):
     NOTICED = "noticed"
     #: every test passed, or no test reaches the site
     MISSED = "missed"
-    #: the robot would not do it, which no test had a hand in
+    #: the robot would not do it, or a guard let it not, which no test had a hand in
     REFUSED = "refused"
     #: it changed nothing, or nobody knows
     UNKNOWN = "unknown"
@@ -34,7 +34,7 @@ class MagnitudeResult(StrEnum):
 
 def seen(outcome: Outcome) -> MagnitudeResult:
     """What the tests made of a graded mutant in a round."""
-    if outcome.verdict is Verdict.REFUSED:
+    if outcome.verdict in (Verdict.REFUSED, Verdict.GUARDED):
         return MagnitudeResult.REFUSED
     if not outcome.verdict.is_valid:
         return MagnitudeResult.UNKNOWN

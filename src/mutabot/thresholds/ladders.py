@@ -189,6 +189,7 @@ _WORDS = {
     Verdict.ERROR: "ended in error",
     Verdict.UNSTABLE: "is unstable",
     Verdict.REFUSED: "the robot refuses every magnitude that was tried",
+    Verdict.GUARDED: "a guard refuses every magnitude that was tried",
     Verdict.NO_EFFECT: "has no effect",
     Verdict.INVALID: "is invalid",
 }

@@ -228,7 +228,7 @@ def _why_unmet(demand: Demand, ladder: Ladder) -> str:
         if rounds:
             return f"{size} {words} in {numbers_text(rounds)}{'' if verdict else '; `mutabot run` goes on'}"
     is_noticed = any(one is not None and one.is_killed for one in verdicts.values())
-    if is_noticed or {*verdicts.values()} == {Verdict.REFUSED}:
+    if is_noticed or {*verdicts.values()} <= {Verdict.REFUSED, Verdict.GUARDED}:
         return ""
     return f"{size} has no effect in any round, so nothing is known; demand it of other sites"
 

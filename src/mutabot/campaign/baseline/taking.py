@@ -338,6 +338,12 @@ def _refuse(result: Result, arguments: Sequence[str]) -> None:
         raise BaselineError(f"the tests cannot be run on the original: {text}{said_in(result.log)}")
     if not result.end.collected:
         raise NothingToDoError(f"pytest finds no tests with {' '.join(arguments)}{said_in(result.log)}")
+    kept = next((end for end in result.ends if end.guarded is not None), None)
+    if kept is not None:
+        raise BaselineError(
+            f"{kept.test}: a guard keeps a command of the original program from the robot: {kept.guarded}; "
+            "widen the guard if the command is right, and mend the program if it is not"
+        )
     broken = [end for end in result.ends if end.failure is not None and end.outcome == "failed"]
     if broken:
         raise BaselineError(

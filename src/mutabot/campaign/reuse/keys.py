@@ -531,6 +531,7 @@ def _settings(request: Request) -> dict[str, str]:
         "timeout_seconds": str(configuration.timeout_seconds),
         "memory": str(configuration.memory),
         **({"every test": "run"} if request.every_test else {}),
+        **({"guards": _HASH + _digest(request.guards)} if request.guards else {}),
     }
 
 

@@ -32,6 +32,7 @@ _ELEMENT: Mapping[str, str] = {
     Verdict.ERROR: "error",
     Verdict.UNSTABLE: "error",
     Verdict.REFUSED: "skipped",
+    Verdict.GUARDED: "skipped",
     Verdict.INVALID: "skipped",
     Verdict.NO_EFFECT: "skipped",
     ACCEPTED: "skipped",

@@ -28,6 +28,7 @@ _STATUS: Mapping[str, str] = {
     Verdict.NOT_COVERED: "NoCoverage",
     Verdict.INVALID: "CompileError",  # it is no program, or no command
     Verdict.REFUSED: "RuntimeError",  # it ran, and the robot answered with an error that no test is about
+    Verdict.GUARDED: "RuntimeError",  # the same, and what answered was the user's own guard
     Verdict.ERROR: "RuntimeError",  # the run failed, and no test did
     Verdict.NO_EFFECT: "Ignored",  # it ran and was the original: nothing was there to judge
     Verdict.UNSTABLE: "Ignored",  # it ran, and what came of it is not believed

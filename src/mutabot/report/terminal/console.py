@@ -178,6 +178,7 @@ _OTHERS = {
     Verdict.NOT_COVERED: VerdictMark("N", "red", "not covered"),
     Verdict.TIMEOUT: VerdictMark("T", "yellow", "killed by a timeout"),
     Verdict.REFUSED: VerdictMark("R", "blue", "refused by the robot"),
+    Verdict.GUARDED: VerdictMark("G", "blue", "refused by the guard"),
     Verdict.INVALID: VerdictMark("I", "blue", "invalid"),
     Verdict.NO_EFFECT: VerdictMark("=", "dim", "no effect"),
     Verdict.UNSTABLE: VerdictMark("U", "magenta", "unstable"),

@@ -115,8 +115,8 @@ class Tally:
 
 #: the order in which states are counted
 _ORDER = (
-    "killed", "timeout", "survived", "not covered", "accepted", "refused", "invalid", "no effect", "unstable",
-    "error",
+    "killed", "timeout", "survived", "not covered", "accepted", "refused", "guarded", "invalid", "no effect",
+    "unstable", "error",
 )  # fmt: skip
 
 #: seconds between two plain lines

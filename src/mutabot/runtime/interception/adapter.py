@@ -18,7 +18,7 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from inspect import Parameter, Signature
 from types import CoroutineType
-from typing import Any
+from typing import Any, Protocol
 
 from mutabot.errors import PathError, StrangeValueError, in_words
 from mutabot.model import Call, Operation, Path, Pattern, Quantity, Reply, Unchanged, Vocabulary
@@ -160,6 +160,16 @@ class SiteCall:
     stands_in: bool = False
 
 
+class CallCheck(Protocol):
+    """What is asked before each call of an operation, see ``guarding.OperationGuard``."""
+
+    def check(self, invocation: Invocation) -> None:
+        """Raise if the call must not be made."""
+
+    def check_opposite(self, target: str) -> None:
+        """Raise if the opposite of the operation must not be called."""
+
+
 @dataclass(eq=False)
 class Adapter:
     """Translates the calls of one operation.
@@ -174,6 +184,7 @@ class Adapter:
         handler: what stands around the operation.
         remembers: the commands, by the texts of their patterns, whose last answers somebody may ask for.
         commands: how often the robot was made to do this, if it does anything.
+        guard: what is asked before each call; None without guards.
     """
 
     operation: Operation
@@ -186,6 +197,7 @@ class Adapter:
     handler: Handler = field(init=False)
     remembers: Collection[str | None] = ()
     commands: int = 0
+    guard: CallCheck | None = None
 
     def __post_init__(self) -> None:
         operation = self.operation
@@ -320,6 +332,8 @@ class Adapter:
         fits = invocation.values is not None or self.operation.signature is not None
         self.commands += call.is_command and fits  # what does not fit never reaches the robot
         if call is original:
+            if self.guard is not None:
+                self.guard.check(invocation)
             return invocation.caller(invocation.wrapped, invocation.args, invocation.kwargs)
         is_text = call.pattern is not None and call.pattern.notation is not None
         meant = call.pattern if call.pattern is not None else call.operation
@@ -329,6 +343,11 @@ class Adapter:
         args, kwargs = invocation.args, invocation.kwargs
         if invocation.values is not None and (changed or call.reversed):
             args, kwargs = invocation.changed(self._changed(call, changed))
+        if self.guard is not None:
+            if opposite is not None:
+                self.guard.check_opposite(opposite)
+            else:
+                self.guard.check(replace(invocation, args=args, kwargs=kwargs))
         return invocation.caller(wrapped, args, kwargs)
 
     def _changed(self, call: Call, values: Mapping[str, Value]) -> dict[str, Any]:

@@ -121,26 +121,33 @@ class Dispatcher:
         # how many ticks and sleeps of a rate there are is a matter of time
         is_counted = named is None or named.form not in (Form.TICK, Form.SLEEP)
 
+        def alone(wrapped: Any, instance: Any, args: Any, kwargs: Any, where: Where) -> Any:
+            """Make a call around which nothing stands but its guard."""
+            __tracebackhide__ = True
+            if adapter.guard is not None:
+                adapter.guard.check(Invocation(_bound(wrapped, instance), instance, args, kwargs, where))
+            return wrapped(*args, **kwargs)
+
         def handle(wrapped: Any, instance: Any, args: Any, kwargs: Any, where: Where = NOWHERE) -> Any:
             __tracebackhide__ = True
             try:
                 if self.turn is not None:
                     self.turn()
                 if self.meter is None:
-                    return wrapped(*args, **kwargs)
+                    return alone(wrapped, instance, args, kwargs, where)
                 if instance is not None and self.instances.is_watching:
                     self.instances.used(instance)
                 runs = _runs.get()
                 if runs == _UNTRACKED:
-                    return wrapped(*args, **kwargs)
+                    return alone(wrapped, instance, args, kwargs, where)
                 frame: Any = sys._getframe(1)
                 site = where.site or self._site(frame, where, adapter, runs == _OPERATION)
                 if runs and site is None:
-                    return wrapped(*args, **kwargs)
+                    return alone(wrapped, instance, args, kwargs, where)
                 if is_counted and not where.is_again:
                     self.meter.operations += 1
                 if site is None:
-                    return wrapped(*args, **kwargs)
+                    return alone(wrapped, instance, args, kwargs, where)
                 is_direct = self.recorder.answers is not None and self._is_direct(frame, where)
                 wrapped = _bound(wrapped, instance)
                 is_async = is_coroutine_function(wrapped) or where.is_awaited
@@ -211,6 +218,8 @@ class Dispatcher:
             # 1. The adapter reads which command it is, and the values it writes.
             call = adapter.to_call(invocation)
             if call.pattern is None and adapter.operation.is_partial:  # none of the calls that are meant
+                if adapter.guard is not None:
+                    adapter.guard.check(invocation)
                 return _ALONE
             key = (site[0], call.operation.target, call.pattern.text if call.pattern is not None else None)
             self.calls[key] += 1

@@ -239,7 +239,8 @@ class Member:
         if not isinstance(session, TextOnly):
             self._tell_found(session)
         meter = session.meter
-        if meter is not None and meter.exceeded is not None and not self._exceeded:
+        is_ended = meter is not None and (meter.exceeded is not None or meter.guarded is not None)
+        if is_ended and not self._exceeded:
             self._exceeded = True
             self._use()
 
@@ -271,9 +272,8 @@ class Member:
     def _use(self) -> None:
         meter = self.session.meter
         if meter is not None:
-            self.file.send(
-                events.Used(meter.operations, self.session.commands, meter.simulated, meter.exceeded)
-            )
+            used = meter.operations, self.session.commands, meter.simulated
+            self.file.send(events.Used(*used, meter.exceeded, meter.guarded))
 
     def _watch_text(self) -> None:
         """Report places of the program text when first reached, since the process may end at any time."""

@@ -5,16 +5,17 @@
   const LETTERS = {
     C: ["check", "killed by a check"], X: ["exception", "killed by an exception"], S: ["survived", "survived"],
     N: ["uncovered", "not covered"], T: ["timeout", "killed by a timeout"], R: ["refused", "refused by the robot"],
+    G: ["refused", "refused by the guard"],
     I: ["invalid", "invalid"], "=": ["idle", "no effect"], U: ["unstable", "unstable"], A: ["idle", "accepted"], E: ["error", "error"], "·": ["unrun", "not run"],
   };
   const STATUS = {
-    survived: "S", "not covered": "N", killed: "C", timeout: "T", error: "E", unstable: "U", refused: "R", invalid: "I", "no effect": "=", accepted: "A", "not run": "·",
+    survived: "S", "not covered": "N", killed: "C", timeout: "T", error: "E", unstable: "U", refused: "R", guarded: "G", invalid: "I", "no effect": "=", accepted: "A", "not run": "·",
   };
   const ORDER = Object.keys(STATUS);
   const MEANING = {
     survived: "at least one round let it through", "not covered": "no test reaches it", killed: "every valid round killed it",
     timeout: "it exceeded its time limit in every round", error: "mutabot, a worker or the simulator failed", unstable: "equal runs gave different results",
-    refused: "the robot refused the command", invalid: "no valid program or command", "no effect": "it changed no value", accepted: "it survived, and that was accepted with a reason", "not run": "not run yet",
+    refused: "the robot refused the command", guarded: "a guard kept the command from the robot", invalid: "no valid program or command", "no effect": "it changed no value", accepted: "it survived, and that was accepted with a reason", "not run": "not run yet",
   };
 
   /** The mark of one letter. Its words are its name for those who do not see it. */

@@ -152,7 +152,7 @@
   function nothingRecorded(one, page) {
     if (page.withoutRecordings) return empty("There was no room for its recordings.", `The report holds those of the survivors that went farthest first. \`mutabot show ${one.number}\` prints what they tell.`);
     if (one.indistinguishable) return empty("The robot did the same as in the original.", "Nothing that was recorded, read or returned differs; there are no two paths to show.");
-    if (!one.valid && one.status !== "refused") return empty("Nothing to show.", `This mutant was not counted: ${marks.MEANING[one.status]}.`);
+    if (!one.valid && !["refused", "guarded"].includes(one.status)) return empty("Nothing to show.", `This mutant was not counted: ${marks.MEANING[one.status]}.`);
     if (one.status === "not covered") return empty("No test runs this line.", "The fault was never executed. Add a test that runs this line.");
     return empty("Nothing was recorded that differs.", "Paths, contacts and commands are recorded where the simulator feeds them: mutabot's cell does so by itself, and any other in ten lines (",
       h("code", null, "mutabot.evidence.Feed"), ").");

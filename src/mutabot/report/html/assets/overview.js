@@ -98,8 +98,8 @@
   }
 
   const KINDS = [["check", "C", "killed by a check"], ["exception", "X", "by an exception"], ["timeout", "T", "by a timeout"], ["survived", "S", "survived"],
-    ["uncovered", "N", "not covered"], ["refused", "R", "refused"], ["invalid", "I", "invalid"], ["idle", "=", "no effect"], ["unstable", "U", "unstable"], ["error", "E", "error"]];
-  const NAMES = { timeout: "timeout", survived: "survived", uncovered: "not covered", refused: "refused", invalid: "invalid", idle: "no effect", unstable: "unstable", error: "error" };
+    ["uncovered", "N", "not covered"], ["refused", "R", "refused"], ["guarded", "G", "refused by the guard"], ["invalid", "I", "invalid"], ["idle", "=", "no effect"], ["unstable", "U", "unstable"], ["error", "E", "error"]];
+  const NAMES = { timeout: "timeout", survived: "survived", uncovered: "not covered", refused: "refused", guarded: "guarded", invalid: "invalid", idle: "no effect", unstable: "unstable", error: "error" };
   function bar(one) {
     const { counts, by_check: byCheck } = one;
     const parts = KINDS.map(([kind, letter, words]) => [kind, letter, words,
@@ -173,7 +173,7 @@
 
   function outside(campaign) {
     const section = h("section", { "aria-labelledby": "outside" }, h("h2", { id: "outside" }, "Not counted in the score"));
-    const found = ["accepted", "error", "unstable", "refused", "invalid", "no effect", "not run"]
+    const found = ["accepted", "error", "unstable", "refused", "guarded", "invalid", "no effect", "not run"]
       .map((name) => [name, campaign.mutants.filter((one) => one.status === name).length]).filter(([, many]) => many);
     if (found.length) {
       section.append(h("ul", { class: "plain" }, found.map(([name, many]) => h("li", null,

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from mutabot.api.faults import Context, Example, Subject, ValueOperator
-from mutabot.api.values import Kind, Operation, Value
+from mutabot.api.values import Kind, Operation
 
 #: what each reading adds to the error, m
 STEP = 0.005
@@ -23,10 +25,10 @@ class Creep(ValueOperator):
         Example.unchanged(_MEASURE, None, "nothing was measured"),
     )
 
-    def change(self, value: Value, context: Context) -> Value | None:
+    def change(self, value: Any, context: Context) -> Any | None:
         if not context.quantity.is_scalar(value):
             return None
         return value + context.number * context.quantity.from_unit(STEP, "m")
 
-    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+    def describe(self, subject: Subject, before: Any | None, after: Any | None) -> str:
         return f"reads {subject.required_quantity.text(before)} and creeps"

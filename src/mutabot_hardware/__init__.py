@@ -1,0 +1,1 @@
+"""Campaigns on hardware: guards before every command, one mutant at a time, a stop at surprises."""

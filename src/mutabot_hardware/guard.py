@@ -1,0 +1,73 @@
+"""The guard that the table ``guard`` describes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from mutabot.api.processes import CallGuard
+from mutabot.api.values import Call
+
+from .rules import BoxRule, LimitRule, OrderRule, RuleFinding, UnreadableTarget, fits
+from .tables import GuardTable
+
+
+class TableGuard(CallGuard):
+    """Keeps from the robot what the table does not allow.
+
+    A command of which a rule cannot read what it needs is kept back as well; text commands that the
+    vocabulary does not know concern no rule, see ``watch.HardwareGuard``.
+    """
+
+    def __init__(self, table: Mapping[str, Any]) -> None:
+        super().__init__(table)
+        read = GuardTable.model_validate(table)
+        self._rules: list[LimitRule | BoxRule] = [
+            *(LimitRule(one) for one in read.limit),
+            *(BoxRule(one) for one in read.box),
+        ]
+        self._forbidden, self._tables = read.forbid, read.order
+        self._tool_of = read.tool.split() if read.tool is not None else None
+        self.start_test()
+
+    def start_test(self) -> None:
+        """See ``CallGuard``: nothing has been done yet."""
+        self._orders = [OrderRule(one) for one in self._tables]
+        self._tool: str | None = None
+
+    def why_not(self, call: Call, unread: Mapping[str, str]) -> str | None:
+        """See ``CallGuard``."""
+        if not call.is_command:
+            return None
+        why = self._why_not(call, unread)
+        if why is None:
+            for order in self._orders:
+                order.note(call)
+            self._note_tool(call)
+        return why
+
+    def _why_not(self, call: Call, unread: Mapping[str, str]) -> str | None:
+        if fits(call, self._forbidden):
+            return "is forbidden"
+        for order in self._orders:
+            if why := order.why_not(call):
+                return why
+        if unread and self._concerns(call):
+            return "; ".join(unread.values())
+        try:
+            return next((one.text for one in self.findings(call) if not one.is_within), None)
+        except UnreadableTarget as error:
+            return str(error)
+
+    def _concerns(self, call: Call) -> bool:
+        return any(fits(call, rule.table.operations) for rule in self._rules)
+
+    def findings(self, call: Call) -> Iterator[RuleFinding]:
+        """What the limits and boxes say of a call. Raises UnreadableTarget."""
+        for rule in self._rules:
+            yield from rule.of(call, self._tool)
+
+    def _note_tool(self, call: Call) -> None:
+        if self._tool_of is None or call.operation.target != self._tool_of[0]:
+            return
+        self._tool = next((str(call.values[name]) for name in self._tool_of[1:] if name in call.values), None)

@@ -1,0 +1,196 @@
+"""The rules of a guard: why a call must not reach the robot, and how near it comes to a limit.
+
+All rules look at the values that would go out. A relative move counts by its target: where the robot is, as
+the vocabulary's reading says, and the amount. What is not a finite number is within no limit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from math import inf, isfinite, isnan
+from typing import Any
+
+from mutabot.api.values import Call, Mode, Quantity
+
+from .tables import BoxTable, LimitTable, OrderTable
+
+#: kinds whose axes x, y and z say where a target lies
+_PLACES = ("translation",)
+
+
+class UnreadableTarget(Exception):  # noqa: N818  # a reason
+    """Why it is not known where a command leads to."""
+
+
+@dataclass(frozen=True, slots=True)
+class RuleFinding:
+    """What a rule says of a call.
+
+    Attributes:
+        margin: how far the call is within the limit, in ``unit``; negative beyond it.
+        unit: of the margin.
+        text: what is compared with what, such as ``x 0.912 m, at most 0.8 m``.
+    """
+
+    margin: float
+    unit: str
+    text: str
+
+    @property
+    def is_within(self) -> bool:
+        """Whether the call may pass; not if the margin is no number."""
+        return self.margin >= 0
+
+
+def fits(call: Call, operations: Iterable[str]) -> bool:
+    """Whether a call is of one of these operations."""
+    return any(fnmatchcase(call.operation.target, one) for one in operations)
+
+
+def written(call: Call) -> Iterator[tuple[Quantity, Any]]:
+    """The quantities that a call writes, with their values."""
+    meant = call.pattern or call.operation
+    for quantity in meant.arguments:
+        if quantity.name in call.values:
+            yield quantity, call.values[quantity.name]
+
+
+def target_of(call: Call, quantity: Quantity, value: Any) -> float:
+    """Where a commanded amount leads to, in the quantity's unit. Raises UnreadableTarget."""
+    try:
+        number = float(value)
+    except (TypeError, ValueError) as error:
+        raise UnreadableTarget(f"{quantity.name} is {value!r}, not a number") from error
+    return number + _now(call, quantity) if quantity.mode is Mode.BY else number
+
+
+def _now(call: Call, quantity: Quantity) -> float:
+    """Where the robot is. Raises UnreadableTarget."""
+    lacking = f"where {quantity.name} leads to is not known"
+    try:
+        asked = call.current(quantity)
+        asked.send(None)  # type: ignore[attr-defined]  # of a plain reading it never suspends
+    except StopIteration as end:
+        return float(end.value)
+    except Exception as error:
+        raise UnreadableTarget(f"{lacking}: {error}") from error
+    asked.close()  # type: ignore[attr-defined]
+    raise UnreadableTarget(f"{lacking}: its reading has to be awaited")
+
+
+@dataclass(frozen=True, slots=True)
+class LimitRule:
+    """Least and greatest value of a quantity."""
+
+    table: LimitTable
+
+    def of(self, call: Call, tool: str | None) -> Iterator[RuleFinding]:
+        """What it says of a call. Raises UnreadableTarget."""
+        table = self.table
+        if not fits(call, table.operations) or not _holds(table.tool, tool):
+            return
+        for quantity, value in written(call):
+            if self._is_meant(quantity):
+                yield self._compared(quantity, target_of(call, quantity, value))
+
+    def _is_meant(self, quantity: Quantity) -> bool:
+        table = self.table
+        is_kind = table.kind is None or quantity.kind == table.kind
+        is_axis = table.axis is None or quantity.axis == table.axis
+        return fnmatchcase(quantity.name, table.quantity) and is_kind and is_axis
+
+    def _compared(self, quantity: Quantity, number: float) -> RuleFinding:
+        table, unit = self.table, self.table.unit or quantity.unit or ""
+        number = quantity.to_unit(number, unit) if unit else number
+        above = number - table.min - table.margin if table.min is not None else inf
+        below = table.max - table.margin - number if table.max is not None else inf
+        which = f"at least {table.min:g}" if not above >= below else f"at most {table.max:g}"
+        if table.margin:
+            which += f" with a margin of {table.margin:g}"
+        return RuleFinding(_least(above, below), unit, f"{quantity.name} {number:g} {unit}, {which} {unit}")
+
+
+@dataclass(frozen=True, slots=True)
+class BoxRule:
+    """A workspace, or what stands in it."""
+
+    table: BoxTable
+
+    def of(self, call: Call, tool: str | None) -> Iterator[RuleFinding]:
+        """What it says of a call. Raises UnreadableTarget."""
+        table = self.table
+        if not fits(call, table.operations) or not _holds(table.tool, tool):
+            return
+        places = [one for one in (call.pattern or call.operation).arguments if self._is_place(one)]
+        moved = [one for one in places if one.name in call.values]
+        if table.keep == "in":
+            yield from (self._inside(one, target_of(call, one, call.values[one.name])) for one in moved)
+        elif moved:
+            yield self._outside({one.axis or "": self._target(call, one) for one in places})
+
+    def _is_place(self, quantity: Quantity) -> bool:
+        return quantity.kind in _PLACES and quantity.axis in self.table.sides and self._is_frame(quantity)
+
+    def _target(self, call: Call, quantity: Quantity) -> float:
+        """Where the call leads to along an axis, m or as the box: where the robot is, if it says nothing."""
+        value = call.values.get(quantity.name)
+        target = _now(call, quantity) if value is None else target_of(call, quantity, value)
+        return quantity.to_unit(target, self.table.unit)
+
+    def _is_frame(self, quantity: Quantity) -> bool:
+        return self.table.frame is None or quantity.frame is None or quantity.frame == self.table.frame
+
+    def _inside(self, quantity: Quantity, number: float) -> RuleFinding:
+        """How far a target lies within the workspace along one axis."""
+        unit, (least, greatest) = self.table.unit, self.table.sides[quantity.axis or ""]
+        target, margin = quantity.to_unit(number, self.table.unit), self.table.margin
+        text = (
+            f"{quantity.name} leads to {target:g} {unit}, the workspace is {least:g} to {greatest:g} {unit}"
+        )
+        return RuleFinding(_least(target - least - margin, greatest - margin - target), unit, text)
+
+    def _outside(self, targets: Mapping[str, float]) -> RuleFinding:
+        """How far a target lies outside, along the axis along which that is farthest."""
+        table = self.table
+        missing = ", ".join(sorted(table.sides.keys() - targets.keys()))
+        if missing:
+            raise UnreadableTarget(f"it says nothing of {missing}, so that a box to avoid cannot be compared")
+        away = {
+            axis: max(least - table.margin - targets[axis], targets[axis] - greatest - table.margin)
+            for axis, (least, greatest) in table.sides.items()
+        }
+        margin = max(away.values()) if all(map(isfinite, targets.values())) else -inf
+        place = ", ".join(f"{axis} {target:g} {table.unit}" for axis, target in targets.items())
+        return RuleFinding(margin, table.unit, f"{place} lies in a box to avoid")
+
+
+@dataclass(slots=True)
+class OrderRule:
+    """An order of commands; it remembers what has come in the running test."""
+
+    table: OrderTable
+    is_open: bool = False
+
+    def why_not(self, call: Call) -> str | None:
+        """Why the call comes too early; None if it does not."""
+        if fits(call, self.table.operations) and not self.is_open:
+            return f"is allowed only after {' or '.join(self.table.after)}"
+        return None
+
+    def note(self, call: Call) -> None:
+        """The call goes to the robot."""
+        if fits(call, self.table.until):
+            self.is_open = False
+        if fits(call, self.table.after):
+            self.is_open = True
+
+
+def _holds(wanted: str | None, tool: str | None) -> bool:
+    return wanted is None or wanted == tool
+
+
+def _least(above: float, below: float) -> float:
+    """The smaller of two margins; what is no number is beyond all limits."""
+    return -inf if isnan(above) or isnan(below) else min(above, below)

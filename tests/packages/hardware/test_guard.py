@@ -1,0 +1,214 @@
+"""A guard in a campaign: nothing outside reaches the robot, whoever made it so."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from mutabot.campaign.run import run_campaign
+from mutabot.errors import BaselineError
+from mutabot.model import Outcome, Verdict
+from tests.campaign.project import Quiet, outcomes, request_for
+from tests.packages.hardware.robot_server import RobotServer, robot_server, write_project
+
+PROGRAM = """
+    import subprocess
+    import sys
+    import threading
+
+    def move(arm, x, z, speed):
+        arm.move_to(x, z, speed=speed)
+
+    def move_on(arm, dx, dz):
+        arm.move_by(dx=dx, dz=dz)
+
+    def say(arm, z):
+        arm.send(f"height {z}")
+
+    def lift(arm, z):
+        arm.lift = z
+
+    def look(arm):
+        place = arm.pose()
+        return place["x"]
+
+    def follow(arm):
+        arm.move_to(look(arm), 0.5)
+
+    def beside(arm, z):
+        thread = threading.Thread(target=lift, args=(arm, z))
+        thread.start()
+        thread.join()
+
+    def below():
+        subprocess.run([sys.executable, "child.py"], check=False)
+    """
+CHILD = """
+    import program
+    from robot import Arm
+
+    arm = Arm()
+    for z in (0.2, 0.4, 0.6, 0.8):
+        program.move(arm, 0.5, z, 0.1)
+    """
+#: each command is tried by itself, whatever came of the others
+TESTS = """
+    import random
+    import threading
+
+    import program
+    import pytest
+    from robot import Arm
+
+    COMMANDS = {many}
+
+    @pytest.fixture
+    def arm():
+        threading.excepthook = lambda arguments: None
+        return Arm()
+
+    def tried(command, *arguments):
+        try:
+            command(*arguments)
+        except BaseException as error:
+            if type(error).__name__ == "FatalFault":
+                raise
+
+    def test_many_commands(arm):
+        draw = random.Random(1).uniform
+        for _ in range(COMMANDS):
+            tried(program.move, arm, draw(0.21, 0.69), draw(0.11, 0.89), draw(0.0, 0.25))
+            tried(program.lift, arm, draw(0.11, 0.89))
+            tried(program.say, arm, draw(0.11, 0.89))
+            place = arm.pose()
+            x, z = draw(0.21, 0.69), draw(0.11, 0.89)
+            tried(program.move_on, arm, x - place["x"], z - place["z"])
+            tried(program.follow, arm)
+        tried(program.beside, arm, 0.5)
+
+    def test_below():
+        program.below()
+    """
+
+
+@pytest.fixture
+def server(monkeypatch: pytest.MonkeyPatch) -> Iterator[RobotServer]:
+    with robot_server() as found:
+        monkeypatch.setenv("ROBOT_PORT", str(found.port))
+        yield found
+
+
+def outcomes_of(folder: Path, engine: str, families: tuple[str, ...] = ("robot",)) -> list[Outcome]:
+    return outcomes(run_campaign(request_for(folder, families=families, engine=engine), Quiet()))
+
+
+@pytest.mark.parametrize(
+    ("engine", "many", "least"),
+    [
+        ("auto", 20, 3_000),
+        pytest.param("auto", 500, 100_000, marks=pytest.mark.whole),
+        pytest.param("replay", 50, 10_000, marks=pytest.mark.whole),
+    ],
+)
+def test_no_mutated_command_outside_reaches_the_robot(
+    tmp_path: Path, server: RobotServer, engine: str, many: int, least: int
+) -> None:
+    write_project(tmp_path, PROGRAM, TESTS.replace("{many}", str(many)))
+    (tmp_path / "child.py").write_text("\n".join(line[4:] for line in CHILD.splitlines()), encoding="utf-8")
+    families = ("robot", "graded", "catalogue", "conventional")
+    found = outcomes_of(tmp_path, engine, families)
+    server.settle()
+    places = [line.split() for line in server.lines() if line.startswith("at")]
+    speeds = [float(line.split()[1]) for line in server.lines() if line.startswith("speed")]
+    outside = [one for one in places if not (0.2 <= float(one[1]) <= 0.7 and 0.1 <= float(one[2]) <= 0.9)]
+    assert len(places) > least
+    assert outside == []
+    assert [one for one in speeds if not one <= 0.25 or math.isnan(one)] == []
+    assert sum(one.verdict is Verdict.GUARDED for one in found) > 20
+
+
+SIMPLE = """
+    def pick(arm):
+        arm.move_to(0.4, 0.6)
+        arm.move_by(dx=0.2)
+        arm.grip(True)
+    """
+CHECKED = """
+    import program
+    from robot import Arm
+
+    def test_it_picks():
+        arm = Arm()
+        program.pick(arm)
+        assert arm.pose() == {"x": 0.6000000000000001, "z": 0.6}
+    """
+
+
+@pytest.mark.parametrize("engine", ["auto", "replay"])
+def test_a_mutant_that_a_guard_stops_is_outside_the_score(
+    tmp_path: Path, server: RobotServer, engine: str
+) -> None:
+    found = {one.mutant: one for one in outcomes_of(write_project(tmp_path, SIMPLE, CHECKED), engine)}
+    stopped = found["program.py:pick:arm.move_to#1:x:reverse"]
+    assert stopped.verdict is Verdict.GUARDED
+    assert not stopped.verdict.is_valid
+    assert stopped.message == "robot:Arm.move_to: x leads to -0.4 m, the workspace is 0.2 to 0.7 m"
+    assert found["program.py:pick:arm.grip#1:closed:opposite"].verdict is Verdict.SURVIVED
+    assert found["program.py:pick:arm.move_by#1:call:skip"].verdict is Verdict.KILLED
+
+
+def test_a_program_that_catches_everything_does_not_hide_that_a_guard_stopped_it(
+    tmp_path: Path, server: RobotServer
+) -> None:
+    program = """
+        def pick(arm):
+            try:
+                arm.move_to(0.4, 0.6)
+            except BaseException as error:
+                if type(error).__name__ != "GuardedCall":
+                    raise
+            arm.grip(True)
+        """
+    tests = CHECKED.replace('assert arm.pose() == {"x": 0.6000000000000001, "z": 0.6}', "pass")
+    found = {one.mutant: one.verdict for one in outcomes_of(write_project(tmp_path, program, tests), "auto")}
+    assert found["program.py:pick:arm.move_to#1:x:reverse"] is Verdict.GUARDED
+
+
+def test_what_a_wrong_reading_leads_to_is_stopped_as_well(tmp_path: Path, server: RobotServer) -> None:
+    program = """
+        def pick(arm):
+            arm.move_to(arm.pose()["x"], 0.6)
+        """
+    tests = CHECKED.replace('assert arm.pose() == {"x": 0.6000000000000001, "z": 0.6}', "pass")
+    found = {one.mutant: one for one in outcomes_of(write_project(tmp_path, program, tests), "auto")}
+    wrong = found["program.py:pick:arm.pose#1:['x']:negate"]
+    assert wrong.verdict is Verdict.GUARDED
+    assert "leads to -0.4 m" in str(wrong.message)
+
+
+def test_a_guard_that_the_original_violates_is_told_before_anything_is_mutated(
+    tmp_path: Path, server: RobotServer
+) -> None:
+    guard = "[guard]\nbox = [{ x = [0.5, 0.7] }]\n"
+    with pytest.raises(
+        BaselineError, match=r"move_to: x leads to 0.4 m, the workspace is 0.5 to 0.7 m; widen"
+    ):
+        outcomes_of(write_project(tmp_path, SIMPLE, CHECKED, guard), "auto")
+
+
+def test_outcomes_found_without_a_guard_are_not_those_with_one(tmp_path: Path, server: RobotServer) -> None:
+    write_project(tmp_path, SIMPLE, CHECKED, guard="")
+    name = "program.py:pick:arm.move_to#1:x:reverse"
+    before = {one.mutant: one.verdict for one in outcomes_of(tmp_path, "auto")}
+    write_project(tmp_path, SIMPLE, CHECKED)
+    after = {one.mutant: one.verdict for one in outcomes_of(tmp_path, "auto")}
+    assert (before[name], after[name]) == (Verdict.KILLED, Verdict.GUARDED)
+
+
+def test_a_guard_that_fails_lets_nothing_pass(tmp_path: Path, server: RobotServer) -> None:
+    vocabulary_lacks_a_reading = "[guard]\nbox = [{ x = [0.2, 0.7], y = [0.0, 1.0], keep = 'out' }]\n"
+    with pytest.raises(BaselineError, match="says nothing of y, so that a box to avoid cannot be compared"):
+        outcomes_of(write_project(tmp_path, SIMPLE, CHECKED, vocabulary_lacks_a_reading), "auto")
