@@ -202,6 +202,11 @@ def running() -> Tape | None:
     return _tape
 
 
+def now() -> float | None:
+    """The time, as the tape of the running test has it; None if nothing is recorded."""
+    return _tape.now if _tape is not None else None
+
+
 def begin(film: PictureWriter | None = None) -> Tape:
     """Begin to record a test, and to film it if asked."""
     global _tape  # noqa: PLW0603  # simulators know this module, not an object of ours

@@ -338,13 +338,18 @@ class Quantity:
         """
         if one is other:
             return True
-        if self.is_whole and not self.by_number:
+        kind = self.kind
+        if kind in WHOLE and not self.by_number:
             before, after = self.orientation(one), self.orientation(other)
             if before is not None and after is not None:
                 return before.distance(after) < _SAME_ORIENTATION
-        if not self.is_measured and self.kind is not Kind.STAMP:
+        if kind not in MEASURED and kind is not Kind.STAMP:
             return same(one, other)
-        return _are_same(self, _plain(one), _plain(other))
+        if hasattr(type(one), "tolist"):
+            one = one.tolist()
+        if hasattr(type(other), "tolist"):
+            other = other.tolist()
+        return _are_same(self, one, other)
 
     def rotated(
         self, value: Value, change: Callable[[Quaternion], Quaternion], least: float = _SAME_ORIENTATION
@@ -541,18 +546,12 @@ def changes(
     quantities: Iterable[Quantity], before: Mapping[str, Value], after: Mapping[str, Value]
 ) -> dict[str, Value]:
     """The values of a call that are others than before, or were not there."""
-    known = {quantity.name: quantity for quantity in quantities}
-
-    def is_kept(name: str, value: Value) -> bool:
-        if name not in before:
-            return False
-        return known[name].is_same(before[name], value) if name in known else same(before[name], value)
-
-    return {name: value for name, value in after.items() if not is_kept(name, value)}
-
-
-def _plain(value: Value) -> Value:
-    return value.tolist() if hasattr(type(value), "tolist") else value
+    is_same = {quantity.name: quantity.is_same for quantity in quantities}
+    return {
+        name: value
+        for name, value in after.items()
+        if name not in before or not is_same.get(name, same)(before[name], value)
+    }
 
 
 def _are_same(quantity: Quantity, one: Value, other: Value) -> bool:
@@ -592,8 +591,10 @@ def _turn_of_target(quantity: Quantity) -> float | None:
     A program that reads an angle may well tell 180 from −180 degrees. A joint tells them apart as well, and
     so does whatever has a range of more than one turn: it winds.
     """
+    if quantity.kind is not Kind.ROTATION or quantity.mode is not Mode.TO or quantity.by_number:
+        return None
     turn = quantity.full_turn
-    if turn is None or quantity.by_number or (quantity.kind, quantity.mode) != (Kind.ROTATION, Mode.TO):
+    if turn is None:
         return None
     limits = quantity.range or quantity.clip
     winds = limits is not None and limits[1] - limits[0] > turn * (1.0 + 1e-6)

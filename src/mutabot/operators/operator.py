@@ -428,6 +428,7 @@ class Context:
 
     Attributes:
         subject: what it acts on.
+        quantity: that of the subject, for operators on values.
         random: its generator for this round and test; ``draw`` is the one of a call.
         option: what the operator's table of variants says of the subject's; None if that has none.
         call: the call of the value that it is about to change, for operators on values; only while it does.
@@ -439,15 +440,15 @@ class Context:
     subject: Subject
     random: Random
     option: Any = None
+    quantity: Quantity = field(init=False)
     call: Call = field(init=False)
     number: int = 0
     memory: list[Any] = field(default_factory=list)
     _key: int | None = None
 
-    @property
-    def quantity(self) -> Quantity:
-        """The subject's quantity, for operators on values."""
-        return self.subject.required_quantity
+    def __post_init__(self) -> None:
+        if self.subject.quantity is not None:
+            self.quantity = self.subject.quantity
 
     def let_go(self, call: Call) -> None:
         """Drop the reference to this call, whose value has been changed."""

@@ -141,10 +141,18 @@ def recording(passage: CallRecord, proceed: Proceed) -> Proceed:
     return noted
 
 
-async def run_middleware(passage: CallRecord, middleware: Middleware, proceed: Proceed) -> Reply:
+async def run_middleware(
+    passage: CallRecord, middleware: Middleware, proceed: Proceed, **known: Any
+) -> Reply:
     """Send the passage's call through the mutant.
 
     What the call holds leads back to none of this: what it was given dies with it.
+
+    Args:
+        passage: of the call.
+        middleware: the mutant's.
+        proceed: performs a call.
+        known: what else the call is to know, by the names of its fields.
     """
     wait, waits, deferred = passage.call.wait, passage.waits, passage.deferred
 
@@ -155,7 +163,7 @@ async def run_middleware(passage: CallRecord, middleware: Middleware, proceed: P
     def defer(call: Call) -> None:
         deferred.append(replace(call, defer=NO_DEFER))
 
-    passage.call = replace(passage.call, wait=waited, defer=defer)
+    passage.call = replace(passage.call, wait=waited, defer=defer, **known)
     passage.received = await middleware(passage.call, recording(passage, proceed))
     return passage.received
 

@@ -93,12 +93,13 @@ class ValueOperator(Operator):
 
     def middleware(self, subject: Subject, random: Random) -> Middleware:
         context = Context(subject, random, self.variants.get(subject.variant))
+        known = {quantity.name: quantity for quantity in subject.side}
 
         async def written(call: Call, proceed: Proceed) -> Reply:
-            return await proceed(await self._changed(call, call, context))
+            return await proceed(await self._changed(call, call, context, known))
 
         async def read(call: Call, proceed: Proceed) -> Reply:
-            return await self._changed(await proceed(call), call, context)
+            return await self._changed(await proceed(call), call, context, known)
 
         return written if subject.is_written else read
 
@@ -124,8 +125,10 @@ class ValueOperator(Operator):
             return "both values are limited to the same one by clip = [{:g}, {:g}]".format(*quantity.clip)
         return ""
 
-    async def _changed(self, one: CallOrReply, call: Call, context: Context) -> CallOrReply:
-        """The call, or the reply to it, with the new values in it."""
+    async def _changed(
+        self, one: CallOrReply, call: Call, context: Context, known: Mapping[str, Quantity]
+    ) -> CallOrReply:
+        """The call, or the reply to it, with the new values in it; ``known`` are the quantities there."""
         context.call = call  # others may have been made while this one waited for its reply
         try:
             changed = await self.changes(one.values, context)
@@ -133,7 +136,6 @@ class ValueOperator(Operator):
             return one.as_is(str(why))
         finally:
             context.let_go(call)
-        known = {quantity.name: quantity for quantity in context.subject.side}
         reasons = [self._why_unchanged(known[name], one.values[name], changed[name]) for name in changed]
         serious = [reason for reason in reasons if reason and reason != _SAME]
         if serious or all(reasons):

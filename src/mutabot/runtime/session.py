@@ -10,6 +10,7 @@ from functools import partial
 from random import Random
 from typing import TYPE_CHECKING, Any
 
+from mutabot.evidence import tape
 from mutabot.model.activation import CALL_FAULT, at_text
 from mutabot.model.events import Acted, Called, CallsAsked, Event, KnownLater, Noted, SiteSeen, TextsSeen
 from mutabot.model.job import Idle
@@ -309,7 +310,7 @@ class Session:
         is_baseline = self.job.record and self.job.mutant is None and self.job.forking is None
         self.recorder.answers = Answers(handles_of(self.job.vocabulary)) if is_baseline else None
         self.recorder.start()
-        self.recorder.clock = self.recording.clock if self.job.evidence else None
+        self.recorder.clock = tape.now if self.job.evidence else None
         self.instances.start(fixtures)
         self.passing.calls.clear()
         self.noted.clear()
@@ -477,7 +478,7 @@ class Session:
 
     def acted(self) -> None:
         """The fault changed something in the running test."""
-        self._tell_acted(self.recording.clock())
+        self._tell_acted(tape.now())
 
     def acted_in_call(self) -> None:
         """Note that the mutant acted in a call, at the time when the call began."""
@@ -488,7 +489,8 @@ class Session:
         self.pipe.send(Acted(self.test))
 
     def _simulated(self) -> float | None:
-        return self.meter.simulated if self.meter is not None else None
+        meter = self.passing.meter
+        return meter.simulated if meter is not None else None
 
     def in_mutated_call(self, began: bool) -> None:
         """A mutated call begins, or has returned or raised."""

@@ -247,14 +247,15 @@ class ActiveMutant:
             call = replace(
                 call, operation=self.operation, pattern=self.operation.pattern(self.mutant.pattern)
             )
-        passage = CallRecord(replace(call, is_refusal=partial(is_refusal, names=self.refusals)))
+        passage = CallRecord(call)
         mutated = _MutatedCall(self, adapter, made, passage, does_nothing=is_due and self._does_nothing)
         self._commands, self._told, self._is_passed = 0, 0, False
         middleware = _one_is_due if self._due else self._middleware if is_due else _not_yet
         try:
+            known: dict[str, Any] = {"is_refusal": partial(is_refusal, names=self.refusals)}
             if self._idle is not None:
-                passage.call = replace(passage.call, idle=self._idle_answer(self._idle, adapter, made.call))
-            reply = await run_middleware(passage, middleware, mutated.proceed)
+                known["idle"] = self._idle_answer(self._idle, adapter, made.call)
+            reply = await run_middleware(passage, middleware, mutated.proceed, **known)
             if reply.more:
                 reply = passage.received = call_faults.heard_of(passage.call, reply)
             self.note(passage)
@@ -279,6 +280,8 @@ class ActiveMutant:
         One that must be awaited waits for a command that is awaited as well, and one from within the command
         for the next: ``hits`` had been when it began. Raises what the robot raises.
         """
+        if not self._due:
+            return
         due = [one for one in self._due if one[0] <= hits and (is_async or not one[1].made.is_async)]
         self._due = [one for one in self._due if one not in due]
         for _, mutated, call in due:

@@ -409,11 +409,6 @@ class TestRecording:
             tape.finish()
         tapes.stop()
 
-    def clock(self) -> float | None:
-        """The time, as the tape has it; None where nothing is recorded."""
-        tape = tapes.running()
-        return tape.now if tape is not None else None
-
     def since(self, moment: float) -> float | None:
         """Convert a value of ``time.monotonic`` to a time of the recording; None without one."""
         return self._tape.at_wall(moment) if self._tape is not None else None
