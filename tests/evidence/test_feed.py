@@ -204,3 +204,14 @@ def test_a_line_has_three_numbers_per_radius_and_others_are_a_problem(tape: Tape
     assert len(arm.values) == len(wrong.values) == 6 * len(tape.recording.times)
     assert all(map(isnan, wrong.values))
     assert tape.recording.problems == ["wrong cannot be recorded: 3 numbers instead of 6"]
+
+
+def test_a_line_is_kept_to_a_millimetre_and_what_is_compared_as_it_is(tape: Tape) -> None:
+    feed = Feed(lambda: 0.0)
+    feed.line("arm", lambda: [0.12345, -0.6789, 1.0], radii=[0.05])
+    feed.point("tool", lambda: (0.12345, -0.6789, 1.0))
+    feed.tick()
+    arm, tool = (list(tape.recording.tracks[name].values) for name in ("arm", "tool"))
+    assert arm == pytest.approx(tool, abs=0.0005)
+    assert arm != tool
+    assert tool == pytest.approx([0.12345, -0.6789, 1.0], abs=1e-6)

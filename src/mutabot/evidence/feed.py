@@ -76,7 +76,8 @@ class Feed:
         """Record a line that is drawn and never compared, such as an arm from its base through its joints.
 
         Args:
-            read: gives x, y, z of one point after the other in m, world frame: three numbers per radius.
+            read: gives x, y, z of one point after the other in m, world frame: three numbers per radius. They
+                are kept to a millimetre.
             radii: how thick it is at each of its points, m.
         """
         self._sources.append(_Source(name, TrackKind.LINE, read, radii=tuple(map(float, radii))))
@@ -205,7 +206,7 @@ class Feed:
             with tape.reading(f"{source.name} cannot be recorded"):
                 found = [source.read()] if source.kind is TrackKind.VALUE else list(source.read())
                 if len(found) == track.width:
-                    track.values.extend(found)
+                    track.values.extend(map(_coarse, found) if track.radii else found)
                     continue
                 why = f"{len(found)} numbers instead of {track.width}"
                 tape.problem(f"{source.name} cannot be recorded: {why}")
@@ -222,6 +223,11 @@ class Feed:
             for pair in sorted(changed):
                 tape.note(now, what, ", ".join(pair))
         self._before = touching
+
+
+def _coarse(number: float) -> float:
+    """A millimetre is enough to be drawn, and takes a fraction of the room."""
+    return round(number * 1024) / 1024 if isfinite(number) else number
 
 
 def _triple(numbers: Sequence[float]) -> Triple:
