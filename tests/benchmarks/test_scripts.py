@@ -49,6 +49,7 @@ LOOSE = {"controller", "html_report", "suite_length", "ten_thousand"}
 #: what a short form cannot bring
 ELSEWHERE = {
     "foreign_programs": "installs simulators: `make foreign`",
+    "plain_projects": "installs other tools and their projects",
     "random_edits": "is a module of `since_edits`",
 }
 

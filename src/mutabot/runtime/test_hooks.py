@@ -186,7 +186,9 @@ class TestHooks:
                 session.fork_parent.end_test()
             session.pipe.send(end)
         if session.job.stop_at_kill and end.is_decided:
-            item.session.shouldstop = "the mutant's verdict is known"
+            # as after a failure with ``-x``: of an interruption pytest would lay out a traceback, which takes
+            # longer than a short suite
+            item.session.shouldfail = "the mutant's verdict is known"
         return result
 
     def _start(self, item: pytest.Item, test: str) -> None:
