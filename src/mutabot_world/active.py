@@ -101,6 +101,7 @@ class WorldFault(ActiveFault):
         """The test has made a world: those that were there before are of other tests."""
         self._earlier.clear()
         self._has_made = True
+        self._disturbed.pop(id(world), None)  # of one that was there before, in the same place in memory
         self._disturb(world)
 
     def _disturb(self, world: Any, *, is_told: bool = True) -> bool:

@@ -5,6 +5,7 @@ Whatever the code of a fault raises is an error of its mutant: no test has notic
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -61,7 +62,8 @@ class FaultRunner:
         if awaited == Activation.AT_ONCE or (is_of_test and self._is_in_test):
             self._make()
         elif not is_of_test:
-            wrapt.register_post_import_hook(lambda module: self._make(), awaited)
+            is_later = awaited not in sys.modules
+            wrapt.register_post_import_hook(lambda module: self._imported(is_later=is_later), awaited)
 
     @property
     def evidence(self) -> Evidence:
@@ -71,6 +73,12 @@ class FaultRunner:
             with self._guarded("asked what it did"):
                 found = _checked(self._fault.evidence)
         return found if self._failure is None else replace(found, failure=self._failure)
+
+    def _imported(self, *, is_later: bool) -> None:
+        """What the fault awaits was imported. In the midst of a test, the fatal control fails there."""
+        self._make()
+        if is_later and self.fatal is not None:
+            raise self.fatal
 
     def start_test(self) -> None:
         """A test begins."""

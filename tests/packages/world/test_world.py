@@ -116,3 +116,34 @@ def test_a_file_that_is_not_there_is_named(tmp_path: Path) -> None:
     done = mutabot(None, folder, "run")
     assert done.returncode == USAGE
     assert "there is no file 'world.toml' in a package 'elsewhere'" in done.stderr
+
+
+@pytest.mark.parametrize("engine", ["fork", pytest.param("replay", marks=pytest.mark.whole)])
+def test_a_world_in_a_process_below_the_tests_is_disturbed(engine: str, tmp_path: Path) -> None:
+    below = {
+        "belt.toml": 'clock = { tick = "belt:Belt.advance", unit = "s" }',
+        "mission.py": """
+            import subprocess
+            import sys
+
+
+            def drive(seconds):
+                words = [sys.executable, "drive.py", str(seconds)]
+                return float(subprocess.run(words, check=True, capture_output=True, text=True).stdout)
+            """,
+        "drive.py": """
+            import sys
+
+            import belt
+
+            here = belt.Belt()
+            while here.time < float(sys.argv[1]) - 0.05:
+                here.advance()
+            print(here.position)
+            """,
+    }
+    folder = project(tmp_path, SPEED.replace("[0.01, 10, 50]", "[10, 50]"), **below)
+    text = (folder / "pyproject.toml").read_text().replace('"mission.py"', '"mission.py", "drive.py"')
+    (folder / "pyproject.toml").write_text(text)
+    found = run(folder, "--engine", engine)
+    assert found["speed +"]["noticed_from"] == 50
