@@ -15,6 +15,8 @@ from mutabot.api.faults import ActiveFault
 from .change import NumberChange, Undo, change_at
 from .patching import live, resolve, wrap
 
+_NEVER = "the test made no world, or the moment of the disturbance did not come"
+
 
 class WorldFault(ActiveFault):
     """One parameter of the world, disturbed by one magnitude.
@@ -63,9 +65,9 @@ class WorldFault(ActiveFault):
             self._let_go(world)
         while self._undo:
             self._undo.pop()()
-        if self._missing and not self.evidence.acted:
-            self.evidence.hits += 1
-            self.evidence.away[self._missing] = 1
+        if self.context.test == self.mutant.site.span.file and not self.evidence.acted:
+            self.reached()
+            self.evidence.away[self._missing or _NEVER] = 1
 
     def _wrap(self, reference: str, **what: Any) -> None:
         try:

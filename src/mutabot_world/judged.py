@@ -252,6 +252,7 @@ def suites(found: Sequence[WorldLadder]) -> list[WorldLadder]:
         before.texts |= one.texts
         before.numbers |= one.numbers
         for size, rounds in one.found.items():
+            whole_size = before.found.setdefault(size, {})
             for round, tests in rounds.items():
-                before.found.setdefault(size, {}).setdefault(round, {}).update(tests)
+                whole_size.setdefault(round, {}).update(tests)
     return sorted(whole.values(), key=lambda one: (not one.unseen, one.noticed_from is not None))
