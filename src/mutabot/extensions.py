@@ -33,9 +33,10 @@ _OF_OWN_PACKAGES = {
         "live": "mutabot_live",
         "motion": "mutabot_motion",
         "suggest": "mutabot_suggest",
+        "world": "mutabot_world",
     },
     "executors": {"cluster": "mutabot_dask"},
-    "tables": {"cluster": "mutabot_dask"},
+    "tables": {"cluster": "mutabot_dask", "world": "mutabot_world"},
     "operators": dict.fromkeys(("catalogue", "middleware"), "mutabot_catalogue"),
 }
 #: kinds of parts that processes of the tests need

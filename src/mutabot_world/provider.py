@@ -117,7 +117,7 @@ def _words(parameter: ParameterTable, way: str) -> str:
 def _why_not(parameter: ParameterTable, project: Project, reached: Sequence[int]) -> str | None:
     if parameter.moment.kind == "time" and project.vocabulary.clock is None:
         return "the vocabulary names no clock"
-    return None if reached else "the test does not simulate so long"
+    return None if reached else "the test simulates nothing, or not so long"
 
 
 def _reaches(parameter: ParameterTable, project: Project, simulated: float) -> bool:
