@@ -25,6 +25,7 @@ COLOURS: Mapping[End, str] = {
     End.INDISTINGUISHABLE: "#8d8d8d",
     End.NO_EFFECT: "#d0d0d0",
     End.REFUSED: "#2f6fb0",
+    End.GUARDED: "#1b4f8f",
     End.BEFORE: "#9ecae1",
     End.INVALID: "#3f3a6b",
     End.UNSTABLE: "#c994c7",

@@ -34,6 +34,7 @@ class End(StrEnum):
     INDISTINGUISHABLE = "indistinguishable"  # survived, and nothing that was compared differs
     NO_EFFECT = "no effect"  # it changed no value at any hit
     REFUSED = "refused"  # the robot refused the mutated command
+    GUARDED = "guarded"  # a guard kept the mutated command from the robot
     BEFORE = "exception before any command"  # killed by an exception before a command reached the robot
     INVALID = "invalid"  # no program or no command: it does not compile, a word is unknown
     UNSTABLE = "unstable"
@@ -43,6 +44,7 @@ class End(StrEnum):
 _PLAIN = {
     Verdict.TIMEOUT: End.TIMEOUT,
     Verdict.REFUSED: End.REFUSED,
+    Verdict.GUARDED: End.GUARDED,
     Verdict.INVALID: End.INVALID,
     Verdict.NO_EFFECT: End.NO_EFFECT,
     Verdict.NOT_COVERED: End.NOT_COVERED,

@@ -20,7 +20,7 @@ from .ends import End, Properties, end_of, properties_of
 from .subsumption import Redundancy
 
 _BROKEN = frozenset({End.INVALID, End.BEFORE})
-_IMPOSSIBLE = frozenset({End.REFUSED})
+_IMPOSSIBLE = frozenset({End.REFUSED, End.GUARDED})
 _NO_DIFFERENCE = frozenset({End.NO_EFFECT, End.INDISTINGUISHABLE})
 #: ends that speak of one weakness, as the published study names them, and of any
 WEAKNESSES: Mapping[str, frozenset[End]] = {

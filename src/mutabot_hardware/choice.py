@@ -45,6 +45,9 @@ class HardwareChoice(ExecutorChoice):
 
     def fitted(self, request: Request) -> Request:
         """See ``ExecutorChoice``: one fresh process at a time, and no repeats."""
+        for name in ("safe_state", "heartbeat"):
+            if getattr(self.table, name) is None:
+                raise UsageError(f'hardware: nothing runs without {name}, such as {name} = "cell_io:{name}"')
         guard = request.configuration.tables.get("guard")
         if not isinstance(guard, GuardTable) or guard.is_empty:
             raise UsageError(

@@ -110,7 +110,15 @@ class HardwareExecutor:
 
     def _check(self) -> None:
         with Attendant(self.request.root) as attendant:
-            attendant.check((self.table.safe_state, self.table.heartbeat))
+            attendant.check((self._safe_state, self._heartbeat))
+
+    @property
+    def _safe_state(self) -> str:
+        return self.table.safe_state or ""  # ``HardwareChoice.fitted`` has refused a table without them
+
+    @property
+    def _heartbeat(self) -> str:
+        return self.table.heartbeat or ""
 
     def run(self, tasks: Iterable[Task]) -> Iterator[Result]:
         """Results in the order in which tasks ran."""
@@ -197,7 +205,7 @@ class HardwareExecutor:
         with ExitStack() as stack:
             attendant = stack.enter_context(Attendant(self.request.root))
             self._make_safe(attendant, "before")
-            beat = Heartbeat(attendant, self.leave, self.table.heartbeat, self.table.period)
+            beat = Heartbeat(attendant, self.leave, self._heartbeat, self.table.period)
             self.log.write(begin=True, **name)
             try:
                 with beat, self.request.on_this_machine(self.tell) as workers:
@@ -222,7 +230,7 @@ class HardwareExecutor:
         look()
 
     def _make_safe(self, attendant: Attendant, when: str) -> None:
-        why = attendant.call(self.table.safe_state, _SAFE)
+        why = attendant.call(self._safe_state, _SAFE)
         self.log.write(safe=when, failed=why)
         if why is not None:
             self.leave.stop(f"the safe state was not reached: {why}")
@@ -230,7 +238,7 @@ class HardwareExecutor:
 
     def _make_safe_after(self, attendant: Attendant) -> None:
         """Bring the hardware into its safe state whatever happened; another process if this one is gone."""
-        why = attendant.call(self.table.safe_state, _SAFE)
+        why = attendant.call(self._safe_state, _SAFE)
         if why is not None:
             with Attendant(self.request.root) as another:
                 self._make_safe(another, "after")

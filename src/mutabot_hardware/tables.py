@@ -140,13 +140,13 @@ class HardwareTable(Table):
 
         enabled = false
     """
-    safe_state: str
-    """The function that brings the hardware into a safe state, called before and after each run.
+    safe_state: str | None = None
+    """Needed: the function that brings the hardware into a safe state, called before and after each run.
 
         safe_state = "cell_io:retreat"
     """
-    heartbeat: str
-    """The function that says by returning, within a second, that the hardware is well; else it raises.
+    heartbeat: str | None = None
+    """Needed: the function that returns within a second while the hardware is well, and raises if it is not.
 
         heartbeat = "cell_io:is_alive"
     """

@@ -81,7 +81,7 @@ def test_help_lists_commands_in_the_order_in_which_they_are_used(capsys: pytest.
     assert main(["--help"]) == 0
     listed = capsys.readouterr().out.partition("Commands:\n")[2].partition("\n\n")[0].splitlines()
     assert [line.split()[0] for line in listed] == [
-        "init", "check", "list", "operators", "run", "merge", "replay", "suggest", "results", "show",
+        "init", "check", "list", "operators", "run", "merge", "replay", "suggest", "world", "results", "show",
         "accept", "thresholds", "report", "live", "motion",
     ]  # fmt: skip
 
@@ -278,10 +278,10 @@ def test_an_option_that_there_is_not_is_no_part_of_a_request(project: Path) -> N
 
 
 @pytest.mark.needs("dask")
-def test_run_has_twenty_options() -> None:
+def test_run_has_twenty_one_options() -> None:
     group: Any = typer.main.get_command(app)
     context = group.context_class(group, info_name="mutabot")
-    assert len(group.resolve_command(context, ["run"])[1].params) == 20
+    assert len(group.resolve_command(context, ["run"])[1].params) == 21
 
 
 def test_a_project_elsewhere_can_be_named(

@@ -14,7 +14,7 @@ PROJECT = {
     "pyproject.toml": """
         [tool.mutabot]
         program = ["world.py"]
-        families = ["world"]
+        families = ["toys"]
         """,
     "world.py": """
         gravity = 9.81
@@ -55,12 +55,12 @@ PACKAGE = {
 
         class Parameter(Rule):
             name = "parameter"
-            family = "world"
+            family = "toys"
             summary = "A parameter of the world has another value."
 
         class Parameters(FaultProvider):
             name = "toy"
-            families = ("world",)
+            families = ("toys",)
             location = "parameter"
 
             def rules(self):
@@ -166,11 +166,11 @@ def test_what_only_forks_may_judge_is_handed_on_with_the_reason(tmp_path: Path, 
 
 
 def test_its_operators_are_listed_and_its_family_is_known(site: Path, project: Path) -> None:
-    done = mutabot(site, project, "operators", "--family", "world", "--json")
+    done = mutabot(site, project, "operators", "--family", "toys", "--json")
     assert [one["name"] for one in json.loads(done.stdout)["operators"]] == ["parameter"]
     unknown = mutabot(None, project, "list")
     assert unknown.returncode == USAGE
-    assert "unknown family 'world'" in unknown.stderr
+    assert "unknown family 'toys'" in unknown.stderr
 
 
 @pytest.mark.parametrize(
@@ -192,7 +192,7 @@ def test_a_provider_that_is_of_no_use_is_named(code: str, told: str, project: Pa
 
 def test_mutants_of_calls_need_nothing_that_parses_program_text(project: Path) -> None:
     vocabulary = '[[operation]]\ncall = "world:seconds_to_fall"\nresult = { kind = "distance", unit = "m" }\n'
-    configuration = PROJECT["pyproject.toml"].replace('families = ["world"]', 'vocabulary = ["world.toml"]')
+    configuration = PROJECT["pyproject.toml"].replace('families = ["toys"]', 'vocabulary = ["world.toml"]')
     write(project, {"pyproject.toml": configuration, "world.toml": vocabulary})
     run = "\ndef run():\n    return seconds_to_fall(1.0)\n"
     (project / "world.py").write_text(dedent(PROJECT["world.py"]) + run)

@@ -15,6 +15,7 @@ PLACES = {
     Verdict.TIMEOUT: (1, 1),
     Verdict.NOT_COVERED: (0, 1),
     Verdict.REFUSED: (0, 0),
+    Verdict.GUARDED: (0, 0),
     Verdict.INVALID: (0, 0),
     Verdict.NO_EFFECT: (0, 0),
     Verdict.UNSTABLE: (0, 0),

@@ -11,9 +11,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
+from mutabot.errors import UsageError
 from mutabot.model import Call, Kind, Operation, Path, Quantity
 from mutabot.model.quantity import Mode
+from mutabot_hardware.choice import HardwareChoice
 from mutabot_hardware.guard import TableGuard
+from mutabot_hardware.tables import HardwareTable
 
 
 def quantity(
@@ -127,3 +130,10 @@ def test_a_limit_of_a_tool_holds_while_that_is_mounted() -> None:
 def test_a_rule_that_means_nothing_is_refused(table: dict[str, Any], said: str) -> None:
     with pytest.raises(ValidationError, match=said):
         TableGuard(table)
+
+
+@pytest.mark.parametrize("lacking", ["safe_state", "heartbeat"])
+def test_hardware_needs_a_safe_state_and_a_heartbeat(lacking: str) -> None:
+    table = HardwareTable.model_validate({"safe_state": "io:a", "heartbeat": "io:b", lacking: None})
+    with pytest.raises(UsageError, match=f"nothing runs without {lacking}, such as"):
+        HardwareChoice(table).fitted(None)  # type: ignore[arg-type]  # it is not asked before

@@ -41,6 +41,7 @@ STATUSES = {
     Verdict.NOT_COVERED: "NoCoverage",
     Verdict.INVALID: "CompileError",
     Verdict.REFUSED: "RuntimeError",
+    Verdict.GUARDED: "RuntimeError",
     Verdict.ERROR: "RuntimeError",
     Verdict.NO_EFFECT: "Ignored",
     Verdict.UNSTABLE: "Ignored",
