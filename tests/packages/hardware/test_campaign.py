@@ -109,6 +109,7 @@ def test_every_command_that_reached_the_robot_is_in_the_log(folder: Path, server
     assert sent.count("robot:Arm.grip") == sum(one in ("open", "closed") for one in server.lines())
 
 
+@pytest.mark.whole
 def test_a_surprise_stops_the_campaign_and_the_next_run_goes_on_after_it(
     folder: Path, server: RobotServer, capsys: pytest.CaptureFixture[str]
 ) -> None:

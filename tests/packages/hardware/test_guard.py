@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from mutabot.campaign.run import run_campaign
+from mutabot.config.options import Sample
 from mutabot.errors import BaselineError
 from mutabot.model import Outcome, Verdict
 from tests.campaign.project import Quiet, outcomes, request_for
@@ -101,25 +103,34 @@ def server(monkeypatch: pytest.MonkeyPatch) -> Iterator[RobotServer]:
         yield found
 
 
-def outcomes_of(folder: Path, engine: str, families: tuple[str, ...] = ("robot",)) -> list[Outcome]:
-    return outcomes(run_campaign(request_for(folder, families=families, engine=engine), Quiet()))
+def outcomes_of(folder: Path, engine: str, **changes: Any) -> list[Outcome]:
+    return outcomes(run_campaign(request_for(folder, engine=engine, **changes), Quiet()))
+
+
+#: families whose mutants send commands, and of how many mutants of them each sends so many
+EVERY = ("robot", "graded", "catalogue", "conventional")
 
 
 @pytest.mark.parametrize(
-    ("engine", "many", "least"),
+    ("engine", "families", "sample", "many", "least"),
     [
-        ("auto", 20, 3_000),
-        pytest.param("auto", 500, 100_000, marks=pytest.mark.whole),
-        pytest.param("replay", 50, 10_000, marks=pytest.mark.whole),
+        ("auto", ("robot",), "8", 50, 1_000),
+        pytest.param("auto", EVERY, "80", 600, 100_000, marks=pytest.mark.whole),
+        pytest.param("replay", EVERY, "20", 100, 5_000, marks=pytest.mark.whole),
     ],
 )
 def test_no_mutated_command_outside_reaches_the_robot(
-    tmp_path: Path, server: RobotServer, engine: str, many: int, least: int
+    tmp_path: Path,
+    server: RobotServer,
+    engine: str,
+    families: tuple[str, ...],
+    sample: str,
+    many: int,
+    least: int,
 ) -> None:
     write_project(tmp_path, PROGRAM, TESTS.replace("{many}", str(many)))
     (tmp_path / "child.py").write_text("\n".join(line[4:] for line in CHILD.splitlines()), encoding="utf-8")
-    families = ("robot", "graded", "catalogue", "conventional")
-    found = outcomes_of(tmp_path, engine, families)
+    found = outcomes_of(tmp_path, engine, families=families, sample=Sample.parse(sample))
     server.settle()
     places = [line.split() for line in server.lines() if line.startswith("at")]
     speeds = [float(line.split()[1]) for line in server.lines() if line.startswith("speed")]
@@ -127,7 +138,7 @@ def test_no_mutated_command_outside_reaches_the_robot(
     assert len(places) > least
     assert outside == []
     assert [one for one in speeds if not one <= 0.25 or math.isnan(one)] == []
-    assert sum(one.verdict is Verdict.GUARDED for one in found) > 20
+    assert sum(one.verdict is Verdict.GUARDED for one in found) > 2
 
 
 SIMPLE = """
@@ -147,7 +158,7 @@ CHECKED = """
     """
 
 
-@pytest.mark.parametrize("engine", ["auto", "replay"])
+@pytest.mark.parametrize("engine", ["auto", pytest.param("replay", marks=pytest.mark.whole)])
 def test_a_mutant_that_a_guard_stops_is_outside_the_score(
     tmp_path: Path, server: RobotServer, engine: str
 ) -> None:
@@ -199,6 +210,7 @@ def test_a_guard_that_the_original_violates_is_told_before_anything_is_mutated(
         outcomes_of(write_project(tmp_path, SIMPLE, CHECKED, guard), "auto")
 
 
+@pytest.mark.whole
 def test_outcomes_found_without_a_guard_are_not_those_with_one(tmp_path: Path, server: RobotServer) -> None:
     write_project(tmp_path, SIMPLE, CHECKED, guard="")
     name = "program.py:pick:arm.move_to#1:x:reverse"
