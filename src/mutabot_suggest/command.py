@@ -20,7 +20,7 @@ _Seeds = Annotated[
     typer.Option(
         "--seeds",
         metavar="N",
-        min=5,
+        min=3,
         max=_MOST_SEEDS,
         help="New seeds for the tolerances, and as many for the proof.",
     ),
@@ -31,7 +31,7 @@ def suggest(
     context: CommandContext,
     only: list[str] | None = None,
     skip: list[str] | None = None,
-    seeds: _Seeds = 20,
+    seeds: _Seeds = 5,
     jobs: int | None = None,
     json: bool = False,
 ) -> None:

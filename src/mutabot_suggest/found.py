@@ -29,6 +29,7 @@ class ProvenCheck:
         fresh: fresh seeds in which it was run on the original afterwards; it passed in all.
         unseen: share of runs in which it may fail although it did not in these, with 95 % confidence.
         kills: id of each mutant that it kills by itself, to the 0-based rounds in which it does.
+        after: the name of the object behind whose making it stands; empty for the end of the test.
         by_hand: all that is to be added where no diff can: to a test that another tool makes; else empty.
     """
 
@@ -42,6 +43,7 @@ class ProvenCheck:
     fresh: int
     unseen: float
     kills: Mapping[str, tuple[int, ...]]
+    after: str = ""
     by_hand: str = ""
 
 

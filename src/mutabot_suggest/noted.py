@@ -14,6 +14,8 @@ from dataclasses import fields, is_dataclass
 from types import ModuleType
 from typing import Any
 
+from . import way
+
 #: parts that are noted of one reading, how deep, and how long a sequence may be
 _PARTS, _DEPTH, _LENGTH = 24, 3, 8
 #: characters of a text that may be a label
@@ -21,12 +23,15 @@ _LABEL = 60
 _PLAIN = (bool, int, float, str, type(None))
 
 _noted: dict[str, dict[str, Any]] = {}
+#: what checks of the suite compared when they ran last in the running test, as in ``compared``
+_compared: dict[str, dict[str, Any]] = {}
 
 
 def note(
     names: Mapping[str, Any],
     readings: Sequence[tuple[str, Callable[[], Any]]] = (),
     classes: Sequence[str] = (),
+    checks: Sequence[tuple[str, Callable[[], Any]]] = (),
 ) -> None:
     """Note all current readings.
 
@@ -34,22 +39,65 @@ def note(
         names: what is at hand in the test, by name.
         readings: expressions of the program text, each with what evaluates it.
         classes: readings of objects, ``module:Class.name``: taken of each object at hand.
+        checks: checks of other tests, by a key each, with what tells whether they hold: it raises
+            AssertionError or returns a false value if they do not.
     """
-    found: dict[str, Any] = {}
+    found: dict[str, Any] = dict(_compared.get(_test(), {}))
     for text, read in readings:
         found.update(_parts_of(text, read))
     for text, value in _at_hand(names):
         found.update(_parts_of(text, lambda value=value: value))  # type: ignore[misc]
         for more, read in _of_object(text, value, classes):
             found.update(_parts_of(more, read))
+    for key, holds in checks:
+        found.update(_held(key, holds))
+    found.update(way.noted())
     _noted.clear()
     _noted[_test()] = found
 
 
-def at_end(test: Callable[..., Any], end: Callable[[Callable[[str], Any]], None]) -> Callable[..., Any]:
-    """A test function with ``end`` behind it, which is given what knows the fixtures that the test had.
+def _held(key: str, holds: Callable[[], Any]) -> dict[str, bool]:
+    try:
+        result = holds()
+    except AssertionError:
+        return {key: False}
+    except Exception:  # what cannot be asked here is no check
+        return {}
+    return {key: result is None or bool(result)}
+
+
+def compared(key: str, role: str, value: Any) -> Any:
+    """Note what a check of the suite compares, and return it: ``role`` is a part of the check ``key``."""
+    try:
+        parts = [(f"{key}.{role}{text}", one) for text, one in _parts("", value, 1)]
+    except Exception:  # only plain values can be compared with readings
+        parts = []
+    test = _test()
+    if test not in _compared:
+        _compared.clear()
+    _compared.setdefault(test, {}).update(parts)
+    return value
+
+
+def tolerance_of(key: str) -> Any:
+    """Return the tolerance that a check of the suite had in the running test. Raises KeyError."""
+    return _compared[_test()][f"{key}.tolerance"]
+
+
+def around(
+    test: Callable[..., Any],
+    begin: Callable[[Callable[[str], Any]], None],
+    end: Callable[[Callable[[str], Any]], None],
+    early: Mapping[str, str],
+) -> Callable[..., Any]:
+    """A test function with something before and behind it, which is given what knows the test's fixtures.
 
     For tests that another tool makes, which have no text to add to.
+
+    Args:
+        begin: has only the fixtures that are watched; they are made before the test.
+        end: has those that the test had.
+        early: classes of fixtures by their names, as the module of the test names them.
     """
     own = inspect.signature(test)
     asks = [inspect.Parameter("request", inspect.Parameter.KEYWORD_ONLY)]
@@ -59,6 +107,9 @@ def at_end(test: Callable[..., Any], end: Callable[[Callable[[str], Any]], None]
     @functools.wraps(test)
     def with_end(**given: Any) -> None:
         request = given.pop("request") if asks else given["request"]
+        module = vars(request.module)
+        watched = {name for name, of in early.items() if way.is_watched(module.get(of))}
+        begin(lambda name: request.getfixturevalue(name) if name in watched else None)
         test(**given)
         had = request._fixture_defs  # no other fixture is to be made now
         end(lambda name: request.getfixturevalue(name) if name in had else None)

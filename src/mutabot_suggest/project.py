@@ -1,4 +1,4 @@
-"""A project's test files: places where a check can stand, statements added there, and private copies.
+"""A project's test files: places where a check can stand, and private copies.
 
 Three styles: test functions of pytest, methods of ``TestCase``, and tests that another tool makes of
 something else, as pytest-bdd does of scenarios. No diff changes the last ones, but checks are tried in them.
@@ -20,10 +20,6 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from unittest.mock import patch
 
-import libcst as cst
-from libcst.codemod import CodemodContext
-from libcst.codemod.visitors import AddImportsVisitor
-
 from mutabot.api.processes import Request
 from mutabot.api.reports import UsageError
 
@@ -38,9 +34,11 @@ class SuiteFiles:
 
     Attributes:
         request: of the campaign: root, program, oracle and vocabulary.
+        tests: files of the tests that are looked at.
     """
 
     request: Request
+    tests: tuple[str, ...] = ()
     _modules: dict[str, ast.Module | None] = field(default_factory=dict)
 
     @property
@@ -81,11 +79,44 @@ class SuiteFiles:
             found += [str(one.relative_to(self.root)) for one in files]
         return found
 
+    @property
+    def program_files(self) -> list[str]:
+        """The files of the program."""
+        return self.python_files(self.request.configuration.program)
+
+    @property
+    def suite_files(self) -> list[str]:
+        """The files of the tests that are looked at, and those beside them that are not the program's."""
+        program = {*self.program_files}
+        found = dict.fromkeys(self.tests)
+        for folder in dict.fromkeys((self.root / file).parent for file in self.tests):
+            paths = folder.glob("*.py") if folder == self.root else folder.rglob("*.py")
+            found |= dict.fromkeys(str(path.relative_to(self.root)) for path in sorted(paths))
+        found |= dict.fromkeys(self.python_files(self.request.configuration.oracle))
+        return [file for file in found if file not in program and not _LEFT & {*Path(file).parts}]
+
+    @property
+    def own_modules(self) -> set[str]:
+        """Names under which the project's files are imported."""
+        files = [*self.suite_files, *self.program_files]
+        return {self.import_name(file).partition(".")[0] for file in files}
+
     def beside(self, file: str) -> Iterator[ast.Module]:
         """A test file and the ``conftest.py`` files that hold for it, nearest first."""
         folders = [folder for folder in (self.root / file).parents if folder.is_relative_to(self.root)]
         conftests = [str((folder / "conftest.py").relative_to(self.root)) for folder in folders]
         return (module for one in (file, *conftests) if (module := self.module(one)) is not None)
+
+    def classes_of(self, file: str) -> dict[str, str]:
+        """The classes that steps and fixtures say of their arguments, by the arguments' names."""
+        return {
+            one.arg: ast.unparse(one.annotation)
+            for module in self.beside(file)
+            for node in module.body
+            if isinstance(node, TestFunctionNode)
+            for one in (*node.args.args, *node.args.kwonlyargs)
+            if isinstance(one.annotation, ast.Name)
+        }
 
     def diff(self, texts: Mapping[str, str]) -> str:
         """One unified diff of all changed files, for ``git apply`` and ``patch -p1``."""
@@ -157,25 +188,8 @@ class PlaceInTest:
         return tuple(self.node.split("::")[1:])
 
 
-@dataclass(frozen=True, slots=True)
-class Addition:
-    """A statement to add to the end of a test.
-
-    Attributes:
-        place: the test.
-        lines: statements.
-        uses: names of the place that the statements use.
-        imports: what they need.
-    """
-
-    place: PlaceInTest
-    lines: tuple[str, ...]
-    uses: tuple[str, ...] = ()
-    imports: tuple[str, ...] = ()
-
-
-def text_of(node: ast.expr) -> str:
-    """The text of an expression, with the quotes that formatters write and that readings have."""
+def text_of(node: ast.AST) -> str:
+    """The text of an expression or a statement, with the quotes that formatters write."""
     text = ast.unparse(node)
     return text if '"' in text or "\\" in text else text.replace("'", '"')
 
@@ -237,6 +251,18 @@ def _names(function: TestFunctionNode) -> tuple[str, ...]:
     return tuple(dict.fromkeys((*arguments_of(function), *assigned)))
 
 
+def bound_names(function: TestFunctionNode) -> tuple[str, ...]:
+    """Arguments, and names that a statement of the function's own body assigns alone."""
+    targets = [
+        target
+        for one in function.body
+        if isinstance(one, ast.Assign | ast.AnnAssign)
+        for target in (one.targets if isinstance(one, ast.Assign) else [one.target])
+    ]
+    names = [one.id for one in targets if isinstance(one, ast.Name)]
+    return tuple(dict.fromkeys((*arguments_of(function), *names)))
+
+
 def _is_test_case(module: ast.Module, name: str, depth: int = 5) -> bool:
     owner = _defined(module, name)
     bases = [ast.unparse(one) for one in owner.bases] if isinstance(owner, ast.ClassDef) else []
@@ -256,104 +282,6 @@ def arguments_of(function: TestFunctionNode) -> tuple[str, ...]:
     """The names of its arguments."""
     given = function.args
     return tuple(one.arg for one in (*given.posonlyargs, *given.args, *given.kwonlyargs))
-
-
-def within(style: str, text: str, value: str, tolerance: str) -> str:
-    """The statement that ``text`` reads ``value`` within ``tolerance``."""
-    if style == UNITTEST:
-        return f"self.assertAlmostEqual({text}, {value}, delta={tolerance})"
-    return f"assert {text} == pytest.approx({value}, abs={tolerance})"
-
-
-#: values that have statements of their own: the method of ``TestCase``, and what pytest asserts
-_PLAIN = {
-    "True": ("assertTrue", "{}"),
-    "False": ("assertFalse", "not {}"),
-    "None": ("assertIsNone", "{} is None"),
-}
-
-
-def equal(style: str, text: str, value: str) -> str:
-    """The statement that ``text`` reads ``value`` exactly."""
-    if value in _PLAIN:
-        method, expression = _PLAIN[value]
-        return f"self.{method}({text})" if style == UNITTEST else f"assert {expression.format(text)}"
-    return f"self.assertEqual({text}, {value})" if style == UNITTEST else f"assert {text} == {value}"
-
-
-_AT_END = "from mutabot_suggest.noted import at_end as _mutabot_at_end"
-
-
-def edited(project: SuiteFiles, additions: Iterable[Addition]) -> dict[str, str]:
-    """The new texts of the files with these additions, by file.
-
-    What is added to tests that another tool makes runs beside mutabot alone.
-    """
-    by_file: dict[str, list[Addition]] = {}
-    for one in additions:
-        by_file.setdefault(one.place.file, []).append(one)
-    return {file: _edited(project.text(file), found) for file, found in by_file.items()}
-
-
-def _edited(text: str, additions: Sequence[Addition]) -> str:
-    imports = [line for one in additions for line in one.imports]
-    written = [one for one in additions if one.place.style != OTHER]
-    made = dict.fromkeys(one.place for one in additions if one.place.style == OTHER)
-    lines = [_AT_END] if made else []
-    for number, place in enumerate(made):
-        lines += _around(place, [one for one in additions if one.place == place], number)
-    context = CodemodContext()
-    for line in imports:
-        _, source, *names = line.split()
-        AddImportsVisitor.add_needed_import(context, source, names[-1] if names else None)
-    module = cst.parse_module(text)
-    module = module.with_changes(body=_with_ends(module.body, written))
-    changed = AddImportsVisitor(context).transform_module(module)
-    code, newline = changed.code, changed.default_newline
-    if lines:
-        code += "" if code.endswith(newline) else newline
-        code += newline.join([*lines, ""])
-    return code
-
-
-def _around(place: PlaceInTest, additions: Sequence[Addition], number: int) -> list[str]:
-    """The statements for a test without a function of its own in the file."""
-    (test,) = place.path
-    uses = dict.fromkeys(use for one in additions for use in one.uses)
-    return [
-        "",
-        f"def _mutabot_end_{number}(value_of):",
-        *(f"    {use} = value_of({use!r})" for use in uses),
-        *(f"    {line}" for one in additions for line in one.lines),
-        "",
-        f"{test} = _mutabot_at_end({test}, _mutabot_end_{number})",
-    ]
-
-
-def _with_ends(
-    body: Sequence[cst.CSTNode], additions: Sequence[Addition], path: tuple[str, ...] = ()
-) -> list[cst.CSTNode]:
-    """The statements of a module or class, with additions at the ends of its functions."""
-    found: list[cst.CSTNode] = []
-    for one in body:
-        changed = one
-        if isinstance(one, cst.ClassDef):
-            inner = _with_ends(one.body.body, additions, (*path, one.name.value))
-            changed = one.with_changes(body=one.body.with_changes(body=inner))
-        elif isinstance(one, cst.FunctionDef):
-            here = [each for each in additions if each.place.path == (*path, one.name.value)]
-            changed = _with_end(one, here) if here else one
-        found.append(changed)
-    return found
-
-
-def _with_end(function: cst.FunctionDef, additions: Sequence[Addition]) -> cst.FunctionDef:
-    body = [*function.body.body]
-    last = body[-1]
-    returns = isinstance(last, cst.SimpleStatementLine) and isinstance(last.body[-1], cst.Return)
-    end = len(body) - 1 if returns else len(body)
-    body[end:end] = cst.parse_module("".join(f"{line}\n" for one in additions for line in one.lines)).body
-    return function.with_changes(body=function.body.with_changes(body=body))
 
 
 #: folders that no test needs and that may be large

@@ -7,16 +7,29 @@ probes and readings name, and by what it has at hand.
 from __future__ import annotations
 
 import ast
-import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, TypeGuard
+from typing import Any
 
 from mutabot.api.processes import Request, Result
-from mutabot.api.reports import CampaignRun, MutantResult, Progress
+from mutabot.api.reports import CampaignRun, MutabotError, MutantResult, Progress
 from mutabot.api.values import Operation
 
-from .project import Addition, PlaceInTest, SuiteFiles, copy_of, edited, name_in, text_of, top_names
+from .editing import Addition, edited
+from .forms import is_number, rename
+from .project import (
+    OTHER,
+    PlaceInTest,
+    SuiteFiles,
+    bound_names,
+    copy_of,
+    function_of,
+    name_in,
+    text_of,
+    top_names,
+)
+from .suite import COMPARED, HELD, SuiteChecks, Transplant
+from .way import SIGN
 
 #: from the one that a reader of the tests knows best
 ORACLE, PROBE, HAND = 0, 1, 2
@@ -39,11 +52,6 @@ class ReadExpression:
     way: int
     tolerance: float
     needs: tuple[str, ...] = ()
-
-
-def is_number(value: Any) -> TypeGuard[float]:
-    """Whether a value is a number, which can be near another."""
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
 def readings_at(project: SuiteFiles, place: PlaceInTest) -> list[ReadExpression]:
@@ -135,6 +143,14 @@ def _calls(operation: Operation) -> Iterator[str]:
 #: what notes readings in the tests' process, and the probe that carries them out of it
 _NOTED = "mutabot_suggest.noted"
 _PROBE = f"{_NOTED}:values"
+#: what sees the way of a test
+_WAY = "mutabot_suggest.way"
+
+#: survivors by their ids, each with the rounds in which it is to be killed
+Survivors = dict[str, tuple[MutantResult, list[int]]]
+
+#: how the keys begin of what is noted and is no reading
+_NO_READINGS = (COMPARED, HELD, SIGN)
 
 #: what was read at the end of one test: expression to number, text or truth value
 ValuesRead = Mapping[str, Any]
@@ -149,37 +165,54 @@ class Measured:
         mutants: the same per place and mutant id.
         readings: per place, what is known of its readings.
         objects: readings of objects, each with its tolerance.
+        transplants: per place, checks of other tests that were asked there as well.
+        watched: per place, imports that readings on the way need, by the readings.
+        lost: mutants that could not be run there, by their ids, with the reason.
     """
 
     originals: dict[PlaceInTest, dict[tuple[int, str], ValuesRead]] = field(default_factory=dict)
     mutants: dict[PlaceInTest, dict[str, dict[tuple[int, str], ValuesRead]]] = field(default_factory=dict)
     readings: dict[PlaceInTest, list[ReadExpression]] = field(default_factory=dict)
     objects: list[tuple[str, float]] = field(default_factory=list)
+    transplants: dict[PlaceInTest, list[Transplant]] = field(default_factory=dict)
+    watched: dict[PlaceInTest, dict[str, tuple[str, ...]]] = field(default_factory=dict)
+    lost: dict[str, str] = field(default_factory=dict)
+
+
+def is_reading(text: str) -> bool:
+    """Whether what is noted under this key is a reading, and nothing that checks compared or ways had."""
+    return not text.startswith(_NO_READINGS)
 
 
 def measure(
     request: Request,
     project: SuiteFiles,
-    places: Mapping[str, PlaceInTest],
-    survivors: Sequence[tuple[MutantResult, Sequence[int]]],
+    suite: SuiteChecks,
+    places: Sequence[PlaceInTest],
+    survivors: Survivors,
     progress: Progress,
 ) -> Measured:
     """Run a copy of the project whose tests note what they can read.
 
     Args:
         request: for all rounds, fresh ones included.
-        places: by node id with parameters.
-        survivors: each with the rounds in which it survived.
+        places: the tests.
+        survivors: those that are run.
 
     Raises what a baseline raises.
     """
     measured = Measured(objects=of_objects(project))
     additions = []
-    for place in dict.fromkeys(places.values()):
+    for place in places:
         measured.readings[place] = readings_at(project, place)
-        additions.append(_noting(place, measured.readings[place], measured.objects))
+        measured.transplants[place] = suite.transplants(place)
+        additions.append(
+            _noting(place, measured.readings[place], measured.objects, measured.transplants[place])
+        )
+        additions += _watching(project, suite, place, measured.watched.setdefault(place, {}))
+    noting = {file: suite.noting(file, project.text(file)) for file in {one.file for one in suite.checks}}
     with (
-        copy_of(request, edited(project, additions)) as copied,
+        copy_of(request, edited(project, additions, noting)) as copied,
         CampaignRun.open(copied.changed(probes={_PROBE: 1e9}), progress) as campaign,
     ):
         for result in campaign.originals:
@@ -193,11 +226,16 @@ def measure(
 def _run_survivors(
     campaign: CampaignRun,
     measured: Measured,
-    places: Mapping[str, PlaceInTest],
-    survivors: Sequence[tuple[MutantResult, Sequence[int]]],
+    places: Sequence[PlaceInTest],
+    survivors: Survivors,
 ) -> None:
     baseline, progress = campaign.baseline, campaign.progress
-    now = [(campaign.current(one.mutant), rounds) for one, rounds in survivors]
+    now = []
+    for one, rounds in survivors.values():
+        try:
+            now.append((campaign.current(one.mutant), rounds))
+        except MutabotError as error:
+            measured.lost[one.mutant.id] = str(error)
     campaign.prove(mutant for mutant, _ in now)
     trials = [(mutant, round) for mutant, rounds in now for round in rounds]
     progress.stage("survivors", len(trials))
@@ -215,32 +253,64 @@ def _run_survivors(
                 measured.mutants.setdefault(place, {}).setdefault(mutant.id, {})[round, test] = read
 
 
-def _read_in(
-    result: Result, places: Mapping[str, PlaceInTest]
-) -> Iterator[tuple[PlaceInTest, str, ValuesRead]]:
+def _read_in(result: Result, places: Sequence[PlaceInTest]) -> Iterator[tuple[PlaceInTest, str, ValuesRead]]:
     """What passed tests read, each with its place and node id."""
-    prefix = f"{_PROBE}."
+    prefix, by_node = f"{_PROBE}.", {one.node: one for one in places}
     for end in result.ends:
         values = end.probes.items()
         read = {name.removeprefix(prefix): value for name, value in values if name.startswith(prefix)}
-        if end.test in places and read and end.outcome == "passed":
-            yield places[end.test], end.test, read
+        place = by_node.get(end.test.partition("[")[0])
+        if place is not None and read and end.outcome == "passed":
+            yield place, end.test, read
 
 
 def _noting(
-    place: PlaceInTest, readings: Sequence[ReadExpression], objects: Sequence[tuple[str, float]]
+    place: PlaceInTest,
+    readings: Sequence[ReadExpression],
+    objects: Sequence[tuple[str, float]],
+    transplants: Sequence[Transplant],
 ) -> Addition:
     """Make the lines that note readings; they are plain statements, and never fail."""
     # what the oracle does when it reads must not be seen by what only looks
     ordered = sorted(readings, key=lambda one: one.way == ORACLE)
     pairs = ", ".join(f"({one.text!r}, lambda: {one.text})" for one in ordered)
     classes = [target for target, _ in objects]
+    checks = ", ".join(f"({one.key!r}, lambda: {_asked(one)})" for one in transplants)
     lines = (
-        f"from {_NOTED} import note as _mutabot_note",
-        f"_mutabot_note(locals(), [{pairs}], {classes!r})",
+        f"from {_NOTED} import note as _mutabot_note, tolerance_of as _mutabot_tolerance_of",
+        f"_mutabot_note(locals(), [{pairs}], {classes!r}, [{checks}])",
     )
-    needs = dict.fromkeys(line for one in readings for line in one.needs)
+    every = [*(one.needs for one in readings), *(one.needs for one in transplants)]
+    needs = dict.fromkeys(line for one in every for line in one)
     return Addition(place, lines, tuple(place.names), tuple(needs))
+
+
+def _asked(one: Transplant) -> str:
+    """The expression that tells whether a check of another test holds."""
+    statement = one.statement
+    if one.near is not None and one.lacks_tolerance:
+        statement = rename(statement, one.near.tolerance, f"_mutabot_tolerance_of({one.near.key!r})")
+    return statement.removeprefix("assert ")
+
+
+def _watching(
+    project: SuiteFiles, suite: SuiteChecks, place: PlaceInTest, watched: dict[str, tuple[str, ...]]
+) -> Iterator[Addition]:
+    """What sees the way of a test, behind each name that may stand for something that can be watched."""
+    names: Iterable[str] = project.classes_of(place.file)
+    if place.style != OTHER:
+        function = function_of(project.module(place.file), place)
+        names = bound_names(function) if function is not None else ()
+    for name in names:
+        readings = suite.watched(place, name)
+        watched.update(readings)
+        pairs = ", ".join(f"({text!r}, lambda: {text})" for text, _ in readings)
+        lines = (
+            f"from {_WAY} import watch as _mutabot_watch",
+            f"_mutabot_watch({name!r}, {name}, [{pairs}])",
+        )
+        needs = dict.fromkeys(line for _, found in readings for line in found)
+        yield Addition(place, lines, (name,), tuple(needs), after=name)
 
 
 def known(measured: Measured, place: PlaceInTest, text: str) -> ReadExpression:

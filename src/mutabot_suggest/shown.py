@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -21,12 +21,12 @@ def print_suggestions(context: CommandContext, found: Suggestions) -> None:
     context.print(f"{plural(len(found.checks), 'check')} for {len(killed)} of {survivors}")
     for number, one in enumerate(found.checks, start=1):
         context.print_section(f"{number}  {one.test}", [*check_lines(one, found)])
-    left = [_left(one, found) for one in found.unsolved if not one.never]
-    never = [_left(one, found) for one in found.unsolved if one.never]
+    left = [one for one in found.unsolved if not one.never]
+    never = [one for one in found.unsolved if one.never]
     dropped = [f"{one.statement}: {one.reason}" for one in found.dropped]
     sections = {
-        f"No check found for {plural(len(left), 'survivor')}": left,
-        f"{plural(len(never), 'survivor')} cannot be killed by any check in these tests": never,
+        f"No check found for {plural(len(left), 'survivor')}": _left(left, found),
+        f"{plural(len(never), 'survivor')} cannot be killed by any check in these tests": _left(never, found),
         f"{plural(len(dropped), 'check')} dropped, because verification failed": dropped,
     }
     for name, lines in sections.items():
@@ -38,7 +38,7 @@ def print_suggestions(context: CommandContext, found: Suggestions) -> None:
 
 def check_lines(one: ProvenCheck, found: Suggestions) -> Iterator[str]:
     """Yield the assertion, what it kills, its tolerance, and its false alarms."""
-    yield one.statement
+    yield from one.statement.splitlines()
     yield f"kills {_kills(one, found)}"
     seen = f"{plural(one.runs, 'run')} of the original"
     yield f"{seen} spread {one.spread:.3g}" if one.spread else f"equal in {seen}"
@@ -47,7 +47,8 @@ def check_lines(one: ProvenCheck, found: Suggestions) -> Iterator[str]:
         f"(so at most {100 * one.unseen:.2g} % of runs, 95 % confidence)"
     )
     if one.by_hand:
-        yield "another tool makes this test: add this by hand where it ends:"
+        where = f"where `{one.after}` is made" if one.after else "where it ends"
+        yield f"another tool makes this test: add this by hand {where}:"
         yield from (f"  {line}" for line in one.by_hand.splitlines())
 
 
@@ -71,16 +72,28 @@ def plural(count: int, name: str) -> str:
     return f"{count} {name if count == 1 else name + 's'}"
 
 
-def _left(one: Unsolved, found: Suggestions) -> str:
-    return f"#{found.numbers.get(one.mutant, 0)} {found.descriptions.get(one.mutant, '')}: {one.reason}"
+def _left(unsolved: Sequence[Unsolved], found: Suggestions) -> list[str]:
+    """Survivors by their reason, which is told once: those with most in common first."""
+    by_reason: dict[str, list[Unsolved]] = {}
+    for one in unsolved:
+        by_reason.setdefault(one.reason, []).append(one)
+    groups = sorted(by_reason.items(), key=lambda group: -len(group[1]))
+    return [f"{_named(those, found)}: {reason}" for reason, those in groups]
+
+
+def _named(those: Sequence[Unsolved], found: Suggestions) -> str:
+    if len(those) == 1:
+        (one,) = those
+        return f"#{found.numbers.get(one.mutant, 0)} {found.descriptions.get(one.mutant, '')}"
+    return ", ".join(f"#{number}" for number in sorted(found.numbers.get(one.mutant, 0) for one in those))
 
 
 def keep(context: CommandContext, results: Results, found: Suggestions) -> None:
     """Keep for reports, of each survivor, the first check that kills it, or why none does."""
     checks: dict[str, tuple[str, str, tuple[str, ...]]] = {}
     for one in reversed(found.checks):
-        statement, *notes = check_lines(one, found)
-        checks |= dict.fromkeys(one.kills, (one.test, statement, tuple(notes)))
+        notes = tuple(check_lines(one, found))[len(one.statement.splitlines()) :]
+        checks |= dict.fromkeys(one.kills, (one.test, one.statement, notes))
     context.keep_suggestions(results, checks, {one.mutant: one.reason for one in found.unsolved})
 
 

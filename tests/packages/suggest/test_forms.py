@@ -9,10 +9,10 @@ import pytest
 from mutabot.campaign.request import Request
 from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load_vocabulary
-from mutabot_suggest.checks import ProposedCheck
+from mutabot_suggest.checks import CheckAtEnd
 from mutabot_suggest.project import OTHER, SuiteFiles, place_of
+from mutabot_suggest.proof import texts_with
 from mutabot_suggest.readings import ORACLE, PROBE, ReadExpression, readings_at
-from mutabot_suggest.suggest import texts_with
 
 from .projects import STYLES, make, passes, patched
 
@@ -32,13 +32,14 @@ def project(tmp_path: Path) -> SuiteFiles:
     return SuiteFiles(Request(configuration, vocabulary, rounds=1, seed=1, jobs=1))
 
 
-def checks(project: SuiteFiles, style: str) -> list[ProposedCheck]:
+def checks(project: SuiteFiles, style: str) -> list[CheckAtEnd]:
     """That the arm is where it is to be at the end."""
     place = place_of(project, NODES[style])
     assert place is not None
     assert place.style == style
     at_end = "self.arm.z" if style == "unittest" else "arm.z"
-    return [ProposedCheck(place, ReadExpression(at_end, PROBE, 0.01), 0.4, 3, 0.002, 0.02)]
+    reading = ReadExpression(at_end, PROBE, 0.01)
+    return [CheckAtEnd(place=place, reading=reading, value=0.4, runs=3, spread=0.002, tolerance=0.02)]
 
 
 def test_added_checks_pass_on_the_original_and_notice_a_fault(project: SuiteFiles) -> None:

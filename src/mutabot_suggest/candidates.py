@@ -1,0 +1,340 @@
+"""Find checks at the end of a test that would notice survivors: checks of other tests, and of readings."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import accumulate
+from math import isnan, nan, pi
+from typing import Any
+
+from .bands import DIGITS, Band, band_of, digits_of, precision_of, readable
+from .checks import (
+    ANGLE,
+    PLACE,
+    CheckAtEnd,
+    CheckOfSuite,
+    CheckProposal,
+    MutantReadings,
+    Trials,
+    is_clock,
+    last_name,
+    rank_of,
+)
+from .forms import is_number
+from .limits import StatedTolerance, StatedTolerances, stated_in
+from .project import PlaceInTest, SuiteFiles, function_of
+from .readings import ORACLE, Measured, ReadExpression, ValuesRead, is_reading, known
+from .suite import SuiteChecks, Transplant
+
+_PARTNERS = 8
+#: times what the original may be: that far off is no matter of tolerances
+_CLEARLY = 10
+_NAME = re.compile(r"[^\W\d]\w*")
+_ITEM = re.compile(r"\[\d+\]$")
+_LAST = re.compile(r"(\w+)\W*$")
+#: texts in which names are replaced that belong together: ``HOME.x``, ``HOME.y``
+_LAST_NAMES = re.compile(r"\.\w+(?=[,)\s])")
+
+
+def candidates(
+    project: SuiteFiles, suite: SuiteChecks, measured: Measured
+) -> tuple[list[CheckProposal], dict[str, str]]:
+    """Return the checks that would notice a survivor and that a person would merge.
+
+    Beside them, by mutant, what would notice it and is no such check.
+    """
+    found: list[CheckProposal] = []
+    refused: dict[str, str] = {}
+    everywhere = [read for reads in measured.originals.values() for read in reads.values()]
+    for place, originals in measured.originals.items():
+        mutants, runs = measured.mutants.get(place, {}), list(originals.values())
+        if not mutants or not runs:
+            continue
+        found += _of_suite(measured.transplants.get(place, []), place, runs, mutants)
+        texts = [text for text in runs[0] if is_reading(text) and all(text in read for read in runs)]
+        readings = [known(measured, place, text) for text in texts]
+        given = [one for one in readings if _is_given(one.text, originals, mutants)]
+        module = project.module(place.file)
+        compared, stated = stated_in(module)
+        beside, own = stated_in(function_of(module, place))
+        usual = max(own.values()) if len(set(own.values())) == 1 else 0.0
+        readings = [replace(one, way=ORACLE) if one.text in compared else one for one in readings]
+        limits = StatedTolerances(suite, stated, runs, mutants, everywhere)
+        seen = _ReadAtEnd(place, runs, mutants, given, limits, usual, suite)
+        for reading in readings:
+            refused |= dict(seen.allowed(reading))
+        for check in (check for reading in readings for check in seen.checks(reading)):
+            why = _why_not(check, seen.limit(check.reading.text).tolerance)
+            if why is None:
+                starts = accumulate(check.reading.text)
+                common = (any(one.startswith(start) for one in beside) for start in starts)
+                found.append(replace(check, alike=sum(common)))
+            else:
+                for mutant, _ in check.trials:  # a clock is the reason only where there is no other
+                    refused.setdefault(mutant, why)
+                    if refused[mutant] == ONLY_TIME:
+                        refused[mutant] = why
+    return found, refused
+
+
+def _of_suite(
+    transplants: Sequence[Transplant],
+    place: PlaceInTest,
+    runs: Sequence[ValuesRead],
+    mutants: MutantReadings,
+) -> Iterator[CheckOfSuite]:
+    """Checks of other tests that hold in every run of the original; those of one thing stand together."""
+    groups: dict[str, list[tuple[Transplant, str]]] = {}
+    for one in transplants:
+        if not all(read.get(one.key) is True for read in runs):
+            continue
+        tolerance = None
+        if one.lacks_tolerance and one.near is not None:
+            sizes = {read.get(f"{one.near.key}.tolerance") for read in runs}
+            tolerance = max(sizes) if all(map(is_number, sizes)) else None  # type: ignore[type-var]
+            if tolerance is None:
+                continue
+        statement = one.written(tolerance)
+        name = _LAST_NAMES.sub("", statement) if one.near is not None else statement
+        groups.setdefault(name, []).append((one, statement))
+    for group in groups.values():
+        trials = frozenset(
+            (mutant, round)
+            for mutant, reads in mutants.items()
+            for (round, _), read in reads.items()
+            if any(read.get(one.key) is False for one, _ in group)
+        )
+        needs = tuple(dict.fromkeys(line for one, _ in group for line in one.needs))
+        texts = tuple(statement for _, statement in group)
+        if trials:
+            yield CheckOfSuite(place=place, trials=trials, runs=len(runs), needs=needs, statements=texts)
+
+
+def _is_given(text: str, originals: Mapping[tuple[int, str], ValuesRead], mutants: MutantReadings) -> bool:
+    """Whether a reading belongs to the round and the test, and is nothing that a program did."""
+    return all(
+        read.get(text) == originals.get(key, {}).get(text)
+        for reads in mutants.values()
+        for key, read in reads.items()
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _ReadAtEnd:
+    """The readings at the end of a test.
+
+    Attributes:
+        place: the test.
+        runs: what the original read, in each run.
+        mutants: what mutants made it read.
+        given: the readings of what the test was given.
+        limits: how far its readings may be off by what the tests state.
+        usual: the one tolerance that this test states, which then holds for other places too; or 0.
+        suite: the suite's checks; None where there is only their text.
+    """
+
+    place: PlaceInTest
+    runs: Sequence[ValuesRead]
+    mutants: MutantReadings
+    given: Sequence[ReadExpression]
+    limits: StatedTolerances
+    usual: float = 0.0
+    suite: SuiteChecks | None = None
+
+    def limit(self, text: str) -> StatedTolerance:
+        """How far a reading may be off; lengths of lists are counts and may not."""
+        if text.startswith("len("):
+            return StatedTolerance()
+        limit = self.limits.of(text)
+        if limit.tolerance == 0.0 and rank_of(text) == PLACE:
+            return StatedTolerance(self.usual)
+        return limit
+
+    def checks(self, reading: ReadExpression) -> Iterator[CheckAtEnd]:
+        """The checks of a reading: that it equals what the test was given, or a value."""
+        text = reading.text
+        partners = [one for one in self.given if _are_related(one, reading, self.runs[0])]
+        for other in [*partners[:_PARTNERS], None]:
+            texts = [text] if other is None else [text, other.text]
+            values = [read[one] for read in self.runs for one in texts]
+            are_counts = all(isinstance(value, int) for value in values) and len(set(values)) == 1
+            is_near = all(is_number(value) for value in values)
+            is_near &= not are_counts or self.limit(text).tolerance > 0.0
+            check = self._near(reading, other) if is_near else self._equal(reading, other)
+            if check is not None and check.trials:
+                yield check
+
+    def allowed(self, reading: ReadExpression) -> Iterator[tuple[str, str]]:
+        """The mutants that differ in a reading by less than the suite allows, each with the reason."""
+        limit = self.limit(reading.text).tolerance
+        values = [read[reading.text] for read in self.runs]
+        if limit == 0.0 or not all(is_number(value) for value in values) or is_clock(reading.text):
+            return
+        band = band_of(values, reading.tolerance)
+
+        def away(read: ValuesRead) -> float:
+            value = read.get(reading.text)
+            return abs(value - band.middle) if is_number(value) else nan
+
+        for (mutant, _), size in self._furthest(away).items():
+            if band.tolerance < size <= limit:
+                yield mutant, f"{reading.text} differs by {size:.2g}, within your tolerance of {limit!r}"
+
+    def _near(self, reading: ReadExpression, other: ReadExpression | None) -> CheckAtEnd | None:
+        """The check that a number is near another reading, or near a value."""
+
+        def apart(read: ValuesRead) -> float:
+            value, beside = read.get(reading.text), read.get(other.text) if other is not None else 0.0
+            return value - beside if is_number(value) and is_number(beside) else nan
+
+        floor = max(reading.tolerance, other.tolerance if other is not None else 0.0)
+        band = band_of([apart(read) for read in self.runs], floor)
+        in_degrees = rank_of(reading.text) == ANGLE and max(abs(apart(read)) for read in self.runs) > 2 * pi
+
+        def away(read: ValuesRead) -> float:
+            far = abs(apart(read) - band.middle)
+            return min(far, abs(360.0 - far)) if in_degrees else far
+
+        sizes = self._furthest(away)
+        outside = sorted({size for size in sizes.values() if size > band.tolerance})
+        if not outside:
+            return None
+        limit = self.limit(reading.text)
+        stated = limit.tolerance
+        written = [(size, *readable(band, size, stated)) for size in outside]
+        size_of_value = abs(float(self.runs[0][reading.text]))
+
+        def is_exact(value: float, wide: float) -> bool:
+            digits = max(digits_of(value), precision_of(value if other is None else size_of_value, wide))
+            return digits > DIGITS and not 0 < stated <= wide
+
+        def is_fine(size: float) -> bool:
+            """Whether it is nothing that the suite has any tolerance for, and not far off."""
+            return stated == 0.0 and size < _CLEARLY * band.tolerance
+
+        # let through what only many digits would notice, or less than the tests allow, if there are others
+        fitting = (
+            one for one in written if not is_exact(*one[1:]) and one[2] >= stated and not is_fine(one[0])
+        )
+        nearest, value, wide = next(fitting, written[0])
+        if other is not None and abs(band.middle) > wide - band.tolerance:
+            return None  # it is always as far from it, but not there
+        middle = 0.0 if other is not None else value
+        check = CheckAtEnd(
+            place=self.place,
+            reading=reading,
+            value=value if other is None else other,
+            runs=len(self.runs),
+            spread=band.spread,
+            tolerance=wide,
+            is_clear=nearest >= _CLEARLY * band.tolerance,
+            is_exact=is_exact(value, wide) or is_fine(nearest),
+        )
+        if self.suite is not None:
+            check = self._in_form(check, limit)
+            check, middle = self._with_constant(check, band, middle)
+        differing = self._furthest(lambda read: abs(apart(read) - middle))
+        noticed = {trial for trial, size in sizes.items() if size > band.tolerance}
+        return replace(check, trials=_beyond(differing, wide) & noticed)
+
+    def _in_form(self, check: CheckAtEnd, limit: StatedTolerance) -> CheckAtEnd:
+        """The check in the suite's form, with its constant for the tolerance if it has one."""
+        assert self.suite is not None
+        needs = None if limit.check is None else self.suite.needs_of_form(self.place, limit.check)
+        if limit.check is None or needs is None:
+            return check
+        check = replace(check, like=limit.check, needs=(*check.needs, *needs))
+        bound = self.suite.constant(self.place, limit.check.file, limit.check.tolerance)
+        if bound is not None and check.tolerance == limit.tolerance:
+            check = replace(check, bound=limit.check.tolerance, needs=(*check.needs, *bound))
+        return check
+
+    def _with_constant(self, check: CheckAtEnd, band: Band, middle: float) -> tuple[CheckAtEnd, float]:
+        """The check with the suite's constant for its value, and that value, if one fits."""
+        assert self.suite is not None
+        if isinstance(check.value, ReadExpression) or check.tolerance is None:
+            return check, middle
+        for text, value, file in self._constants(check.reading.text):
+            more = self.suite.constant(self.place, file, text)
+            if more is not None and abs(value - band.middle) + band.tolerance <= check.tolerance:
+                named = replace(check, expected=text, needs=(*check.needs, *more), is_exact=False)
+                return named, value
+        return check, middle
+
+    def _constants(self, reading: str) -> Iterator[tuple[str, float, str]]:
+        """The suite's expressions for values of this name or this item, with their values and files."""
+        assert self.suite is not None
+        name = last_name(reading)
+        for check in self.suite.checks:
+            for number, _, expected, _ in check.parts_in(self.runs[0]):
+                text = check.names(number)[1]
+                if name in {last_name(one) for one in check.names(number)}:
+                    yield text, expected, check.file
+        item = _ITEM.search(reading)
+        for text, value in self.suite.constants(self.place.file):
+            if item is not None and text.endswith(item[0]):
+                yield text, value, self.place.file
+
+    def _equal(self, reading: ReadExpression, other: ReadExpression | None) -> CheckAtEnd | None:
+        """The check that something equals another reading, or a value; None if it does not always do so."""
+        text, first = reading.text, self.runs[0][reading.text]
+
+        def expected(read: ValuesRead) -> Any:
+            return read.get(other.text) if other is not None else first
+
+        if any(repr(read[text]) != repr(expected(read)) for read in self.runs):
+            return None
+        differing = self._furthest(lambda read: text in read and bool(read[text] != expected(read)))
+        value = first if other is None else other
+        return CheckAtEnd(
+            place=self.place,
+            reading=reading,
+            value=value,
+            runs=len(self.runs),
+            trials=_beyond(differing, 0.0),
+        )
+
+    def _furthest(self, away: Callable[[ValuesRead], float]) -> dict[tuple[str, int], float]:
+        """By mutant and round, how far its readings are from what is expected at most."""
+        found: dict[tuple[str, int], float] = {}
+        for mutant, reads in self.mutants.items():
+            for (round, _), read in reads.items():
+                size, before = away(read), found.get((mutant, round), 0.0)
+                found[mutant, round] = before if isnan(size) or size <= before else size
+        return found
+
+
+def _beyond(sizes: Mapping[tuple[str, int], float], tolerance: float) -> Trials:
+    return frozenset(trial for trial, size in sizes.items() if size > tolerance)
+
+
+def _why_not(check: CheckAtEnd, own: float) -> str | None:
+    """Why a person would not merge it, if the tests state the tolerance ``own`` for it; None if one may."""
+    text = check.reading.text
+    if is_clock(text):
+        return ONLY_TIME
+    if check.tolerance is not None and check.tolerance < own:
+        return f"{text} may be off by {own!r}, as your tests say: the least that would notice it is less"
+    if check.is_exact:
+        return f"only an exact value would notice it: {check.statement}"
+    return None
+
+
+#: what is said of a survivor of which nothing differs but a time
+ONLY_TIME = "only times differ: add a deadline if the task has one"
+
+
+def _are_related(one: ReadExpression, other: ReadExpression, read: ValuesRead) -> bool:
+    """Whether two readings are the same part of two things: of one name, or of lists that are all equal."""
+    if _LAST.findall(one.text) != _LAST.findall(other.text):
+        return False
+    first, second = _NAME.findall(one.text), _NAME.findall(other.text)
+    if first[-1] == second[-1]:
+        return first != second
+    names = [each.text.rpartition("[")[0] for each in (one, other)]
+    mine, others = ([read[text] for text in read if text.startswith(f"{name}[")] for name in names)
+    wide = max(one.tolerance, other.tolerance)
+    near = (is_number(a) and is_number(b) and abs(a - b) <= wide for a, b in zip(mine, others, strict=False))
+    return len(set(mine)) > 1 and len(mine) == len(others) and all(near)  # lists of zeros say nothing

@@ -1,0 +1,170 @@
+"""Statements that are added to tests: the new texts of their files.
+
+Nothing is ever written to the project itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import libcst as cst
+
+from .imports import with_imports
+from .project import OTHER, UNITTEST, PlaceInTest, SuiteFiles
+
+
+@dataclass(frozen=True, slots=True)
+class Addition:
+    """Statements to add to a test.
+
+    Attributes:
+        place: the test.
+        lines: statements.
+        uses: names of the place that the statements use.
+        imports: what they need.
+        after: the name behind whose binding they stand; empty for the end of the test.
+    """
+
+    place: PlaceInTest
+    lines: tuple[str, ...]
+    uses: tuple[str, ...] = ()
+    imports: tuple[str, ...] = ()
+    after: str = ""
+
+
+def within(style: str, text: str, value: str, tolerance: str) -> str:
+    """The statement that ``text`` reads ``value`` within ``tolerance``."""
+    if style == UNITTEST:
+        return f"self.assertAlmostEqual({text}, {value}, delta={tolerance})"
+    return f"assert {text} == pytest.approx({value}, abs={tolerance})"
+
+
+#: values that have statements of their own: the method of ``TestCase``, and what pytest asserts
+_PLAIN = {
+    "True": ("assertTrue", "{}"),
+    "False": ("assertFalse", "not {}"),
+    "None": ("assertIsNone", "{} is None"),
+}
+
+
+def equal(style: str, text: str, value: str) -> str:
+    """The statement that ``text`` reads ``value`` exactly."""
+    if value in _PLAIN:
+        method, expression = _PLAIN[value]
+        return f"self.{method}({text})" if style == UNITTEST else f"assert {expression.format(text)}"
+    return f"self.assertEqual({text}, {value})" if style == UNITTEST else f"assert {text} == {value}"
+
+
+_AROUND = "from mutabot_suggest.noted import around as _mutabot_around"
+
+
+def edited(
+    project: SuiteFiles, additions: Iterable[Addition], texts: Mapping[str, str] | None = None
+) -> dict[str, str]:
+    """The new texts of the files with these additions, by file.
+
+    What is added to tests that another tool makes runs beside mutabot alone. ``texts``: what files have
+    already instead of their own.
+    """
+    by_file: dict[str, list[Addition]] = {}
+    for one in additions:
+        by_file.setdefault(one.place.file, []).append(one)
+    found = dict(texts or {})
+    for file, added in by_file.items():
+        text = found.get(file) or project.text(file)
+        found[file] = _edited(project, file, text, added)
+    return found
+
+
+def _edited(project: SuiteFiles, file: str, text: str, additions: Sequence[Addition]) -> str:
+    imports = [line for one in additions for line in one.imports]
+    written = [one for one in additions if one.place.style != OTHER]
+    made = dict.fromkeys(one.place for one in additions if one.place.style == OTHER)
+    lines = [_AROUND] if made else []
+    for number, place in enumerate(made):
+        early = project.classes_of(file)
+        lines += _around(place, [one for one in additions if one.place == place], number, early)
+    module = cst.parse_module(text)
+    changed = module.with_changes(body=_with_ends(module.body, written))
+    code, newline = with_imports(changed.code, imports, project.own_modules), changed.default_newline
+    if lines:
+        code += "" if code.endswith(newline) else newline
+        code += newline.join([*lines, ""])
+    return code
+
+
+def _around(
+    place: PlaceInTest, additions: Sequence[Addition], number: int, early: Mapping[str, str]
+) -> list[str]:
+    """The statements for a test without a function of its own in the file."""
+    (test,) = place.path
+    first = [one for one in additions if one.after]
+    watched = {name: early[name] for one in first for name in one.uses if name in early}
+    begin, end = f"_mutabot_begin_{number}", f"_mutabot_end_{number}"
+    return [
+        *_function(begin, first),
+        *_function(end, [one for one in additions if not one.after]),
+        "",
+        f"{test} = _mutabot_around({test}, {begin}, {end}, {watched!r})",
+    ]
+
+
+def _function(name: str, additions: Sequence[Addition]) -> list[str]:
+    uses = dict.fromkeys(use for one in additions for use in one.uses)
+    return [
+        "",
+        f"def {name}(value_of):",
+        "    pass",
+        *(f"    {use} = value_of({use!r})" for use in uses),
+        *(f"    {line}" for one in additions for text in one.lines for line in text.splitlines()),
+    ]
+
+
+def _with_ends(
+    body: Sequence[cst.CSTNode], additions: Sequence[Addition], path: tuple[str, ...] = ()
+) -> list[cst.CSTNode]:
+    """The statements of a module or class, with additions at the ends of its functions."""
+    found: list[cst.CSTNode] = []
+    for one in body:
+        changed = one
+        if isinstance(one, cst.ClassDef):
+            inner = _with_ends(one.body.body, additions, (*path, one.name.value))
+            changed = one.with_changes(body=one.body.with_changes(body=inner))
+        elif isinstance(one, cst.FunctionDef):
+            here = [each for each in additions if each.place.path == (*path, one.name.value)]
+            changed = _with_end(one, here) if here else one
+        found.append(changed)
+    return found
+
+
+def _with_end(function: cst.FunctionDef, additions: Sequence[Addition]) -> cst.FunctionDef:
+    body = [*function.body.body]
+    last = body[-1]
+    returns = isinstance(last, cst.SimpleStatementLine) and isinstance(last.body[-1], cst.Return)
+    end = len(body) - 1 if returns else len(body)
+    body[end:end] = _statements(one for one in additions if not one.after)
+    for name in dict.fromkeys(one.after for one in additions if one.after):
+        at = _bound_at(body, name)
+        body[at:at] = _statements(one for one in additions if one.after == name)
+    return function.with_changes(body=function.body.with_changes(body=body))
+
+
+def _statements(additions: Iterable[Addition]) -> Sequence[cst.CSTNode]:
+    return cst.parse_module("".join(f"{line}\n" for one in additions for line in one.lines)).body
+
+
+def _bound_at(body: Sequence[cst.CSTNode], name: str) -> int:
+    """The number of the statement behind the one that binds a name; of an argument the first one."""
+    for number, one in enumerate(body):
+        match one:
+            case cst.SimpleStatementLine(body=[cst.Assign(targets=[cst.AssignTarget(cst.Name(value))])]) if (
+                value == name
+            ):
+                return number + 1
+            case cst.SimpleStatementLine(body=[cst.AnnAssign(target=cst.Name(value))]) if value == name:
+                return number + 1
+    match body[0] if body else None:
+        case cst.SimpleStatementLine(body=[cst.Expr(cst.SimpleString() | cst.ConcatenatedString())]):
+            return 1
+    return 0

@@ -1,0 +1,181 @@
+"""Forms of checks: what a statement looks at, what that must be near to, and how near."""
+
+from __future__ import annotations
+
+import ast
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, TypeGuard
+
+from .project import text_of
+
+#: how the names of arguments and constants read that say how far something may be off
+_TOLERANCES = ("tol", "thresh", "within", "eps", "delta", "margin", "accuracy", "limit")
+#: keywords that are one
+_KEYWORDS = ("abs", "delta", "atol", "abs_tol")
+#: what stands for the parts of a check in its form
+LOOKED, EXPECTED, TOLERANCE = "_looked", "_expected", "_tolerance"
+
+
+@dataclass(frozen=True, slots=True)
+class SuiteCheck:
+    """A check that is near something.
+
+    Attributes:
+        key: under which its values are noted.
+        file: of the tests.
+        looked, expected: expressions: what it looks at, and what that must be near to; of several values one
+            each.
+        tolerance: how far these may be apart.
+        form: the statement, with names for its parts.
+        nodes: of the whole expressions in the file: what it looks at, what it expects, the tolerance.
+        function: the name of the function that it stands in.
+    """
+
+    key: str
+    file: str
+    looked: tuple[str, ...]
+    expected: tuple[str, ...]
+    tolerance: str
+    form: str
+    nodes: tuple[ast.expr, ast.expr, ast.expr]
+    function: str = ""
+
+    def names(self, number: int) -> tuple[str, str]:
+        """The expressions of one of several values: what is looked at, and what is expected."""
+        return _item(self.looked, number), _item(self.expected, number)
+
+    def parts_in(self, read: Mapping[str, Any]) -> Iterator[tuple[int, float, float, float]]:
+        """Each value with its number, what was expected, and how far apart they might be, as noted."""
+        tolerance = read.get(f"{self.key}.tolerance")
+        if not is_number(tolerance):
+            return
+        for number in range(-1, 8):
+            item = "" if number < 0 else f"[{number}]"
+            looked, expected = (read.get(f"{self.key}.{role}{item}") for role in ("looked", "expected"))
+            if is_number(looked) and is_number(expected):
+                yield number, looked, expected, tolerance
+
+    def statement(self, looked: str, expected: str, tolerance: str) -> str:
+        """A check of the same form."""
+        parts = {LOOKED: looked, EXPECTED: expected, TOLERANCE: tolerance}
+        tree = _Renaming(parts).visit(ast.parse(self.form))
+        return text_of(tree)
+
+
+def _item(texts: tuple[str, ...], number: int) -> str:
+    if number < 0 or len(texts) > 1:
+        return texts[max(number, 0)] if number < len(texts) else ""
+    return f"{texts[0]}[{number}]"
+
+
+def is_number(value: Any) -> TypeGuard[float]:
+    """Whether a value is a number, which can be near another."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+
+
+class _Renaming(ast.NodeTransformer):
+    def __init__(self, parts: Mapping[str, str]) -> None:
+        self._parts = parts
+
+    def visit_Name(self, node: ast.Name) -> ast.expr:  # ast asks for this name
+        text = self._parts.get(node.id)
+        return node if text is None else ast.parse(text, mode="eval").body
+
+
+def rename(statement: str, name: str, text: str) -> str:
+    """A statement with an expression in the place of a name."""
+    return text_of(_Renaming({name: text}).visit(ast.parse(statement)))
+
+
+def check_of(
+    key: str, file: str, node: ast.stmt, found: tuple[ast.expr, ast.expr, ast.expr], function: str
+) -> SuiteCheck:
+    looked, expected, tolerance = found
+    names = {id(looked): LOOKED, id(expected): EXPECTED, id(tolerance): TOLERANCE}
+    form = text_of(ast.fix_missing_locations(_FormMaker(names).visit(node)))
+    pair = _parts_of(looked), _parts_of(expected)
+    return SuiteCheck(key, file, *pair, text_of(tolerance), form, found, function)
+
+
+class _FormMaker(ast.NodeTransformer):
+    def __init__(self, names: Mapping[int, str]) -> None:
+        self._names = names
+
+    def visit(self, node: ast.AST) -> ast.AST:
+        name = self._names.get(id(node))
+        return self.generic_copy(node) if name is None else ast.Name(name, ast.Load())
+
+    def generic_copy(self, node: ast.AST) -> ast.AST:
+        """A copy with other parts: the file's own tree must stay as it is."""
+        parts: dict[str, Any] = {}
+        for key, value in ast.iter_fields(node):
+            if isinstance(value, list):
+                parts[key] = [self.visit(one) if isinstance(one, ast.AST) else one for one in value]
+            else:
+                parts[key] = self.visit(value) if isinstance(value, ast.AST) else value
+        return type(node)(**parts)
+
+
+def _parts_of(node: ast.expr) -> tuple[str, ...]:
+    if isinstance(node, ast.Tuple | ast.List) and node.elts:
+        return tuple(text_of(one) for one in node.elts)
+    return (text_of(node),)
+
+
+def near_of(node: ast.stmt) -> tuple[ast.expr, ast.expr, ast.expr] | None:
+    """What a statement looks at, what that must be near to, and how near; None if it says no such thing."""
+    test = node.test if isinstance(node, ast.Assert) else node.value if isinstance(node, ast.Expr) else None
+    match test:
+        case ast.Compare(left=looked, ops=[ast.Eq()], comparators=[ast.Call() as call]) if _is_approx(call):
+            return _with_keyword(call, looked)
+        case ast.Compare(left=ast.Call() as call, ops=[ast.Eq()], comparators=[looked]) if _is_approx(call):
+            return _with_keyword(call, looked)
+        case ast.Compare(
+            left=ast.Call(
+                func=ast.Name(id="abs"), args=[ast.BinOp(left=looked, op=ast.Sub(), right=expected)]
+            ),
+            ops=[ast.Lt() | ast.LtE()],
+            comparators=[tolerance],
+        ):
+            return _ordered(looked, expected, tolerance)
+        case ast.Call(args=[*args], keywords=keywords):
+            named = [one.value for one in keywords if one.arg and _is_tolerance(one.arg)]
+            if len(args) == 2 and len(named) == 1 and not any(isinstance(one, ast.Starred) for one in args):
+                return _ordered(args[0], args[1], named[0])
+            if len(args) == 3 and not keywords and isinstance(node, ast.Assert) and _says_tolerance(args[2]):
+                return _ordered(args[0], args[1], args[2])
+    return None
+
+
+def _is_approx(call: ast.Call) -> bool:
+    return ast.unparse(call.func) in ("approx", "pytest.approx")
+
+
+def _with_keyword(call: ast.Call, looked: ast.expr) -> tuple[ast.expr, ast.expr, ast.expr] | None:
+    sizes = [one.value for one in call.keywords if one.arg == "abs"]
+    return (looked, call.args[0], sizes[0]) if sizes and call.args else None
+
+
+def _ordered(one: ast.expr, other: ast.expr, tolerance: ast.expr) -> tuple[ast.expr, ast.expr, ast.expr]:
+    """Which of two is looked at: the one that reads something, where the other one does not."""
+    return (other, one, tolerance) if _reads(other) > _reads(one) else (one, other, tolerance)
+
+
+def _reads(node: ast.expr) -> int:
+    """2 for what calls something, 1 for what has names other than those of constants, 0 for constants."""
+    if any(isinstance(one, ast.Call) for one in ast.walk(node)):
+        return 2
+    names = [one.id for one in ast.walk(node) if isinstance(one, ast.Name)]
+    return int(not all(name.isupper() for name in names))
+
+
+def _is_tolerance(name: str) -> bool:
+    return name in _KEYWORDS or any(part in name.lower() for part in _TOLERANCES)
+
+
+def _says_tolerance(node: ast.expr) -> bool:
+    if isinstance(node, ast.Constant):
+        return isinstance(node.value, float)
+    return isinstance(node, ast.Name | ast.Attribute) and _is_tolerance(text_of(node).rpartition(".")[2])

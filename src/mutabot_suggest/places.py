@@ -1,0 +1,56 @@
+"""Choose the tests to look at: as few as show how each survivor differs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from mutabot.api.reports import MutantResult
+
+from .project import PlaceInTest, SuiteFiles, place_of
+
+#: tests that are looked at for a survivor of which nothing was recorded
+_MOST = 6
+#: share of a survivor's largest deviation from which on a test shows it as well
+_ALSO = 0.5
+
+
+def chosen_places(project: SuiteFiles, survivors: Sequence[MutantResult]) -> list[PlaceInTest]:
+    """The fewest tests with which every survivor has one that shows it, each with all of its parameters.
+
+    Where ends differ and where only the way does are looked for apart. A test whose end the original itself
+    scatters counts only where no other shows a survivor.
+    """
+    variants: dict[PlaceInTest, set[str]] = {}
+    wanted: list[set[PlaceInTest]] = []
+    for one in survivors:
+        acted = [looked.test for out in one.survived for looked in out.looked if looked.acted]
+        for test in acted:
+            place = place_of(project, test)
+            if place is not None:
+                variants.setdefault(place, set()).add(test)
+        for weights in _weights(one):
+            known = {place: weight for test, weight in weights.items() if (place := place_of(project, test))}
+            most = max(known.values(), default=0.0)
+            if known:
+                wanted.append({place for place, weight in known.items() if weight >= _ALSO * most})
+        if not any(out.diverged for out in one.survived):
+            wanted += [{place} for test in acted if (place := place_of(project, test))][:_MOST]
+    chosen: list[PlaceInTest] = []
+    left = wanted
+    while left:
+        counts = {place: sum(place in one for one in left) for one in left for place in one}
+        best = max(counts, key=lambda place: (counts[place], -len(variants.get(place, ()))))
+        chosen.append(best)
+        left = [one for one in left if best not in one]
+    return chosen
+
+
+def _weights(survivor: MutantResult) -> list[Mapping[str, float]]:
+    """How far each test is from the original: at its end, and on its way."""
+    found = [one for out in survivor.survived for one in out.diverged]
+    stable = [one for one in found if not one.scatters] or found
+    ends = {one.test: max((part.of_end for part in one.apart), default=0.0) for one in stable}
+    return [
+        {test: weight for test, weight in ends.items() if weight > 1.0},
+        {one.test: one.deviation for one in stable},
+    ]

@@ -1,0 +1,130 @@
+"""The proof of checks: they are put into a copy of the project and run on the original and on survivors."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from mutabot.api.processes import Request
+from mutabot.api.reports import CampaignRun, MutabotError, Progress, Results, Verdict
+
+from .checks import CheckProposal, Monitor, Trials
+from .editing import edited
+from .project import SuiteFiles, copy_of
+
+
+@dataclass(slots=True)
+class Proof:
+    """The results of proving checks, by their statements and tests.
+
+    Attributes:
+        request: for the rounds of the campaign.
+        project: into whose tests checks are put.
+        progress: is told.
+        failed: checks that failed, with the reason.
+        kills: of each check that was run on the survivors: the mutants and rounds that it killed.
+    """
+
+    request: Request
+    project: SuiteFiles
+    progress: Progress
+    failed: dict[CheckProposal, str] = field(default_factory=dict)
+    kills: dict[CheckProposal, Trials] = field(default_factory=dict)
+
+    def on_original(self, checks: Sequence[CheckProposal], rounds: Sequence[int]) -> list[CheckProposal]:
+        """Return the checks with which the original passes in all of these rounds."""
+        left = [one for one in checks if one not in self.failed]
+        while left:
+            alarms = self._alarms(left, rounds)
+            if not alarms:
+                return left
+            self.failed.update(alarms)
+            left = [one for one in left if one not in alarms]
+        return []
+
+    def _alarms(self, checks: Sequence[CheckProposal], rounds: Sequence[int]) -> dict[CheckProposal, str]:
+        texts = texts_with(self.project, checks)
+        found: dict[CheckProposal, str] = {}
+        with copy_of(self.request, texts) as copied:
+            these = _only(copied, checks)
+            self.progress.stage("proof on the original", len(rounds))
+            with CampaignRun.of_original(these, rounds, self.progress) as results:
+                for result in results:
+                    self.progress.advance(f"round {result.task.key + 1}")
+                    where = f"round {result.task.key + 1} of the original"
+                    if result.end is None or result.end.errors or not result.ends:
+                        why = result.death() if result.end is None else "; ".join(result.end.errors)
+                        return dict.fromkeys(checks, f"the tests cannot be run with it: {why or 'none ran'}")
+                    for end in result.ends:
+                        if end.outcome == "failed":
+                            text = f"fails in {where}: {(end.message or 'no message').splitlines()[0]}"
+                            for one in _blamed(checks, end.test, end.place or "", end.message or "", texts):
+                                found.setdefault(one, text)
+        return found
+
+    def on_survivors(self, checks: Sequence[CheckProposal]) -> None:
+        """Run campaigns of the mutants that these checks would notice, with all checks at once.
+
+        A check of which the others leave nothing is run once more without them.
+        """
+        new = [one for one in checks if one not in self.kills and one not in self.failed]
+        if new:
+            self._try(new)
+        for one in new:
+            if not self.kills.get(one) and len(new) > 1:
+                self._try([one])
+            if not self.kills.get(one):
+                self.failed.setdefault(one, "kills no survivor when it is run")
+
+    def _try(self, checks: Sequence[CheckProposal]) -> None:
+        """Run these checks together and keep what each kills."""
+        try:
+            found = self._run(checks)
+        except MutabotError as error:
+            if len(checks) == 1:
+                self.failed[checks[0]] = f"a campaign with it ends: {str(error).splitlines()[0]}"
+            return
+        self.kills.update({one: trials for one, trials in found.items() if trials})
+
+    def _run(self, checks: Sequence[CheckProposal]) -> dict[CheckProposal, Trials]:
+        """What each of these checks kills where all of them stand."""
+        only = tuple(dict.fromkeys(mutant for one in checks for mutant, _ in sorted(one.trials)))
+        texts = texts_with(self.project, checks)
+        with copy_of(self.request, texts) as copied:
+            these = replace(_only(copied, checks), only=only, every_test=True, repeats=False, evidence=False)
+            outcomes = Results.read(CampaignRun.to_end(these, self.progress)).outcomes
+        found: dict[CheckProposal, set[tuple[str, int]]] = {one: set() for one in checks}
+        for outcome in outcomes:
+            for kill in outcome.kills if outcome.verdict is Verdict.KILLED else ():
+                place = outcome.place if kill.test == outcome.test else None
+                blamed = _blamed(checks, kill.test, place or "", kill.message or "", texts)
+                if kill.by == "check" and len(blamed) == 1:
+                    found[blamed[0]].add((outcome.mutant, outcome.round))
+        return {one: frozenset(trials) for one, trials in found.items()}
+
+
+def texts_with(project: SuiteFiles, checks: Sequence[CheckProposal]) -> dict[str, str]:
+    """The texts of the files that change when checks stand in their tests, by path."""
+    return edited(project, (one.addition() for one in checks))
+
+
+def _only(request: Request, checks: Sequence[CheckProposal]) -> Request:
+    tests = tuple(dict.fromkeys(one.place.node for one in checks))
+    return request.changed(tests=tests)
+
+
+def _blamed(
+    checks: Sequence[CheckProposal], test: str, place: str, message: str, texts: Mapping[str, str]
+) -> list[CheckProposal]:
+    """The checks that let a test fail: that at the place, ``file:line``, or of that name; else all of it."""
+    named = [one for one in checks if isinstance(one, Monitor) and one.name in message]
+    if named:
+        return [max(named, key=lambda one: len(one.name))]  # a short one may be part of a longer one
+    file, _, line = place.rpartition(":")
+    lines = texts.get(file, "").splitlines()
+    if line.isdigit() and 0 < int(line) <= len(lines):
+        found = [one for one in checks if lines[int(line) - 1].strip() in one.lines]
+        if found:
+            return found
+    node = test.partition("[")[0]
+    return [one for one in checks if one.place.node == node] or list(checks)

@@ -1,0 +1,130 @@
+"""Reasons why no check kills a survivor, each one sentence."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from mutabot.api.reports import MutantResult
+
+from .candidates import ONLY_TIME
+from .checks import CheckProposal, is_clock, last_name
+from .forms import is_number
+from .found import Unsolved
+from .readings import Measured, is_reading, known
+from .suite import SuiteChecks
+
+NOTHING_DIFFERS = "nothing that was compared differs from the original (indistinguishable)"
+NOTHING_READ = "nothing that its tests can read at their ends differs: a test that looks in between is needed"
+NOT_REACHED = "no test reaches it: add a test that does"
+#: m, and degrees, below which a way is too near to the original for a monitor
+_NEAR, _TURNED = 0.03, 15.0
+#: how the reason begins for a survivor that the suite allows
+_SO_LITTLE = "at most"
+#: names of lengths and of angles in checks
+_LENGTHS, _ANGLES = {"x", "y", "z"}, {"theta_x", "theta_y", "theta_z", "roll", "pitch", "yaw"}
+
+
+def why_unsolved(
+    survivor: MutantResult,
+    measured: Measured,
+    suite: SuiteChecks,
+    found: Sequence[CheckProposal],
+    failed: Mapping[CheckProposal, str],
+    refused: Mapping[str, str],
+) -> Unsolved:
+    """The reason for a survivor: what became of its checks, or how little of it differs."""
+    mutant = survivor.mutant.id
+    recorded = _of_recordings(survivor, measured, suite)
+    if recorded.startswith(_SO_LITTLE) or recorded == ONLY_TIME:
+        return Unsolved(mutant, recorded)
+    tried = [one for one in found if one in failed and mutant in dict(one.trials)]
+    if tried:
+        return Unsolved(mutant, _why_failed(tried[0], failed[tried[0]]))
+    if mutant in measured.lost:
+        return Unsolved(mutant, measured.lost[mutant])
+    if recorded:
+        return Unsolved(mutant, recorded)
+    if mutant in refused:
+        return Unsolved(mutant, refused[mutant])
+    return Unsolved(mutant, max(_differences(mutant, measured), default=(0.0, NOTHING_READ))[1])
+
+
+def _why_failed(check: CheckProposal, why: str) -> str:
+    statement = " ".join(check.statement.split())
+    if why.startswith("fails in"):
+        return f"what would notice it, the original itself breaks with another seed: {statement}"
+    return f"a check that would notice it failed its proof ({why}): {statement}"
+
+
+def _of_recordings(survivor: MutantResult, measured: Measured, suite: SuiteChecks) -> str:
+    """What was recorded of the world says more than readings; empty without recordings."""
+    stories = [told for out in survivor.survived if (told := out.told) is not None and told.apart]
+    if not stories:
+        return ""
+    told = max(stories, key=lambda one: one.rank)
+    own = [one for one in told.apart if not one.is_delay and one.deviation > 1.0]
+    if not own or told.story.startswith("the same movements"):
+        return ONLY_TIME
+    turned = max((one.aside or 0.0 for one in own if one.unit == "deg" and not one.is_value), default=0.0)
+    for unit, names in (("m", _LENGTHS), ("deg", _ANGLES)):
+        apart = [one for one in own if one.unit == unit and not one.is_value]
+        limit = _tolerance(measured, suite, names)
+        ends = max((one.final for one in apart), default=0.0)
+        way = max((one.aside or 0.0 for one in apart), default=0.0)
+        if not apart or ends > limit or limit == 0.0:
+            continue
+        far, allowed = _amount(max(ends, way), unit), _amount(limit, unit)
+        if way <= limit and turned < _TURNED:
+            return f"{_SO_LITTLE} {far}, within your tolerance of {allowed}"
+        why = "no bound on the way tells it from the original"
+        if turned >= _TURNED:
+            why = "no bound on the way tells it from the original, which turns as well"
+        elif unit == "m" and way < _NEAR:
+            why = "on the way it is too near to the original for a bound"
+        return f"{told.story}: at the end within your tolerance of {allowed}; {why}"
+    return f"{told.story}: nothing that its tests can read tells it from the original"
+
+
+def _tolerance(measured: Measured, suite: SuiteChecks, names: set[str]) -> float:
+    """The least tolerance that the tests have for what has one of these names; 0 if they have none."""
+    sizes = [
+        tolerance
+        for reads in measured.originals.values()
+        for read in reads.values()
+        for check in suite.checks
+        for number, _, _, tolerance in check.parts_in(read)
+        if names & {last_name(one) for one in check.names(number)}
+    ]
+    return min(sizes, default=0.0)
+
+
+def _differences(mutant: str, measured: Measured) -> Iterator[tuple[float, str]]:
+    """Describe how far readings are from the original's, in units of its own spread."""
+    for place, by_mutant in measured.mutants.items():
+        originals = measured.originals.get(place, {})
+        for key, read in by_mutant.get(mutant, {}).items():
+            for text, value in read.items():
+                before: Any = originals.get(key, {}).get(text)
+                numbers = is_reading(text) and is_number(value) and is_number(before)
+                if not numbers or value == before:
+                    continue
+                values = [one[text] for one in originals.values() if is_number(one.get(text))]
+                spread, tolerance = max(values) - min(values), known(measured, place, text).tolerance
+                apart = abs(value - before)
+                own = f"the original itself spreads {_short(spread)}"
+                if apart > max(spread, tolerance):
+                    own = "for which a check would need more digits than the suite has"
+                elif tolerance >= spread:
+                    own = f"its tolerance is {_short(tolerance)}"
+                words = f"{text} differs by {_short(apart)}, {own}"
+                yield (0.0, ONLY_TIME) if is_clock(text) else (apart / max(spread, tolerance), words)
+
+
+def _short(value: float) -> str:
+    return repr(float(f"{value:.3g}"))
+
+
+def _amount(value: float, unit: str) -> str:
+    """``1.4 mm``, ``0.31 m``, ``12 deg``."""
+    return f"{1e3 * value:.2g} mm" if unit == "m" and value < 0.1 else f"{value:.2g} {unit}"

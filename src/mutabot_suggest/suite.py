@@ -1,0 +1,312 @@
+"""The suite's own checks: which value they compare with which, how, and with which tolerance.
+
+A check that is suggested takes its predicate, its constants and its tolerance from here.
+"""
+
+from __future__ import annotations
+
+import ast
+import builtins
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass, field
+
+from .forms import EXPECTED, LOOKED, TOLERANCE, SuiteCheck, check_of, is_number, near_of, rename
+from .project import (
+    UNITTEST,
+    PlaceInTest,
+    SuiteFiles,
+    TestFunctionNode,
+    function_of,
+    name_in,
+    text_of,
+    top_names,
+)
+
+#: how the keys begin under which is noted what checks compared, and which other checks hold
+COMPARED, HELD = "@", "?"
+#: checks of other tests that are tried in one test at most
+_MOST = 40
+
+
+@dataclass(frozen=True, slots=True)
+class Transplant:
+    """A check of another test, or of a step, that can be asked at the end of a test as well.
+
+    Attributes:
+        key: under which is noted whether it holds.
+        statement: as it stands there.
+        needs: imports.
+        near: the check that it is, if it is near something; its tolerance may be at hand there only.
+        function: where it stands.
+    """
+
+    key: str
+    statement: str
+    needs: tuple[str, ...]
+    near: SuiteCheck | None
+    function: str
+
+    @property
+    def lacks_tolerance(self) -> bool:
+        """Whether its tolerance is a name that only its own function knows."""
+        return (
+            self.near is not None and self.near.tolerance.isidentifier() and not self.near.tolerance.isupper()
+        )
+
+    def written(self, tolerance: float | None) -> str:
+        """The statement as it is added; ``tolerance`` is what it was there."""
+        if self.near is None or tolerance is None or not self.lacks_tolerance:
+            return self.statement
+        return rename(self.statement, self.near.tolerance, repr(tolerance))
+
+
+@dataclass(slots=True)
+class SuiteChecks:
+    """The checks of a project's tests."""
+
+    project: SuiteFiles
+    checks: list[SuiteCheck] = field(default_factory=list)
+
+    @classmethod
+    def of(cls, project: SuiteFiles) -> SuiteChecks:
+        """Find the checks in all files but the program's."""
+        suite = cls(project)
+        for file in project.suite_files:
+            for name, node in suite._statements(file):
+                found = near_of(node)
+                if found is not None:
+                    suite.checks.append(check_of(f"{COMPARED}{len(suite.checks)}", file, node, found, name))
+        return suite
+
+    def noting(self, file: str, text: str) -> str:
+        """The text of a file in which checks note what they compare."""
+        marks: list[tuple[int, int, str]] = []
+        starts = _starts(text)
+        for one in self.checks:
+            if one.file == file:
+                roles = ("looked", "expected", "tolerance")
+                for node, role in zip(one.nodes, roles, strict=True):
+                    call = f'__import__("mutabot_suggest.noted").noted.compared("{one.key}", "{role}", '
+                    begin = starts[node.lineno - 1] + node.col_offset
+                    end = starts[(node.end_lineno or 0) - 1] + (node.end_col_offset or 0)
+                    marks += [(begin, 1, call), (end, 0, ")")]
+        data = text.encode()
+        for at, _, more in sorted(marks, reverse=True):
+            data = data[:at] + more.encode() + data[at:]
+        return data.decode()
+
+    def constant(self, place: PlaceInTest, file: str, text: str) -> tuple[str, ...] | None:
+        """The imports that an expression of constants of a file needs at a place; None if it is none."""
+        names = {one.id for one in ast.walk(ast.parse(text)) if isinstance(one, ast.Name)} if text else set()
+        if not names or not all(name.isupper() for name in names) or names & {*place.names}:
+            return None
+        return self._imports(place, file, names)
+
+    def constants(self, file: str) -> Iterator[tuple[str, float]]:
+        """The items of constants that a file states, each with the expression for it."""
+        module = self.project.module(file)
+        for node in module.body if module is not None else ():
+            targets = node.targets[0] if isinstance(node, ast.Assign) else None
+            for target, value in _assigned(targets, node.value if isinstance(node, ast.Assign) else None):
+                try:
+                    items = ast.literal_eval(value)
+                except ValueError:
+                    continue
+                if target.isupper() and isinstance(items, tuple | list):
+                    yield from (
+                        (f"{target}[{number}]", one) for number, one in enumerate(items) if is_number(one)
+                    )
+
+    def needs_of_form(self, place: PlaceInTest, check: SuiteCheck) -> tuple[str, ...] | None:
+        """The imports that a check of this form needs at a place; None if it cannot stand there."""
+        names = {one.id for one in ast.walk(ast.parse(check.form)) if isinstance(one, ast.Name)}
+        names -= {LOOKED, EXPECTED, TOLERANCE, *dir(builtins)}
+        if ("self" in names) != (place.style == UNITTEST):
+            return None
+        return self._imports(place, check.file, names - {"self"})
+
+    def _imports(self, place: PlaceInTest, file: str, names: Collection[str]) -> tuple[str, ...] | None:
+        """The imports by which a place has names that a file has; None if it cannot have one of them."""
+        module, other = self.project.module(place.file), self.project.module(file)
+        if module is None or other is None:
+            return None
+        needs = []
+        for name in sorted(names):
+            if file == place.file and name in top_names(module):
+                continue
+            line = _import_of(other, name)
+            if line is None or (name in top_names(module) and _import_of(module, name) != line):
+                return None
+            needs.append(line)
+        return tuple(needs)
+
+    def watched(self, place: PlaceInTest, name: str) -> list[tuple[str, tuple[str, ...]]]:
+        """The readings of conditions that the suite watches, of an object that a test calls ``name``.
+
+        Each is a call of a function with this object, with the imports that it needs.
+        """
+        module = self.project.module(place.file)
+        found: dict[str, tuple[str, ...]] = {}
+        for file in self.project.suite_files if module is not None else ():
+            other = self.project.module(file)
+            defined = (
+                {one.name for one in other.body if isinstance(one, TestFunctionNode)} if other else set()
+            )
+            for call in (one for one in ast.walk(other) if isinstance(one, ast.Call)) if other else ():
+                if isinstance(call.func, ast.Attribute) and call.func.attr == "always":
+                    for inner in (one for one in ast.walk(call) if isinstance(one, ast.Call)):
+                        reads = isinstance(inner.func, ast.Name) and inner.func.id in defined
+                        if (
+                            reads
+                            and [ast.unparse(one) for one in inner.args] == [name]
+                            and module is not None
+                        ):
+                            home = self.project.import_name(file)
+                            text, needs = ast.unparse(inner.func), tuple[str, ...]()
+                            if file != place.file:
+                                text, needs = name_in(module, home, text, place.names)
+                            found[f"{text}({name})"] = needs
+        return list(found.items())
+
+    def transplants(self, place: PlaceInTest) -> list[Transplant]:
+        """The checks of other tests for which a test has all that they need."""
+        module = self.project.module(place.file)
+        own = function_of(module, place)
+        there = {text_of(one) for one in ast.walk(own) if isinstance(one, ast.stmt)} if own else set()
+        found: dict[str, Transplant] = {}
+        for file in self.project.suite_files:
+            other = self.project.module(file)
+            helpers = _checking(other) if other is not None else set()
+            for name, node in self._statements(file):
+                statement = text_of(node)
+                is_own = own is not None and name == own.name
+                if statement in there or statement in found or is_own or name in helpers:
+                    continue
+                near = next((one for one in self.checks if one.file == file and _is_at(one, node)), None)
+                needs = self._needs(place, file, node, near)
+                if needs is not None and not self._acts(file, node):
+                    key = f"{HELD}{len(found)}"
+                    found[statement] = Transplant(key, statement, needs, near, name)
+        return list(found.values())[:_MOST]
+
+    def _statements(self, file: str) -> Iterator[tuple[str, ast.stmt]]:
+        """The statements of a file's functions that check something, each with the function's name."""
+        module = self.project.module(file)
+        if module is None:
+            return
+        helpers = _checking(module) | self._imported(module)
+        for function in (one for one in ast.walk(module) if isinstance(one, TestFunctionNode)):
+            for node in ast.walk(function):
+                if isinstance(node, ast.Assert):
+                    yield function.name, ast.Assert(node.test) if node.msg is not None else node
+                elif isinstance(node, ast.Expr) and isinstance(node.value, ast.Call):
+                    name = ast.unparse(node.value.func)
+                    if name in helpers or name.startswith("self.assert") or ".assert_allclose" in name:
+                        yield function.name, node
+
+    def _imported(self, module: ast.Module) -> set[str]:
+        """The functions that check something and that a file imports from others of the suite."""
+        checking = {
+            (self.project.import_name(file).rpartition(".")[2], name)
+            for file in self.project.suite_files
+            if (other := self.project.module(file)) is not None
+            for name in _checking(other)
+        }
+        return {
+            alias.name
+            for node in module.body
+            if isinstance(node, ast.ImportFrom)
+            for alias in node.names
+            if ((node.module or "").rpartition(".")[2], alias.name) in checking
+        }
+
+    def _needs(
+        self, place: PlaceInTest, file: str, node: ast.stmt, near: SuiteCheck | None
+    ) -> tuple[str, ...] | None:
+        """The imports that a statement of a file needs at a place; None if it lacks a name there."""
+        module, other = self.project.module(place.file), self.project.module(file)
+        if module is None or other is None:
+            return None
+        names = {one.id for one in ast.walk(node) if isinstance(one, ast.Name)}
+        stored = (
+            one for one in ast.walk(node) if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)
+        )
+        names -= {one.id for one in stored} | {*dir(builtins)}
+        if near is not None and near.tolerance.isidentifier() and near.tolerance not in top_names(other):
+            names.discard(near.tolerance)
+        if "self" in names and place.style != UNITTEST:
+            return None
+        here = names & {*place.names}
+        needs = self._imports(place, file, names - here - {"self"})
+        return needs if here or any(isinstance(one, ast.Call) for one in ast.walk(node)) else None
+
+    def _acts(self, file: str, node: ast.AST, depth: int = 3) -> bool:
+        """Whether a statement runs the program or commands the robot."""
+        module = self.project.module(file)
+        program = {self.project.import_name(one).rpartition(".")[2] for one in self.project.program_files}
+        commands = {
+            one.qualname.rpartition(".")[2]
+            for one in self.project.request.vocabulary.operations
+            if one.command
+        }
+        for call in (one for one in ast.walk(node) if isinstance(one, ast.Call)):
+            name = ast.unparse(call.func)
+            last, first = name.rpartition(".")[2], name.partition(".")[0]
+            line = _import_of(module, first) if module is not None else None
+            if last in commands or (line is not None and line.split()[1].rpartition(".")[2] in program):
+                return True
+            if isinstance(call.func, ast.Name) and module is not None and depth > 0:
+                inner = next(
+                    (one for one in module.body if isinstance(one, TestFunctionNode) and one.name == name),
+                    None,
+                )
+                if inner is not None and any(self._acts(file, one, depth - 1) for one in inner.body):
+                    return True
+        return False
+
+
+def _assigned(target: ast.expr | None, value: ast.expr | None) -> Iterator[tuple[str, ast.expr]]:
+    """What an assignment gives which name: ``A, B = 1, 2`` gives two."""
+    if isinstance(target, ast.Name) and value is not None:
+        yield target.id, value
+    elif isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple):
+        for one, other in zip(target.elts, value.elts, strict=False):
+            yield from _assigned(one, other)
+
+
+def _is_at(check: SuiteCheck, node: ast.stmt) -> bool:
+    return any(one is check.nodes[0] for one in ast.walk(node))
+
+
+def _import_of(module: ast.Module, name: str) -> str | None:
+    """The import by which a file has a name, as a statement of its own."""
+    for node in module.body:
+        if isinstance(node, ast.ImportFrom) and not node.level:
+            for alias in node.names:
+                if (alias.asname or alias.name) == name and alias.asname in (None, alias.name):
+                    return f"from {node.module} import {name}"
+        if isinstance(node, ast.Import):
+            for alias in node.names:
+                if alias.name == name and alias.asname is None:
+                    return f"import {name}"
+    return None
+
+
+def _starts(text: str) -> list[int]:
+    """Where each line begins, in bytes."""
+    found = [0]
+    for line in text.encode().splitlines(keepends=True):
+        found.append(found[-1] + len(line))
+    return found
+
+
+def _checking(module: ast.Module) -> set[str]:
+    """The file's own functions that check something and that tests call: no tests, fixtures or steps."""
+    return {
+        one.name
+        for one in module.body
+        if isinstance(one, TestFunctionNode)
+        and not one.name.startswith("test")
+        and not one.decorator_list
+        and any(isinstance(part, ast.Assert) for part in ast.walk(one))
+    }

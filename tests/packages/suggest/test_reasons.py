@@ -1,0 +1,151 @@
+"""Where no check is suggested, the true reason is told once for all survivors that share it."""
+
+from __future__ import annotations
+
+import ast
+from textwrap import dedent
+from typing import Any
+
+import pytest
+
+from mutabot.model import Mutant, Outcome, Role, Site, Span, Verdict
+from mutabot.model.outcome import Apart, Diverged, Looked
+from mutabot.results.results import MutantResult
+from mutabot_suggest.found import Suggestions, Unsolved
+from mutabot_suggest.places import chosen_places
+from mutabot_suggest.project import PlaceInTest
+from mutabot_suggest.readings import Measured
+from mutabot_suggest.reasons import why_unsolved
+from mutabot_suggest.shown import print_suggestions
+from mutabot_suggest.suite import SuiteChecks
+
+SITE = Site(Span("mission.py", 1, 0, 1, 5, "run"), "arm.go", 1, Role.PROGRAM)
+PLACE = PlaceInTest("pytest", "tests/test_it.py", "tests/test_it.py::test_it")
+TESTS = """
+    def test_it(arm):
+        assert arm.x == approx(0.3, abs=0.02)
+
+    def test_other(arm):
+        assert arm
+
+    def test_lost(arm):
+        assert arm
+"""
+
+
+def mutant(number: int = 1) -> Mutant:
+    return Mutant(number, "robot", "skip", SITE, "robot:go", None, None, "", f"arm.go: skip {number}")
+
+
+def survivor(*diverged: Diverged, number: int = 1) -> MutantResult:
+    one = mutant(number)
+    looked = tuple(Looked(test.test, acted=True) for test in diverged)
+    outcome = Outcome(one.id, 0, Verdict.SURVIVED, diverged=diverged, looked=looked)
+    return MutantResult(one, (outcome,), None, "")
+
+
+def apart(final: float, aside: float = 0.0, *, spread: float = 0.0001) -> Apart:
+    return Apart("box", "m", 1.0, max(final, aside), 2.0, final, aside, 0.001, spread, spread)
+
+
+def in_test(name: str, story: str, *parts: Apart, scatters: str = "") -> Diverged:
+    return Diverged(f"tests/test_it.py::{name}", 1.0, "", story, parts, scatters=scatters)
+
+
+class Project:
+    """A project with one file of tests."""
+
+    suite_files = ("tests/test_it.py",)
+
+    def module(self, file: str) -> ast.Module | None:
+        return ast.parse(dedent(TESTS)) if file == "tests/test_it.py" else None
+
+
+@pytest.fixture
+def suite() -> SuiteChecks:
+    project: Any = Project()
+    return SuiteChecks.of(project)
+
+
+def reason(suite: SuiteChecks, *diverged: Diverged) -> str:
+    (check,) = suite.checks
+    read = {f"{check.key}.looked": 0.3, f"{check.key}.expected": 0.3, f"{check.key}.tolerance": 0.02}
+    measured = Measured(originals={PLACE: {(0, PLACE.node): read}})
+    return why_unsolved(survivor(*diverged), measured, suite, [], {}, {}).reason
+
+
+def test_what_ends_within_the_suites_tolerance_is_told_so(suite: SuiteChecks) -> None:
+    told = in_test("test_it", "box ended 1.4 mm from its position", apart(0.0014, 0.0049))
+    assert reason(suite, told) == "at most 4.9 mm, within your tolerance of 20 mm"
+
+
+def test_a_small_detour_is_told_with_the_tolerance_at_the_end(suite: SuiteChecks) -> None:
+    told = in_test("test_it", "box left its path by up to 25 mm", apart(0.001, 0.025))
+    assert reason(suite, told) == (
+        "box left its path by up to 25 mm: at the end within your tolerance of 20 mm; "
+        "on the way it is too near to the original for a bound"
+    )
+
+
+def test_what_turns_as_the_original_turns_is_told_so(suite: SuiteChecks) -> None:
+    turned = Apart("box turned", "deg", 1.0, 78.0, 2.0, 0.1, 78.0, 0.5)
+    told = in_test("test_it", "box was turned by up to 78 deg on its way", apart(0.001, 0.015), turned)
+    assert reason(suite, told).endswith("no bound on the way tells it from the original, which turns as well")
+
+
+def test_a_large_detour_without_a_bound_is_not_said_to_be_small(suite: SuiteChecks) -> None:
+    told = in_test("test_it", "box left its path by up to 0.2 m", apart(0.001, 0.2))
+    assert reason(suite, told).endswith("no bound on the way tells it from the original")
+
+
+def test_where_only_times_differ_the_reason_is_a_deadline(suite: SuiteChecks) -> None:
+    told = in_test("test_it", "the same movements happened up to 1.5 s later", apart(0.0))
+    assert reason(suite, told) == "only times differ: add a deadline if the task has one"
+
+
+def test_the_same_reason_is_told_once(capsys: pytest.CaptureFixture[str]) -> None:
+    texts: list[str] = []
+
+    class Context:
+        def print(self, text: str) -> None:
+            texts.append(text)
+
+        def print_section(self, title: str, lines: list[str], at_most: int = 0) -> None:
+            texts.extend([title, *lines])
+
+    unsolved = (
+        Unsolved("a", "nothing differs", never=True),
+        Unsolved("b", "only times differ"),
+        Unsolved("c", "nothing differs", never=True),
+    )
+    context: Any = Context()
+    print_suggestions(context, Suggestions(unsolved=unsolved, numbers={"a": 31, "b": 2, "c": 5}))
+    assert "#5, #31: nothing differs" in texts
+    assert "#2 : only times differ" in texts
+
+
+def test_one_test_is_looked_at_if_it_shows_all_survivors() -> None:
+    both = [in_test("test_it", "box", apart(0.2)), in_test("test_other", "box", apart(0.2))]
+    other = [in_test("test_other", "box", apart(0.3))]
+    project: Any = Project()
+    places = chosen_places(project, [survivor(*both), survivor(*other, number=2)])
+    assert [one.path for one in places] == [("test_other",)]
+
+
+def test_a_test_whose_end_scatters_is_not_looked_at_where_another_shows_the_survivor() -> None:
+    tests = [
+        in_test("test_lost", "box", apart(9.0), scatters="box by 0.5 m"),
+        in_test("test_it", "box", apart(0.05)),
+    ]
+    project: Any = Project()
+    assert [one.path for one in chosen_places(project, [survivor(*tests)])] == [("test_it",)]
+
+
+def test_a_survivor_is_looked_at_where_it_differs_most_and_where_its_end_differs() -> None:
+    tests = [
+        in_test("test_it", "box", apart(0.0, 0.9)),
+        in_test("test_other", "box", apart(0.05, 0.0)),
+    ]
+    project: Any = Project()
+    places = chosen_places(project, [survivor(*tests)])
+    assert {one.path for one in places} == {("test_it",), ("test_other",)}

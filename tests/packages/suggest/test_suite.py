@@ -1,0 +1,248 @@
+"""A check that is suggested has the suite's own predicate, constants and tolerance."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+from textwrap import dedent
+from typing import Any
+
+import pytest
+
+from mutabot.campaign.request import Request
+from mutabot.config.configuration import load_configuration
+from mutabot.config.vocabulary import load_vocabulary
+from mutabot_suggest.candidates import candidates
+from mutabot_suggest.checks import CheckAtEnd, CheckOfSuite
+from mutabot_suggest.forms import near_of
+from mutabot_suggest.project import PlaceInTest, SuiteFiles, place_of
+from mutabot_suggest.readings import PROBE, Measured, ReadExpression
+from mutabot_suggest.suite import SuiteChecks
+
+from .projects import make
+
+CHECKS = """
+    HOME = 0.3
+    WITHIN = 0.05
+
+
+    def is_within(expected, seen, threshold):
+        return abs(expected - seen) <= threshold
+
+
+    def check_open(arm):
+        assert not arm.closed
+"""
+TESTS = """
+    import mission
+    import pytest
+    from checks import HOME, WITHIN, check_open, is_within
+    from robot import Arm
+
+
+    @pytest.fixture
+    def arm():
+        return Arm()
+
+
+    def test_goes(arm):
+        mission.by_function(arm)
+        assert is_within(HOME, arm.x, 0.02)
+
+
+    def test_opens(arm):
+        arm.grip(False)
+        check_open(arm)
+        assert arm.z == pytest.approx(HOME, abs=WITHIN)
+
+
+    def test_moves(arm):
+        arm.move_by(x=0.3)
+        assert mission.by_case(arm) is None
+"""
+GOES = "tests/test_it.py::test_goes"
+
+
+@pytest.fixture
+def suite(tmp_path: Path) -> SuiteChecks:
+    """The checks of a project with a predicate, constants and a helper in a module of its own."""
+    folder = make(tmp_path, {"test_it.py": TESTS, "checks.py": CHECKS})
+    configuration = load_configuration(folder)
+    vocabulary = load_vocabulary(configuration.vocabulary, folder)
+    request = Request(configuration, vocabulary, rounds=1, seed=1, jobs=1)
+    return SuiteChecks.of(SuiteFiles(request, tests=("tests/test_it.py",)))
+
+
+def place(suite: SuiteChecks, node: str = GOES) -> PlaceInTest:
+    found = place_of(suite.project, node)
+    assert found is not None
+    return found
+
+
+@pytest.mark.parametrize(
+    ("text", "parts"),
+    [
+        ("assert a.x == pytest.approx(HOME.x, abs=T)", ("a.x", "HOME.x", "T")),
+        ("assert pytest.approx(0.3, abs=0.1) == read()", ("read()", "0.3", "0.1")),
+        ("assert abs(a.x - 0.3) < TOL", ("a.x", "0.3", "TOL")),
+        ("assert abs(HOME.x - read().x) <= TOL", ("read().x", "HOME.x", "TOL")),
+        ("assert is_within(HOME.x, read().x, threshold)", ("read().x", "HOME.x", "threshold")),
+        ("assert math.isclose(arm.x, 0.3, abs_tol=0.01)", ("arm.x", "0.3", "0.01")),
+        ("self.assertAlmostEqual(arm.x, 0.3, delta=0.05)", ("arm.x", "0.3", "0.05")),
+        ("np.testing.assert_allclose(arm.pose, HOME, atol=0.01)", ("arm.pose", "HOME", "0.01")),
+        ("assert is_within(a, b, c)", None),
+        ("assert arm.x < 0.3", None),
+        ("arm.move(0.1, 0.2, speed=0.3)", None),
+    ],
+)
+def test_what_a_check_looks_at_and_how_near_it_must_be(text: str, parts: tuple[str, ...] | None) -> None:
+    (node,) = ast.parse(text).body
+    found = near_of(node)
+    assert (None if found is None else tuple(map(ast.unparse, found))) == parts
+
+
+def test_checks_note_what_they_compare_and_mean_the_same(suite: SuiteChecks) -> None:
+    text = suite.noting("tests/test_it.py", suite.project.text("tests/test_it.py"))
+    (check,) = [one for one in suite.checks if "is_within" in one.form]
+    noted: list[Any] = []
+
+    class Noted:
+        @staticmethod
+        def compared(key: str, role: str, value: object) -> object:
+            noted.append((key, role, value))
+            return value
+
+    lines = [line.strip() for line in text.splitlines() if check.key in line]
+    module: Any = type("module", (), {"noted": Noted})
+    arm: Any = type("arm", (), {"x": 0.31})
+    names = {
+        "__import__": lambda _: module,
+        "HOME": 0.3,
+        "arm": arm,
+        "is_within": lambda a, b, c: abs(a - b) <= c,
+    }
+    exec("\n".join(lines), {"__builtins__": names} | names)
+    assert noted == [
+        (check.key, "expected", 0.3),
+        (check.key, "looked", 0.31),
+        (check.key, "tolerance", 0.02),
+    ]
+
+
+def test_checks_of_other_tests_are_asked_where_all_that_they_need_is_at_hand(suite: SuiteChecks) -> None:
+    assert [one.statement for one in suite.transplants(place(suite))] == [
+        "check_open(arm)",
+        "assert arm.z == pytest.approx(HOME, abs=WITHIN)",
+    ]
+
+
+def test_a_check_that_runs_the_program_or_commands_the_robot_is_not_asked_elsewhere(
+    suite: SuiteChecks,
+) -> None:
+    statements = [one.statement for one in suite.transplants(place(suite, "tests/test_it.py::test_opens"))]
+    assert statements == ["assert is_within(HOME, arm.x, 0.02)"]
+
+
+def test_a_check_of_another_test_that_a_survivor_breaks_is_suggested_as_it_stands(suite: SuiteChecks) -> None:
+    at = place(suite)
+    opened, _ = suite.transplants(at)
+    found = Measured(
+        originals={at: {(0, GOES): {opened.key: True}, (1, GOES): {opened.key: True}}},
+        mutants={at: {"m": {(0, GOES): {opened.key: False}}}},
+        readings={at: []},
+        transplants={at: suite.transplants(at)},
+    )
+    ((check,), _) = candidates(suite.project, suite, found)
+    assert isinstance(check, CheckOfSuite)
+    assert check.statement == "check_open(arm)"
+    assert check.trials == frozenset({("m", 0)})
+
+
+def test_a_check_of_another_test_that_the_original_breaks_is_not_suggested(suite: SuiteChecks) -> None:
+    at = place(suite)
+    opened, _ = suite.transplants(at)
+    found = Measured(
+        originals={at: {(0, GOES): {opened.key: True}, (1, GOES): {opened.key: False}}},
+        mutants={at: {"m": {(0, GOES): {opened.key: False}}}},
+        readings={at: []},
+        transplants={at: suite.transplants(at)},
+    )
+    assert candidates(suite.project, suite, found)[0] == []
+
+
+def reads(suite: SuiteChecks, looked: float, text: str, value: float) -> dict[str, Any]:
+    """What is noted where the check of ``arm.x`` ran and a reading was made."""
+    (check,) = [one for one in suite.checks if "is_within" in one.form]
+    parts = {"looked": looked, "expected": 0.3, "tolerance": 0.02}
+    return {f"{check.key}.{role}": number for role, number in parts.items()} | {text: value}
+
+
+def suggested(
+    suite: SuiteChecks, text: str, mutant: float, *, looked: float = 0.301
+) -> tuple[list[str], dict[str, str]]:
+    """The checks of one reading, which is 0.3 in the original."""
+    at = place(suite)
+    found = Measured(
+        originals={at: {(round, GOES): reads(suite, 0.301, text, 0.3) for round in range(3)}},
+        mutants={at: {"m": {(0, GOES): reads(suite, looked, text, mutant)}}},
+        readings={at: [ReadExpression(text, PROBE, 0.001)]},
+    )
+    checks, refused = candidates(suite.project, suite, found)
+    return [one.statement for one in checks if isinstance(one, CheckAtEnd)], refused
+
+
+def test_a_check_of_the_same_quantity_has_the_suites_form_constant_and_tolerance(suite: SuiteChecks) -> None:
+    statements, _ = suggested(suite, "world()['arm.x']", 0.5)
+    assert statements == ['assert is_within(HOME, world()["arm.x"], 0.02)']
+
+
+def test_no_check_is_tighter_than_one_of_the_same_quantity_under_another_name(suite: SuiteChecks) -> None:
+    statements, refused = suggested(suite, "world()['place']", 0.31, looked=0.309)
+    assert statements == []
+    assert refused == {"m": "world()['place'] differs by 0.01, within your tolerance of 0.02"}
+
+
+@pytest.mark.parametrize("name", ["y", "z"])
+def test_parts_of_a_place_that_no_check_looks_at_have_the_tolerance_of_the_others(
+    suite: SuiteChecks, name: str
+) -> None:
+    statements, refused = suggested(suite, f"tool.{name}", 0.315, looked=0.301)
+    assert statements == []
+    assert "your tolerance of 0.0" in refused["m"]
+
+
+def test_an_item_that_a_constant_of_the_tests_states_is_written_by_its_name(tmp_path: Path) -> None:
+    text = "FEEDER, PALLET = (0.1, 0.9), (0.35, 0.25)\n\n\ndef test_goes(pose):\n    assert pose\n"
+    folder = make(tmp_path, {"test_it.py": text})
+    configuration = load_configuration(folder)
+    vocabulary = load_vocabulary(configuration.vocabulary, folder)
+    request = Request(configuration, vocabulary, rounds=1, seed=1, jobs=1)
+    suite = SuiteChecks.of(SuiteFiles(request, tests=("tests/test_it.py",)))
+    at = place(suite)
+    found = Measured(
+        originals={at: {(round, GOES): {"pose[0]": 0.35, "pose[1]": 0.7} for round in range(3)}},
+        mutants={at: {"m": {(0, GOES): {"pose[0]": -0.35, "pose[1]": 0.1}}}},
+        readings={at: [ReadExpression(text, PROBE, 1e-6) for text in ("pose[0]", "pose[1]")]},
+    )
+    checks, _ = candidates(suite.project, suite, found)
+    assert {one.statement.partition(",")[0] for one in checks} == {
+        "assert pose[0] == pytest.approx(PALLET[0]",
+        "assert pose[1] == pytest.approx(0.7",
+    }
+
+
+def test_tests_of_a_folder_find_helpers_beside_them(suite: SuiteChecks) -> None:
+    assert {"tests/test_it.py", "tests/checks.py"} <= {*suite.project.suite_files}
+    assert "mission.py" not in suite.project.suite_files
+
+
+def test_a_helper_of_another_file_is_imported_where_it_is_asked(tmp_path: Path) -> None:
+    other = "from checks import check_open\n\n\ndef test_more(arm):\n    assert arm\n    check_open(arm)\n"
+    mine = "import mission\n\n\ndef test_goes(arm):\n    mission.by_function(arm)\n"
+    folder = make(tmp_path, {"test_it.py": mine, "test_more.py": other, "checks.py": dedent(CHECKS)})
+    configuration = load_configuration(folder)
+    vocabulary = load_vocabulary(configuration.vocabulary, folder)
+    request = Request(configuration, vocabulary, rounds=1, seed=1, jobs=1)
+    found = SuiteChecks.of(SuiteFiles(request, tests=("tests/test_it.py",)))
+    asked = {one.statement: one.needs for one in found.transplants(place(found))}
+    assert asked["check_open(arm)"] == ("from checks import check_open",)

@@ -1,0 +1,154 @@
+"""Monitors tell survivors that go another way from every run of the original, with room on both sides."""
+
+from __future__ import annotations
+
+import ast
+import json
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import pytest
+
+from mutabot_suggest import noted, way
+from mutabot_suggest.checks import Monitor
+from mutabot_suggest.editing import edited
+from mutabot_suggest.project import PlaceInTest
+from mutabot_suggest.readings import Measured
+from mutabot_suggest.suite import SuiteChecks
+from mutabot_suggest.zones import monitors
+
+PLACE = PlaceInTest("pytest", "tests/test_it.py", "tests/test_it.py::test_it", ("cell",))
+X, Z, BOX = "cell.truth.tool_position().x", "cell.truth.tool_position().z", "cell.truth.box_position().z"
+THETA, OPENING = "cell.truth.tool_pose().theta_x", "cell.truth.opening()"
+Moments = Mapping[str, Sequence[float]]
+
+
+def noted_as(moments: Moments) -> dict[str, Any]:
+    rows = [list(row) for row in zip(*moments.values(), strict=True)]
+    return {"~cell": json.dumps([list(moments), rows])}
+
+
+def found(originals: Sequence[Moments], **mutants: Moments) -> list[Monitor]:
+    """The monitors, those that a person would rather write first."""
+    measured = Measured(
+        originals={PLACE: {(round, PLACE.node): noted_as(one) for round, one in enumerate(originals)}},
+        mutants={PLACE: {name: {(0, PLACE.node): noted_as(one)} for name, one in mutants.items()}},
+        readings={PLACE: []},
+    )
+    project: Any = None
+    return sorted(monitors(SuiteChecks(project), measured), key=lambda one: one.worth, reverse=True)
+
+
+def numbers(start: float, end: float, count: int = 11) -> list[float]:
+    return [start + (end - start) * number / (count - 1) for number in range(count)]
+
+
+def test_a_detour_breaks_a_bound_with_room_on_both_sides() -> None:
+    originals = [{X: numbers(0.0, 0.4)}, {X: numbers(0.0, 0.402)}]
+    best, *_ = found(originals, far=X_to(0.6), near=X_to(0.41))
+    assert best.condition == f"{X} < 0.5"
+    assert best.name == "tool x stays below 0.5"
+    assert best.trials == frozenset({("far", 0)})
+
+
+def X_to(end: float) -> Moments:  # noqa: N802  # it makes X
+    return {X: numbers(0.0, end)}
+
+
+@pytest.mark.parametrize("end", [0.402, 0.41, 0.425])
+def test_what_is_hardly_farther_than_the_original_gets_no_monitor(end: float) -> None:
+    assert found([X_to(0.4), X_to(0.402)], mutant=X_to(end)) == []
+
+
+def test_one_bound_that_several_survivors_break_comes_first() -> None:
+    best, *_ = found([X_to(0.4)], one=X_to(0.6), two=X_to(0.9), three={X: numbers(-0.6, 0.4)})
+    assert {mutant for mutant, _ in best.trials} == {"one", "two"}
+
+
+def test_a_short_cut_through_a_corner_breaks_two_bounds() -> None:
+    up_and_over = {X: [*[0.0] * 11, *numbers(0.0, 0.5)], Z: [*numbers(0.0, 0.5), *[0.5] * 11]}
+    straight = {X: numbers(0.0, 0.5, 22), Z: numbers(0.0, 0.5, 22)}
+    best, *_ = found([up_and_over], mutant=straight)
+    assert " or " in best.condition
+    for x, z in zip(*up_and_over.values(), strict=True):
+        assert eval(best.condition.replace(X, repr(x)).replace(Z, repr(z)))
+    assert not all(
+        eval(best.condition.replace(X, repr(x)).replace(Z, repr(z)))
+        for x, z in zip(*straight.values(), strict=True)
+    )
+
+
+def test_what_is_let_go_too_high_breaks_a_condition_on_the_opening() -> None:
+    heights = [*numbers(1.0, 1.4), *numbers(1.4, 1.0)]
+    closed_until_it_stands = {BOX: heights, OPENING: [0.05] * 21 + [0.085]}
+    dropped = {BOX: heights, OPENING: [0.05] * 14 + [0.085] * 8}
+    best, *_ = found([closed_until_it_stands], mutant=dropped)
+    assert best.is_release
+    assert best.condition.startswith(f"{BOX} < ")
+    assert f" or {OPENING} < " in best.condition
+    assert best.name.endswith("when the gripper opens")
+
+
+def test_an_angle_that_is_kept_has_bounds_and_one_that_turns_has_none() -> None:
+    kept, turned = {THETA: [180.0 - 91.0, 90.0, 91.0]}, {THETA: [89.0, 150.0, -170.0]}
+    best, *_ = found([kept], mutant=turned)
+    assert THETA in best.condition
+    assert found([{THETA: [0.0, 90.0, 180.0]}], mutant={THETA: [0.0, 90.0, 250.0]}) == []
+
+
+def test_a_monitor_stands_behind_what_it_watches_and_is_a_statement() -> None:
+    text = '"""T."""\n\n\ndef test_it(new_cell):\n    """Says so."""\n    cell = new_cell(3)\n    run(cell)\n'
+    (monitor,) = found([X_to(0.4)], mutant=X_to(0.9))[:1]
+
+    class Project:
+        own_modules: frozenset[str] = frozenset()
+
+        def text(self, file: str) -> str:
+            return text
+
+    project: Any = Project()
+    (changed,) = edited(project, [monitor.addition()]).values()
+    (test,) = [one for one in ast.parse(changed).body if isinstance(one, ast.FunctionDef)]
+    assert [ast.unparse(one).partition("(")[0] for one in test.body[1:]] == [
+        "cell = new_cell",
+        "cell.always",
+        "run",
+    ]
+
+
+class Truth:
+    def __init__(self) -> None:
+        self.x = 0.0
+
+    def tool(self) -> float:
+        return self.x
+
+    def box(self, name: str) -> float:
+        return math.nan
+
+
+class Cell:
+    """What can be watched."""
+
+    def __init__(self) -> None:
+        self.truth = Truth()
+        self.conditions: list[Any] = []
+
+    def always(self, condition: Any, name: str) -> None:
+        self.conditions.append(condition)
+
+
+def test_the_way_of_an_object_that_can_be_watched_is_noted_at_the_end_of_the_test() -> None:
+    cell = Cell()
+    way.watch("cell", cell)
+    way.watch("number", 3)
+    for number in range(5_000):
+        cell.truth.x = float(number)
+        assert all(condition() for condition in cell.conditions)
+    noted.note({})
+    texts, rows = json.loads(noted.values()["~cell"])
+    assert texts == ["cell.truth.tool()"]
+    assert 400 <= len(rows) <= 801
+    noted.note({})
+    assert noted.values() == {}, "the next test has its own way"
