@@ -38,7 +38,7 @@ SHORT: dict[str, list[str]] = {
     "same_results": [str(SCRIPTS / "witness_records")] * 2,
     "since_edits": ["--edits", "1", "--projects", "scales", "--rounds", "1"],
     "stdlib_corpus": ["colorsys"],
-    "stories_judged": ["--count", "2", "--sample", "2", "tracking"],
+    "stories_judged": ["--count", "1", "--sample", "8", "--bare", "tracking"],
     "suggested_checks": ["--seeds", "1", "scales"],
     "suite_length": ["--lengths", "50"],
     "ten_thousand": ["--mutants", "4000"],
