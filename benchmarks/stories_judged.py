@@ -7,8 +7,8 @@ each (``tests/suites/editor.py``) and runs the test of its story by plain pytest
 that writes the whole cell down after each control tick; likewise the original. Each part of the story, and
 the original's value beside it, must hold within the tolerances of ``stories/claims.py``; no story may be told
 in a test in which the original itself ends far apart with other seeds, unless it says so; and where nothing
-differs, nothing may. The exit code is 1 if anything is untrue, or nothing was judged. A FOLDER is a project whose campaign has run;
-its stories are made anew from what was recorded.
+differs, nothing may. The exit code is 1 if anything is untrue, or nothing was judged. A FOLDER is a project
+whose campaign has run; its stories are made anew from what was recorded.
 ``--bare`` takes the conditions that hold at every moment out of the tests, so that more survives.
 """
 
