@@ -174,7 +174,8 @@ class HardwareExecutor:
     def _ask(self, task: Task, *, is_again: bool) -> bool:
         print("\n".join(self._shown(task, is_again=is_again)), file=sys.stderr)
         while True:
-            print("  run it? [y]es, [n]o, [q]uit: ", end="", file=sys.stderr, flush=True)
+            # a line of its own: the bar is drawn anew below it, over what is typed
+            print("  run it? type y, n, or q to quit, and Enter", file=sys.stderr, flush=True)
             answer = sys.stdin.readline().strip().lower()
             if answer in ("y", "yes", "n", "no"):
                 return answer.startswith("y")
@@ -188,7 +189,8 @@ class HardwareExecutor:
         if mutant is None:
             yield f"hardware: the original program, {which}"
             return
-        yield f"hardware: mutant {mutant.number or mutant.operator}, {mutant.site.place}, {which}"
+        name = f"mutant {mutant.number}" if mutant.number else f"the {mutant.operator} control"
+        yield f"hardware: {name}, {mutant.site.place}, {which}"
         yield f"  what        {mutant.description}"
         if mutant.magnitude is not None:
             yield f"  difference  {mutant.magnitude:g} {mutant.unit or ''}"

@@ -106,10 +106,13 @@ class LimitRule:
         number = quantity.to_unit(number, unit) if unit else number
         above = number - table.min - table.margin if table.min is not None else inf
         below = table.max - table.margin - number if table.max is not None else inf
-        which = f"at least {table.min:g}" if not above >= below else f"at most {table.max:g}"
+        ends = (("at least", table.min), ("at most", table.max))
+        which = " and ".join(f"{words} {end:g} {unit}" for words, end in ends if end is not None)
         if table.margin:
-            which += f" with a margin of {table.margin:g}"
-        return RuleFinding(_least(above, below), unit, f"{quantity.name} {number:g} {unit}, {which} {unit}")
+            which += f", with a margin of {table.margin:g} {unit}"
+        return RuleFinding(
+            _least(above, below), unit, f"{quantity.name} {number:g} {unit}, allowed is {which}"
+        )
 
 
 @dataclass(frozen=True, slots=True)

@@ -30,7 +30,8 @@ class Disturb(Rule):
 
     Where: tests in which a simulated world is made.
 
-    Stands for: {parameters}.
+    Stands for: A worn gripper, another payload, a fixture, a camera or a joint that stands off: what the
+    published study leaves to future work as physical mutants.
     """
 
     name = "disturb"

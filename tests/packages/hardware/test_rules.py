@@ -79,13 +79,20 @@ def test_a_move_whose_end_nothing_tells_does_not_pass() -> None:
 def test_limits_are_in_their_own_unit() -> None:
     guard = TableGuard({"limit": [{"kind": "speed", "max": 250.0, "unit": "mm/s"}]})
     assert why(guard, {"speed": 0.25}) is None
-    assert why(guard, {"speed": 0.3}) == "speed 300 mm/s, at most 250 mm/s"
+    assert why(guard, {"speed": 0.3}) == "speed 300 mm/s, allowed is at most 250 mm/s"
 
 
-@pytest.mark.parametrize("speed", [float("nan"), float("inf")])
+@pytest.mark.parametrize("speed", [float("nan"), float("inf"), float("-inf")])
 def test_a_limit_lets_no_number_pass_that_is_none(speed: float) -> None:
     guard = TableGuard({"limit": [{"kind": "speed", "min": 0.0, "max": 0.25}]})
-    assert why(guard, {"speed": speed}) is not None
+    assert "allowed is at least 0 m/s and at most 0.25 m/s" in str(why(guard, {"speed": speed}))
+
+
+@pytest.mark.parametrize("end", ["min", "max"])
+def test_a_limit_with_one_end_names_that_one_of_what_is_no_number(end: str) -> None:
+    guard = TableGuard({"limit": [{"kind": "speed", end: 0.1}]})
+    words = {"min": "at least", "max": "at most"}[end]
+    assert why(guard, {"speed": float("nan")}) == f"speed nan m/s, allowed is {words} 0.1 m/s"
 
 
 def test_what_the_guard_cannot_read_does_not_pass_where_a_rule_needs_it() -> None:
