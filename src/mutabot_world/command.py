@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import closing
 from pathlib import Path
 from typing import Annotated, Any
@@ -47,8 +47,9 @@ def world(
         told = {"parameters": _data(suites(found)), "tests": _data(found)}
         context.print_json({"state": results.state, "rounds": results.rounds, **told})
     else:
-        for line in lines(found):
-            context.print(line)
+        for title, lines in sections(found):
+            if lines:
+                context.print_section(title, lines)
 
 
 def _tolerances(texts: Sequence[str]) -> Tolerances:
@@ -63,32 +64,24 @@ def _tolerances(texts: Sequence[str]) -> Tolerances:
     return found
 
 
-def lines(found: Sequence[WorldLadder]) -> list[str]:
-    """Return both tables and what was suffered unseen, as lines for a terminal."""
+def sections(found: Sequence[WorldLadder]) -> Iterator[tuple[str, list[str]]]:
+    """Yield both tables and what was suffered unseen, as titles with lines for a terminal."""
     whole = suites(found)
-    told = ["What the tests notice, suffered unseen first", ""]
-    told += _table(
-        ("parameter", "tried", "magnitudes", "unseen at", "noticed from", "by"),
-        [(*_name(one), one.bar, _sizes(one.unseen, one), _noticed(one), _by(one)) for one in whole],
-    )
-    told += ["", f"  {_LEGEND}", ""]
-    told += [f"  {one.sentence[0].upper()}{one.sentence[1:]}." for one in whole if one.ends]
-    if any(one.unseen for one in whole):
-        told += ["", "Suffered unseen: all tests pass, and the world ends otherwise", ""]
-        told += [f"  {one.parameter} {one.direction}: {one.finding}" for one in whole if one.unseen]
-    told += ["", "How robust the program is: up to which size the task is done", ""]
-    told += _table(
-        ("parameter", "tried", "lived with up to"), [(*_name(one), _robust(one)) for one in whole if one.ends]
-    )
+    known = [one for one in whole if one.ends]
+    columns = ("parameter", "tried", "magnitudes", "unseen at", "noticed from", "by")
+    rows = [(*_name(one), one.bar, _sizes(one.unseen, one), _noticed(one), _by(one)) for one in whole]
+    yield "What the tests notice, suffered unseen first", [*_table(columns, rows), "", _LEGEND]
+    yield "In sentences", [f"{one.sentence[0].upper()}{one.sentence[1:]}." for one in known]
+    unseen = [f"{one.parameter} {one.direction}: {one.finding}" for one in whole if one.unseen]
+    yield "Suffered unseen: all tests pass, and the world ends otherwise", unseen
+    robust = [(*_name(one), _robust(one)) for one in known]
+    title = "How robust the program is: up to which size the task is done"
+    yield title, _table(("parameter", "tried", "lived with up to"), robust)
     if len({one.tests for one in found}) > 1:
-        told += ["", "By test", ""]
-        rows = [(one.parameter + one.direction, one.bar, one.tests[0]) for one in _loose_first(found)]
-        told += _table(("parameter", "magnitudes", "test"), rows)
-    unknown = [one for one in whole if not one.ends]
-    if unknown:
-        told += ["", "Nothing is known of", ""]
-        told += [f"  {one.parameter} {one.direction}: {one.why_unknown}" for one in unknown]
-    return told
+        by_test = [(one.parameter + one.direction, one.bar, one.tests[0]) for one in _loose_first(found)]
+        yield "By test", _table(("parameter", "magnitudes", "test"), by_test)
+    unknown = [f"{one.parameter} {one.direction}: {one.why_unknown}" for one in whole if not one.ends]
+    yield "Nothing is known of", unknown
 
 
 def _loose_first(found: Sequence[WorldLadder]) -> list[WorldLadder]:
@@ -130,7 +123,7 @@ def _robust(one: WorldLadder) -> str:
 def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
     widths = [max(len(row[n]) for row in (head, *rows)) for n in range(len(head))]
     padded = ([cell.ljust(width) for cell, width in zip(row, widths, strict=True)] for row in (head, *rows))
-    return [f"  {'  '.join(cells).rstrip()}" for cells in padded]
+    return ["  ".join(cells).rstrip() for cells in padded]
 
 
 def _data(found: Sequence[WorldLadder]) -> list[dict[str, Any]]:

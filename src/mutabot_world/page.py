@@ -24,9 +24,10 @@ i { display: inline-block; min-width: 2.2rem; padding: 0 .2rem; text-align: cent
 .noticed { background: #cfe8d4 } .lived-with { background: #e8eef5 } .suffered-unseen { background: #f6b8a8;
     font-weight: 600 } .passed, .not-known { background: #eee } .some { outline: 2px dashed #888 }
 figure { display: inline-block; margin: .6rem 1.2rem .6rem 0 }
-figcaption { max-width: 17rem; font-size: .85rem }
+figcaption { max-width: 17rem; font-size: .85rem; overflow-wrap: anywhere }
 svg { background: #f7f8fa }
 """
+_KEY = "Ways of tool and things from above: grey as in the original, red disturbed; dots where they end."
 _LEGEND = (
     (WorldEnd.UNSEEN, "all tests pass, and the world ends otherwise"),
     (WorldEnd.LIVED, "all tests pass, and the world ends as it should"),
@@ -62,7 +63,8 @@ def page(results: Results, found: Sequence[WorldLadder], recordings: Any) -> str
         if one.ends
     )
     parts = (
-        f"<h1>Disturbances of the world</h1><p>{_text(results.state)}, {results.rounds} rounds</p>{legend}",
+        "<h1>Disturbances of the world</h1>"
+        f"<p>{_text(results.state)}, {_counted(results.rounds)}</p>{legend}",
         f'<h2>Parameters by tests</h2><div class="wide"><table>{head}{rows}</table></div>',
         f"<h2>What the tests notice</h2><ul>{told}</ul>",
         "<h2>How robust the program is</h2><p>The size up to which the task is done.</p>"
@@ -79,7 +81,7 @@ def _figures(results: Results, found: Sequence[WorldLadder], recordings: Any) ->
     """Drawings of what was suffered unseen: for each ladder the largest magnitude."""
     ids = {one.mutant.number: one.mutant.id for one in results.graded}
     drawn = [one for one in found if one.unseen][:_DRAWN]
-    yield "<h2>Recordings of what was suffered unseen</h2>" if drawn else ""
+    yield f"<h2>Recordings of what was suffered unseen</h2><p>{_KEY}</p>" if drawn else ""
     for one in drawn:
         size, test = one.unseen[-1], one.tests[0]
         number = one.numbers[size, test]
@@ -110,7 +112,8 @@ def _drawing(original: RecordedPaths, mutant: RecordedPaths) -> str:
         way = " ".join(f"{x:.1f},{y:.1f}" for x, y in placed)
         end = f'<circle cx="{placed[-1][0]:.1f}" cy="{placed[-1][1]:.1f}" r="3" fill="{colour}"/>'
         shapes.append(f'<polyline points="{way}" fill="none" stroke="{colour}"/>{end}')
-    return f'<svg width="{_EDGE}" height="{_EDGE}" role="img">{"".join(shapes)}</svg>'
+    label = 'role="img" aria-label="ways from above"'
+    return f'<svg width="{_EDGE}" height="{_EDGE}" {label}>{"".join(shapes)}</svg>'
 
 
 def _bar(one: WorldLadder | None) -> str:
@@ -131,6 +134,10 @@ def _finding(one: WorldLadder) -> str:
 
 def _name(one: WorldLadder) -> str:
     return f"{one.parameter} {'−' if one.direction == '-' else one.direction}".strip()
+
+
+def _counted(rounds: int) -> str:
+    return f"{rounds} round{'' if rounds == 1 else 's'}"
 
 
 def _short(test: str) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mutabot_world.command import lines
+from mutabot_world.command import sections
 from mutabot_world.judged import Judged, WorldEnd, WorldLadder, suites
 
 SIGNS = {"N": WorldEnd.NOTICED, "U": WorldEnd.UNSEEN, "L": WorldEnd.LIVED, "P": WorldEnd.PASSED}
@@ -57,6 +57,6 @@ def test_a_suite_notices_what_any_test_notices() -> None:
 
 
 def test_a_campaign_that_has_not_run_all_says_so() -> None:
-    told = lines([ladder("  "), ladder("LN", test="tests/test_a.py::test_other")])
-    assert any("your tests" in line.lower() for line in told)
-    assert "payload +: not run" in " ".join(lines([ladder("  ")]))
+    told = dict(sections([ladder("  "), ladder("LN", test="tests/test_a.py::test_other")]))
+    assert "Your tests notice" in told["In sentences"][0]
+    assert dict(sections([ladder("  ")]))["Nothing is known of"] == ["payload +: not run"]

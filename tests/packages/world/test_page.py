@@ -45,8 +45,10 @@ def test_the_page_names_every_shipped_parameter(section: str) -> None:
 def test_the_example_of_a_parameter_of_one_s_own_runs(tmp_path: Path) -> None:
     (block,) = [one for one in BLOCKS if "[[tool.mutabot.world.parameter]]" in one]
     parameter = block.partition("[[")[2]
-    found = run(project(tmp_path, f"[[{parameter}"))
+    found = run(project(tmp_path, f"[[{parameter}"), "-o", "rounds=1")
     assert found["speed +"]["ends"] == {"0.01": "lived with", "10": "suffered unseen", "50": "noticed"}
     page = tmp_path / "page.html"
     told(tmp_path, "--html", str(page))
-    assert "a belt that is 50 % faster, not one of 10 %" in page.read_text(encoding="utf-8")
+    text = page.read_text(encoding="utf-8")
+    assert "a belt that is 50 % faster, not one of 10 %" in text
+    assert "complete, 1 round<" in text

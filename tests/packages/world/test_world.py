@@ -51,6 +51,12 @@ def test_the_terminal_shows_what_is_suffered_unseen_first(speed: Path) -> None:
     assert done.stdout.index("suffered unseen at 10 %") < done.stdout.index("How robust the program is")
 
 
+def test_sentences_fit_the_terminal(speed: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "60")
+    done = mutabot(None, speed, "world")
+    assert max(map(len, done.stdout.splitlines())) <= 60
+
+
 def test_world_faults_are_in_no_score(speed: Path) -> None:
     done = mutabot(None, speed, "results", "--json")
     assert '"groups": []' in done.stdout.replace("\n", "") or '"mutants": []' in done.stdout
