@@ -29,7 +29,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import count
@@ -38,13 +38,13 @@ from statistics import linear_regression, mean
 from textwrap import dedent
 from typing import Any
 
-from mutabot.journal.database import connect_to_read
+from mutabot.journal.database import LAST, connect_to_read
 
 MOVES = 34  # per test
 MUTANTS_PER_MOVE = 3  # skip, repeat, reverse
 TESTS_PER_FILE = 25
 #: seconds between two looks at the campaign, and looks between two uses of the yardstick
-PAUSE, EVERY = 0.1, 5
+PAUSE, EVERY, YARDSTICKS = 0.1, 5, 5
 FIRST_TENTH, LAST_TENTH = (0.001, 0.1), (0.9, 0.999)
 SLOWER, LARGER, SHARE = 1.10, 1.05, 0.1
 TICKS = os.sysconf("SC_CLK_TCK")
@@ -174,7 +174,10 @@ class Campaign:
     def counts(self) -> dict[str, int]:
         """How many outcomes the journal holds, by verdict."""
         with self._journal() as connection:
-            return dict(connection.execute("SELECT verdict, count(*) FROM outcome GROUP BY verdict"))
+            rows = connection.execute(
+                f"SELECT verdict, count(*) FROM outcome WHERE rowid IN ({LAST}) GROUP BY verdict"
+            )
+            return dict(rows)
 
     def reused(self) -> int:
         """How many outcomes the last campaign took over."""
@@ -194,7 +197,8 @@ class Campaign:
 
     def at(self, share: float) -> Sample:
         """The first look at which this share of the outcomes was in the journal."""
-        return next(sample for sample in self.samples if sample.outcomes >= share * self.mutants)
+        reached = (sample for sample in self.samples if sample.outcomes >= share * self.mutants)
+        return next(reached, self.samples[-1])
 
 
 def mission(number: int) -> str:
@@ -248,15 +252,27 @@ def yardstick() -> float:
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
+def within(samples: Sequence[Sample], first: int, last: int) -> Sequence[Sample]:
+    """The looks between two numbers of outcomes, with the last before them and the first after them.
+
+    On a fast machine a tenth may pass between two looks: those around it still tell its slope.
+    """
+    start = max((at for at, sample in enumerate(samples) if sample.outcomes < first), default=0)
+    ends = (at for at, sample in enumerate(samples) if sample.outcomes > last)
+    return samples[start : next(ends, len(samples)) + 1]
+
+
 def per_mutant(campaign: Campaign, tenth: tuple[float, float]) -> dict[str, float]:
     """Milliseconds per mutant within a tenth: by the clock, of the processors, and these in yardsticks."""
     first, last = (round(share * campaign.mutants) for share in tenth)
-    seen = [sample for sample in campaign.samples if first <= sample.outcomes <= last]
+    seen = within(campaign.samples, first, last)
     outcomes = [sample.outcomes for sample in seen]
     # a slope, and not a difference: outcomes come in heaps, and a look may fall into the middle of one
     clock = linear_regression(outcomes, [sample.clock for sample in seen]).slope
     cpu = linear_regression(outcomes, [sample.cpu for sample in seen]).slope
-    used = mean(took for done, took in campaign.yardsticks if first <= done <= last)
+    middle = (first + last) / 2
+    nearest = sorted(campaign.yardsticks, key=lambda yard: abs(yard[0] - middle))[:YARDSTICKS]
+    used = mean(took for _, took in nearest)
     return {
         "clock_ms": round(1e3 * clock, 3),
         "cpu_ms": round(1e3 * cpu, 3),
