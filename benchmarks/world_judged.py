@@ -28,6 +28,7 @@ sys.path.insert(0, str(ROOT / "tests"))
 
 from suites.agreement import ENGINES, campaign, request_for, seeds_of  # noqa: E402
 from suites.corpus import copied  # noqa: E402
+from suites.editor import Facts  # noqa: E402
 
 _SETTLE = "mujoco.mj_setConst(m, mujoco.MjData(m)); mujoco.mj_forward(m, d)"
 _FIXTURE = """
@@ -162,7 +163,8 @@ def compare(name: str, engines: Sequence[str], only: set[str]) -> tuple[int, int
         for engine in engines:
             copy = copied(ROOT / "examples" / name, Path(folder).resolve() / engine / name)
             configure(copy, what, [one for one in what.parameters if one in only])
-            results[engine] = campaign(request_for(copy, engine, ["world"], 1))
+            needed = Facts.of(copy).hints.get("plugins", ())
+            results[engine] = campaign(request_for(copy, engine, ["world"], 1, needed))
         seeds = seeds_of(results)
         plain: dict[str, str] = {}
         same = other = 0

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 from mutabot.api.faults import ActiveFault
 
 from .change import NumberChange, Undo, change_at
-from .patching import live, resolve, wrap
+from .patching import live, mark_by, resolve, wrap
 
 _NEVER = "the test made no world, or the moment of the disturbance did not come"
 
@@ -31,6 +31,7 @@ class WorldFault(ActiveFault):
         self._key, self._undo, self._missing = random.random(), list[Undo](), ""
         self._disturbed: dict[int, _Disturbed] = {}
         self._earlier, self._has_made = list[Any](), False
+        mark_by(self.raising)
         if test != self.mutant.site.span.file:
             return
         moment = self.data["moment"]
@@ -71,7 +72,7 @@ class WorldFault(ActiveFault):
 
     def _wrap(self, reference: str, **what: Any) -> None:
         try:
-            self._undo.append(wrap(reference, self.raising, **what))
+            self._undo.append(wrap(reference, **what))
         except LookupError as error:
             self._missing = str(error)
 

@@ -12,6 +12,7 @@ from random import Random
 from typing import Any
 
 from .change import NothingThereError, NumberChange
+from .patching import marked, rebind
 
 _LEAST = 1e-9
 _AXES = "xyz"
@@ -148,14 +149,16 @@ def _before_steps(model: Any, then: Callable[[], None]) -> None:
     import mujoco  # noqa: PLC0415
 
     for name in _STEPS:
-        setattr(mujoco, name, _Around(getattr(mujoco, name), model, lambda data: then(), None))
+        function = getattr(mujoco, name)
+        rebind(function, _Around(function, model, lambda data: then(), None))
 
 
 def _after_steps(model: Any, then: Callable[[Any], None]) -> None:
     import mujoco  # noqa: PLC0415
 
     for name in ("mj_step", "mj_forward"):
-        setattr(mujoco, name, _Around(getattr(mujoco, name), model, None, then))
+        function = getattr(mujoco, name)
+        rebind(function, _Around(function, model, None, then))
 
 
 class _Around:
@@ -174,7 +177,11 @@ class _Around:
     def __call__(self, model: Any, data: Any, *arguments: Any, **named: Any) -> Any:
         if model is self._model and self._before is not None:
             self._before(data)
-        result = self.__wrapped__(model, data, *arguments, **named)
+        try:
+            result = self.__wrapped__(model, data, *arguments, **named)
+        except Exception as error:
+            marked(error)
+            raise
         if model is self._model and self._after is not None:
             self._after(data)
         return result

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import inspect
+import sys
 from collections.abc import Callable, Iterator
 from importlib import import_module
 from typing import Any
@@ -16,6 +17,8 @@ Before = Callable[..., tuple[tuple[Any, ...], dict[str, Any]] | None]
 After = Callable[[Any, Any], object]
 #: marks an exception as one of the function's own, and returns it
 Own = Callable[[BaseException], BaseException]
+
+_marks: list[Own] = []
 
 
 def resolve(reference: str) -> tuple[Any, str, Any]:
@@ -34,11 +37,28 @@ def resolve(reference: str) -> tuple[Any, str, Any]:
         raise LookupError(f"there is no {reference}: {error}") from error
 
 
-def wrap(reference: str, own: Own, *, before: Before | None = None, after: After | None = None) -> Undo:
+def marked(error: BaseException) -> BaseException:
+    """Return an exception that a function raises itself, noted as none of the disturbance's."""
+    return _marks[-1](error) if _marks else error
+
+
+def mark_by(own: Own) -> None:
+    """Let a disturbance note what functions raise themselves; there is one in a process at a time."""
+    _marks[:] = [own]
+
+
+def rebind(old: Any, new: Any) -> None:
+    """Put a function in the place of another one, under all names that modules have for that."""
+    for module in [*sys.modules.values()]:
+        for name, found in [*(getattr(module, "__dict__", None) or {}).items()]:
+            if found is old:
+                setattr(module, name, new)
+
+
+def wrap(reference: str, *, before: Before | None = None, after: After | None = None) -> Undo:
     """Let something be called before or after a function, a method, or the making of a class's objects.
 
-    ``own``: what the function itself raises, it raises still. Returns what takes it away again. Raises
-    LookupError.
+    Returns what takes it away again. Raises LookupError.
     """
     owner, last, found = resolve(reference)
     is_class = isinstance(found, type)
@@ -57,7 +77,7 @@ def wrap(reference: str, own: Own, *, before: Before | None = None, after: After
         try:
             result = found(*arguments, **named)
         except BaseException as error:
-            own(error)
+            marked(error)
             raise
         finally:
             depth -= 1

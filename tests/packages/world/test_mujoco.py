@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from random import Random
+from types import ModuleType
 from typing import Any
 
 import mujoco
@@ -13,7 +15,7 @@ import pytest
 import mutabot_world.mujoco as on_mujoco
 from mutabot_world.change import NothingThereError, NumberChange
 from mutabot_world.files import parameters_of
-from mutabot_world.patching import live
+from mutabot_world.patching import live, rebind
 from mutabot_world.tables import WorldTable
 
 MODEL = """
@@ -42,7 +44,7 @@ def model() -> Iterator[Any]:
     kept = {name: getattr(mujoco, name) for name in ("mj_step", "mj_step1", "mj_forward")}
     yield mujoco.MjModel.from_xml_string(MODEL)
     for name, function in kept.items():
-        setattr(mujoco, name, function)
+        rebind(getattr(mujoco, name), function)
 
 
 def disturb(model: Any, function: str, kind: str, amount: float, names: str = "*", **options: Any) -> None:
@@ -80,6 +82,18 @@ def test_a_position_is_off_also_after_a_framework_has_put_the_body_elsewhere(mod
     mujoco.mj_forward(model, data)
     mujoco.mj_step(model, data)
     assert model.body("stand").pos[0] == pytest.approx(0.4)
+
+
+def test_programs_that_hold_functions_under_names_of_their_own_are_disturbed(
+    model: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    holder: Any = ModuleType("holder")
+    holder.step = mujoco.mj_step
+    monkeypatch.setitem(sys.modules, "holder", holder)
+    disturb(model, "sensor", "offset", 0.5, "angle")
+    data = mujoco.MjData(model)
+    holder.step(model, data)
+    assert data.sensordata[0] == pytest.approx(0.5, abs=0.01)
 
 
 def test_a_sensor_reads_more(model: Any) -> None:

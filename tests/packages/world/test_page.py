@@ -19,6 +19,7 @@ BLOCKS = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
 SHIPPED = {
     "What the paper names, in the simulated cell": Path(mutabot_cell.__file__).with_name("world.toml"),
     "Any program on MuJoCo": Path(mutabot_world.__file__).with_name("mujoco.toml"),
+    "Any program on PyBullet": Path(mutabot_world.__file__).with_name("pybullet.toml"),
 }
 
 

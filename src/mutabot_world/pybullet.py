@@ -1,0 +1,277 @@
+"""Disturbances of any program on PyBullet: what ``pybullet.toml`` names.
+
+Importing this puts functions around those of PyBullet that load bodies, or say again what a disturbance
+changed: what a program sets itself, or after a reset of the simulation, is disturbed as well. Each
+disturbance is a function of a body or of what gravity was set to, of the change in SI units and, by name, of
+``names``, in which ``*`` stands for any text. Bodies without a name are called ``body 3``, by their number.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from fnmatch import fnmatchcase
+from random import Random
+from typing import Any
+
+import pybullet
+import wrapt
+
+from .change import NothingThereError, NumberChange
+from .patching import marked, rebind
+
+#: the arguments of functions, in their order; those of all others are told by name alone
+_ORDER = {
+    "changeDynamics": ("bodyUniqueId", "linkIndex", "mass", "lateralFriction"),
+    "resetBasePositionAndOrientation": ("bodyUniqueId", "posObj", "ornObj"),
+    "setGravity": ("gravX", "gravY", "gravZ"),
+    "setJointMotorControl2": (
+        "bodyUniqueId", "jointIndex", "controlMode", "targetPosition", "targetVelocity", "force",
+        "positionGain", "velocityGain", "maxVelocity",
+    ),
+    "setJointMotorControlArray": (
+        "bodyUniqueId", "jointIndices", "controlMode", "targetPositions", "targetVelocities", "forces",
+        "positionGains", "velocityGains",
+    ),
+}  # fmt: skip
+_LOADING = ("loadURDF", "loadSDF", "loadMJCF", "loadBullet", "createMultiBody")
+_REMOVING = ("removeBody", "resetSimulation", "disconnect")
+#: what PyBullet takes for arguments of motors that are not given
+_DEFAULTS = {"force": 100000.0, "positionGain": 0.1}
+_LEAST, _AXES, _BASE, _CLIENTS = 1e-9, "xyz", -1, 16
+
+#: PyBullet's own functions, by name, and what changes the arguments of their calls by the program
+_own: dict[str, Any] = {}
+_changes: dict[str, list[Callable[[dict[str, Any]], None]]] = {name: [] for name in _ORDER}
+_worlds: dict[tuple[int, object], Body | Pull] = {}
+
+
+class Body:
+    """A body that was loaded.
+
+    Attributes:
+        client: of its simulation.
+        number: PyBullet's own, unique in the simulation.
+        name: as its file has it.
+    """
+
+    def __init__(self, client: int, number: int) -> None:
+        self.client, self.number = client, number
+        self.name = pybullet.getBodyInfo(number, physicsClientId=client)[1].decode() or f"body {number}"
+
+    def links(self, names: str) -> list[int]:
+        """Its links that are meant; the base is -1, and has the body's own name. Raises NothingThereError."""
+        return self._named(names, "body or link", {_BASE: self.name, **self._joints(12)})
+
+    def bases(self, names: str) -> list[int]:
+        """Its base, if that is meant. Raises NothingThereError."""
+        return self._named(names, "body", {_BASE: self.name})
+
+    def joints(self, names: str) -> list[int]:
+        """Its joints that are meant, of those that move. Raises NothingThereError."""
+        fixed = [number for number, kind in self._joints(2).items() if kind == pybullet.JOINT_FIXED]
+        return self._named(names, "joint", {n: name for n, name in self._joints(1).items() if n not in fixed})
+
+    def is_of(self, named: dict[str, Any]) -> bool:
+        """Whether a call of one of PyBullet's functions is about it."""
+        key = named.get("physicsClientId", 0), named.get("bodyUniqueId")
+        # another body may have the number after a reset of the simulation
+        return key == (self.client, self.number) and _worlds.setdefault(key, self) is self
+
+    def own(self, name: str, *arguments: Any, **named: Any) -> Any:
+        """Call a function of PyBullet itself for it."""
+        return _own.get(name, getattr(pybullet, name))(
+            self.number, *arguments, **named, physicsClientId=self.client
+        )
+
+    def _joints(self, item: int) -> dict[int, Any]:
+        count = pybullet.getNumJoints(self.number, physicsClientId=self.client)
+        found = {n: self.own("getJointInfo", n)[item] for n in range(count)}
+        return {n: one.decode() if isinstance(one, bytes) else one for n, one in found.items()}
+
+    def _named(self, names: str, kind: str, known: dict[int, str]) -> list[int]:
+        found = [
+            number
+            for number, name in known.items()
+            if fnmatchcase(name, names) or fnmatchcase(f"{self.name}/{name}", names)
+        ]
+        if not found:
+            of_all = sorted({one.name for one in _worlds.values() if isinstance(one, Body)} | {self.name})
+            there = ", ".join(filter(None, known.values())) or "none"
+            raise NothingThereError(
+                f"no {kind} is named {names!r}; the last body has: {there}; bodies: {', '.join(of_all)}"
+            )
+        return found
+
+
+class Pull:
+    """Gravity that a program has set.
+
+    Attributes:
+        client: of the simulation.
+        gravity: along x, y and z, m/s².
+    """
+
+    def __init__(self, client: int, gravity: Sequence[float]) -> None:
+        self.client, self.gravity = client, tuple(gravity)
+
+
+def mass(world: Any, change: NumberChange, *, names: str, random: Random) -> None:
+    """Mass of links, kg, with their inertia; what has none stands still."""
+    body = _body(world)
+    links = [link for link in body.links(names) if body.own("getDynamicsInfo", link)[0] > 0.0]
+    if not links:
+        raise NothingThereError(f"{body.name} has no mass: it stands still")
+    _of_links(body, links, "mass", change, _LEAST)
+
+
+def friction(world: Any, change: NumberChange, *, names: str, random: Random) -> None:
+    """Sliding friction of links: of two that touch, PyBullet multiplies both."""
+    body = _body(world)
+    _of_links(body, body.links(names), "lateralFriction", change)
+
+
+def damping(world: Any, change: NumberChange, *, names: str, random: Random) -> None:
+    """Damping of joints, N·s/m or N·m·s/rad."""
+    body = _body(world)
+    _of_links(body, body.joints(names), "jointDamping", change)
+
+
+def position(world: Any, change: NumberChange, *, names: str, random: Random, axis: str) -> None:
+    """Where bodies are put along an axis of the world, m, as they are loaded and whenever they are reset."""
+    body, number = _body(world), _AXES.index(axis)
+    body.bases(names)
+
+    def moved(place: Sequence[float]) -> list[float]:
+        return [float(change(one)) if n == number else float(one) for n, one in enumerate(place)]
+
+    def put(named: dict[str, Any]) -> None:
+        if body.is_of(named):
+            named["posObj"] = moved(named["posObj"])
+
+    place, turned = body.own("getBasePositionAndOrientation")
+    speeds = body.own("getBaseVelocity")
+    body.own("resetBasePositionAndOrientation", moved(place), turned)
+    body.own("resetBaseVelocity", *speeds)
+    _changes["resetBasePositionAndOrientation"].append(put)
+
+
+def gain(world: Any, change: NumberChange, *, names: str, random: Random) -> None:
+    """Gain of the position control of joints."""
+    _of_motors(_body(world), change, names, "positionGain")
+
+
+def strength(world: Any, change: NumberChange, *, names: str, random: Random) -> None:
+    """Largest force or torque of the motors of joints, N or Nm, as the program gives it."""
+    _of_motors(_body(world), change, names, "force")
+
+
+def gravity(world: Any, change: NumberChange, *, names: str, random: Random) -> None:
+    """Gravity along the vertical, m/s²; more of it pulls harder."""
+    if not isinstance(world, Pull):
+        raise NothingThereError("the program sets no gravity")
+    x, y, z = world.gravity
+    _own["setGravity"](x, y, -float(change(-z)), physicsClientId=world.client)
+
+
+def _body(world: Any) -> Body:
+    if not isinstance(world, Body):
+        raise NothingThereError("the program loads no body")
+    return world
+
+
+def _of_links(body: Body, links: Iterable[int], key: str, change: NumberChange, least: float = 0.0) -> None:
+    """Change a number of links now, and each time that the program says it anew."""
+    meant = {*links}
+
+    def say(named: dict[str, Any]) -> None:
+        if body.is_of(named) and named["linkIndex"] in meant and key in named:
+            before = float(named[key])
+            named[key] = max(float(change(before)), least)
+            if key == "mass" and "localInertiaDiagonal" in named and before:
+                factor = named[key] / before
+                named["localInertiaDiagonal"] = [one * factor for one in named["localInertiaDiagonal"]]
+
+    for link in meant:
+        mass, friction, inertia = body.own("getDynamicsInfo", link)[:3]
+        damping = body.own("getJointInfo", link)[6] if link != _BASE else 0.0
+        there = {"mass": mass, "lateralFriction": friction, "jointDamping": damping}
+        named = {"bodyUniqueId": body.number, "physicsClientId": body.client, "linkIndex": link}
+        named |= {key: there[key], **({"localInertiaDiagonal": inertia} if key == "mass" else {})}
+        say(named)
+        _own["changeDynamics"](**named)
+    _changes["changeDynamics"].append(say)
+
+
+def _of_motors(body: Body, change: NumberChange, names: str, key: str) -> None:
+    joints, default = {*body.joints(names)}, _DEFAULTS[key]
+
+    def of_one(named: dict[str, Any]) -> None:
+        if body.is_of(named) and named["jointIndex"] in joints:
+            named[key] = float(change(float(named.get(key, default))))
+
+    def of_many(named: dict[str, Any]) -> None:
+        if body.is_of(named) and joints & {*named["jointIndices"]}:
+            numbers = [*named["jointIndices"]]
+            values = [float(one) for one in named.get(f"{key}s", [default] * len(numbers))]
+            pairs = zip(numbers, values, strict=True)
+            named[f"{key}s"] = [float(change(one)) if n in joints else one for n, one in pairs]
+
+    _changes["setJointMotorControl2"].append(of_one)
+    _changes["setJointMotorControlArray"].append(of_many)
+
+
+def _around(name: str) -> Callable[..., Any]:
+    """What is called instead of a function: with changed arguments, and bodies and gravity noted."""
+
+    def call(wrapped: Any, instance: Any, arguments: tuple[Any, ...], named: dict[str, Any]) -> Any:
+        if name in _ORDER:
+            named = {**dict(zip(_ORDER[name], arguments, strict=False)), **named}
+            arguments = arguments[len(_ORDER[name]) :]
+            for change in _changes[name]:
+                change(named)
+        try:
+            result = wrapped(*arguments, **named)
+        except pybullet.error as error:
+            marked(error)
+            raise
+        _note(name, named)
+        return result
+
+    return call
+
+
+def _note(name: str, named: dict[str, Any]) -> None:
+    """Note what there is after a call."""
+    client = named.get("physicsClientId", 0)
+    if name in _REMOVING:
+        for key in [key for key in _worlds if key[0] == client]:
+            if name != "removeBody" or key[1] == named.get("bodyUniqueId"):
+                del _worlds[key]
+    elif name == "setGravity":
+        _worlds[client, "gravity"] = Pull(client, [named[axis] for axis in _ORDER[name]])
+    elif name in _LOADING:
+        _find_bodies(client)
+
+
+def _find_bodies(client: int) -> None:
+    for index in range(pybullet.getNumBodies(physicsClientId=client)):
+        number = pybullet.getBodyUniqueId(index, physicsClientId=client)
+        if (client, number) not in _worlds:
+            _worlds[client, number] = Body(client, number)
+
+
+def _begin() -> None:
+    for name in (*_ORDER, *_LOADING, *_REMOVING):
+        _own[name] = getattr(pybullet, name)
+        # clients of pybullet_utils take what says of itself that it is a built-in function
+        rebind(_own[name], wrapt.FunctionWrapper(_own[name], _around(name)))
+    for client in range(_CLIENTS):
+        if pybullet.isConnected(client):
+            _find_bodies(client)
+            found = pybullet.getPhysicsEngineParameters(client)
+            pull = [found[f"gravityAcceleration{axis}"] for axis in "XYZ"]
+            if any(pull):
+                _worlds[client, "gravity"] = Pull(client, pull)
+
+
+_begin()
