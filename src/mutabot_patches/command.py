@@ -1,0 +1,67 @@
+"""``mutabot patches``: writes the reverted fixes of a repository's history as patches."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from mutabot.api.reports import CommandContext, UsageError
+
+from .extension import FAMILY
+from .history import FIXES, Reverted, reverted
+
+_PatchPaths = Annotated[
+    list[str] | None, typer.Argument(metavar="[PATH]...", help="Files and folders of the program; else all.")
+]
+_FromGit = Annotated[
+    str, typer.Option("--from-git", metavar="A..B", help="The commits to look at, as git names them.")
+]
+_Match = Annotated[
+    str, typer.Option("--match", metavar="REGEX", help="What the message of a commit that mends has in it.")
+]
+_To = Annotated[str, typer.Option("--to", metavar="FOLDER", help="Where patches are written.")]
+
+
+def patches(
+    context: CommandContext,
+    paths: _PatchPaths = None,
+    *,
+    from_git: _FromGit,
+    match: _Match = FIXES,
+    to: _To = "patches",
+    json: bool = False,
+) -> None:
+    """Write the reverted fixes of the repository's history as patches.
+
+    Each takes the program's part of a commit back, if that still applies. `mutabot run --family patch` runs
+    them.
+    """
+    root = context.journal.parent.parent
+    found = list(reverted(root, from_git, match, paths or []))
+    states = {one.commit: _write(root, to, one) for one in found}
+    if json:
+        told = [{"commit": one.commit, "subject": one.subject, **states[one.commit]} for one in found]
+        context.print_json({"commits": told})
+        return
+    for one in found:
+        file, why = states[one.commit]["file"], states[one.commit]["why_not"]
+        context.print(f"{file or 'no patch'}  {one.commit[:10]} {one.subject}{f': {why}' if why else ''}")
+    written = sum(bool(one["file"]) for one in states.values())
+    context.tell([f"{written} of {len(found)} fixes can be taken back: mutabot run --family {FAMILY}"])
+
+
+def _write(root: Path, to: str, one: Reverted) -> dict[str, str | None]:
+    """Write a patch; return its file in the project, or why there is none. Raises UsageError."""
+    if one.why_not:
+        return {"file": None, "why_not": one.why_not}
+    path = root / to / one.name
+    if not path.resolve().is_relative_to(root.resolve()):
+        raise UsageError(f"--to {to}: a folder in that of the project")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(one.content)
+    except OSError as error:
+        raise UsageError(f"--to {to}: {error.strerror or error}") from None
+    return {"file": path.relative_to(root).as_posix(), "why_not": None}

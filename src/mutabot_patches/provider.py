@@ -1,0 +1,238 @@
+"""Plans patches: a mutant for each unified diff that applies to the project."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+
+from mutabot.api.faults import (
+    Activation,
+    FaultProvider,
+    Original,
+    Planned,
+    PlannedMutant,
+    ProgramText,
+    Project,
+    Rule,
+    Site,
+    TextPlace,
+)
+from mutabot.api.reports import UsageError
+
+from .applying import HunkExtent
+from .changes import Patch, read_patch
+from .diffs import PatchError
+from .extension import FAMILY, PROVIDER, TABLE
+from .functions import ChangedFunction, changed_functions, extent_of, first_statement
+from .suite import FilesOfTests
+from .tables import PatchesTable
+
+ACTIVE = "mutabot_patches.inside:PatchedFiles"
+_SUFFIXES = (".patch", ".diff")
+#: families beside which functions may be looked at: the text of a file has the places of one provider
+_BESIDE = {FAMILY, "robot", "graded", "catalogue", "middleware", "world"}
+
+
+class ApplyPatch(Rule):
+    """Files of the project are as a patch makes them: several lines, in several files, files of data too.
+
+    Where: what unified diffs of the project's folder of patches change.
+
+    Stands for: Whatever the patches are: bugs that were found, fixes that were reverted, faults that people
+    or programs wrote.
+    """
+
+    name = "patch"
+    family = FAMILY
+
+
+@dataclass(frozen=True, slots=True)
+class _PatchLooked:
+    """A patch that applies to the program.
+
+    Attributes:
+        name: of its file, relative to the project.
+        patch: what it makes of files.
+        functions: by path, the functions that differ, if nothing else does; else empty.
+        beginnings: where these functions begin: file, extent of the first statement, qualified name.
+    """
+
+    name: str
+    patch: Patch
+    functions: Mapping[str, tuple[ChangedFunction, ...]]
+    beginnings: tuple[tuple[str, HunkExtent, str], ...]
+
+    @classmethod
+    def of(cls, name: str, patch: Patch) -> _PatchLooked:
+        """Look at what a patch changes."""
+        functions = _functions(patch)
+        found = list[tuple[str, HunkExtent, str]]()
+        for file in patch.files if functions else ():
+            tree = ast.parse(file.before or b"")
+            for one in functions[file.path]:
+                node = first_statement(tree, one)
+                if node is None:
+                    return cls(name, patch, {}, ())
+                found.append((file.path, extent_of(node), one.name))
+        return cls(name, patch, functions, tuple(found))
+
+
+class PatchFaults(FaultProvider):
+    """Patches of the project's files."""
+
+    name = PROVIDER
+    families = (FAMILY,)
+    location = "patch"
+
+    def rules(self) -> Sequence[Rule]:
+        """The one operator, whatever the patch."""
+        return [ApplyPatch()]
+
+    def texts(self, project: Project, first: int, tell: Callable[[str], None]) -> Sequence[ProgramText]:
+        """Where the functions begin that patches change: which tests call them is looked at."""
+        if not set(project.families) <= _BESIDE:
+            return ()
+        looked = [one for _, one in _read_all(project, ()) if isinstance(one, _PatchLooked)]
+        return _places(looked, project.root, first)
+
+    def plan(self, project: Project, original: Original) -> Planned:
+        """A mutant for each patch; those that do not apply are left out, with the reason."""
+        tests = [test for each in original.tests for test in each]
+        planned = Planned()
+        found = list(_read_all(project, tests))
+        looked_at = original.texts.get(self.name, ())
+        known = {(text.file, place.extent): place.number for text in looked_at for place in text.places}
+        for file, one in found:
+            if isinstance(one, _PatchLooked):
+                self._plan_one(planned, one, original, known)
+            else:
+                site = Site.of_parameter(file, "patch")
+                planned.mutants.append(PlannedMutant(self.mutant(ApplyPatch(), site, file), str(one)))
+        return planned
+
+    def _plan_one(
+        self,
+        planned: Planned,
+        one: _PatchLooked,
+        original: Original,
+        known: Mapping[tuple[str, HunkExtent], int],
+    ) -> None:
+        files = one.patch.files
+        hunks = [(file.path, extent) for file in files for extent in file.extents]
+        site = Site.of_patch(one.name, hunks)
+        contents = {file.path: file.after.decode("latin-1") for file in files}
+        reaching = _reaching(one, original, known)
+        told = {
+            path: [[each.name, each.old, each.new] for each in found]
+            for path, found in one.functions.items()
+            if reaching is not None
+        }
+        keys = (Activation.EACH_TEST,) if reaching is not None else ()
+        data = {"files": contents, "functions": told}
+        active = Activation(ACTIVE, data, keys, Activation.AT_ONCE)
+        mutant = self.mutant(ApplyPatch(), site, _description(one))
+        does = {path: sha256(text.encode()).hexdigest() for path, text in contents.items()}
+        planned.mutants.append(PlannedMutant(mutant, does=does, active=active))
+        for round, tests in enumerate(original.tests):
+            planned.reach(round, site, tests if reaching is None else reaching[round])
+
+
+def _read_all(project: Project, tests: Iterable[str]) -> Iterator[tuple[str, _PatchLooked | PatchError]]:
+    """Yield the patches of a project by their names, or why they make no mutant."""
+    suite = FilesOfTests(tests, project.program_files())
+    for path in files_of(project.tables.get(TABLE) or PatchesTable(), project.root):
+        name = path.relative_to(project.root).as_posix()
+        try:
+            patch = read_patch(path.read_bytes(), project.root, suite.has)
+            yield name, _PatchLooked.of(name, patch)
+        except OSError as error:
+            yield name, PatchError(f"it cannot be read: {error.strerror or error}")
+        except PatchError as error:
+            yield name, error
+
+
+def files_of(table: PatchesTable, root: Path) -> list[Path]:
+    """Return the files of patches, in their order. Raises UsageError if there are none."""
+    found = dict[Path, None]()
+    for pattern in table.files:
+        if Path(pattern).is_absolute() or ".." in Path(pattern).parts:
+            raise UsageError(f"[tool.mutabot.{TABLE}] files: {pattern!r} is not in the project's folder")
+        if (root / pattern).is_dir():
+            fitting = [one for one in (root / pattern).rglob("*") if one.suffix in _SUFFIXES]
+        else:
+            fitting = [one for one in root.glob(pattern) if one.is_file()]
+        if not fitting:
+            raise UsageError(
+                f"[tool.mutabot.{TABLE}] files: {pattern!r} fits no patch of the project; it is a file, a "
+                "pattern, or a folder with files *.patch or *.diff"
+            )
+        found.update(dict.fromkeys(sorted(fitting)))
+    return list(found)
+
+
+def _functions(patch: Patch) -> dict[str, tuple[ChangedFunction, ...]]:
+    """The functions that a patch changes, by path; empty if it changes anything else."""
+    found = dict[str, tuple[ChangedFunction, ...]]()
+    for file in patch.files:
+        functions = None
+        if file.path.endswith(".py") and file.before is not None:
+            with suppress(SyntaxError, ValueError):
+                functions = changed_functions(file.before, file.after, file.path)
+        if functions is None:
+            return {}
+        found[file.path] = functions
+    return found
+
+
+def _places(looked: Sequence[_PatchLooked], root: Path, first: int) -> list[ProgramText]:
+    """The texts with a place where each function begins."""
+    found = dict[str, dict[HunkExtent, str]]()
+    for one in looked:
+        for file, extent, name in one.beginnings:
+            found.setdefault(file, {}).setdefault(extent, name)
+    texts, number = list[ProgramText](), first
+    for file, names in found.items():
+        content = (root / file).read_bytes()
+        statements = (one for one in ast.walk(ast.parse(content)) if isinstance(one, ast.stmt))
+        kinds = {extent_of(one): type(one).__name__ for one in statements}
+        places = [
+            TextPlace(
+                n, Site.in_program(file, extent, name, name).span, name, 1, kinds[extent], statement=True
+            )
+            for n, (extent, name) in enumerate(names.items(), start=number)
+        ]
+        number += len(places)
+        texts.append(ProgramText.of(file, content, places, {}))
+    return texts
+
+
+def _reaching(
+    one: _PatchLooked, original: Original, known: Mapping[tuple[str, HunkExtent], int]
+) -> list[list[str]] | None:
+    """The tests of each round that call what a patch changes, in this process or below it.
+
+    None if a process that runs cannot become the mutant, or if who calls it is not known.
+    """
+    numbers = {known.get((file, extent)) for file, extent, _ in one.beginnings}
+    is_unknown = not numbers or None in numbers or len(original.text) < len(original.tests)
+    if is_unknown or {file.path for file in one.patch.files} & {*original.refused_files()}:
+        return None
+    found = list[list[str]]()
+    for round, tests in enumerate(original.tests):
+        seen = original.text[round]
+        by_test = (pair for each in (seen.reached, *seen.below.values()) for pair in each.items())
+        reached = {test for test, places in by_test if numbers & {*places}}
+        if "" in reached:
+            return None
+        found.append([test for test in tests if test in reached])
+    return found
+
+
+def _description(one: _PatchLooked) -> str:
+    title = f": {one.patch.title}" if one.patch.title else ""
+    notes = f" ({', '.join(one.patch.notes)})" if one.patch.notes else ""
+    return f"{one.name}{title}{notes}"
