@@ -22,7 +22,7 @@ class FilesOfTests:
     """
 
     def __init__(self, tests: Iterable[str], program: Collection[str]) -> None:
-        self._files = {test.partition("::")[0] for test in tests}
+        self._files = {test.partition("::")[0] for test in tests} - {*program}  # it may have doctests
         of_program = {folder for file in program for folder in PurePosixPath(file).parents}
         folders = {PurePosixPath(file).parent for file in self._files}
         self._folders = folders - of_program - {PurePosixPath()}

@@ -10,6 +10,7 @@ import pytest
 
 from mutabot_patches.changes import read_patch
 from mutabot_patches.diffs import PatchError
+from mutabot_patches.suite import FilesOfTests
 
 LINES = "".join(f"line{n} = {n}\n" for n in range(1, 21))
 HEAD = "--- a/x.py\n+++ b/x.py\n"
@@ -199,3 +200,9 @@ def test_where_hunks_stand_is_told_of_the_file_as_it_is(tmp_path: Path) -> None:
     patch = read_patch((HEAD + hunks.replace("@@ -1,", "@@ -2,")).encode(), tmp_path, lambda _: False)
     assert patch.files[0].extents == ((2, 0, 2, 9), (17, 0, 17, 11))
     assert patch.notes == ("hunk 1 1 line further down", "hunk 2 1 line further down")
+
+
+def test_a_file_of_the_program_with_doctests_is_none_of_the_suite() -> None:
+    files = FilesOfTests(["mission.py::mission.go", "tests/test_go.py::test_go"], ["mission.py"])
+    found = ["mission.py", "tests/test_go.py", "tests/data/go.json", "robot.py", "cell/conftest.py"]
+    assert [files.has(one) for one in found] == [False, True, True, False, True]
