@@ -110,7 +110,7 @@ class Task:
     names: Mapping[str, str]
 
 
-_SAWYER = {"mass": "obj", "friction": "*", "gain": "?_close"}
+_SAWYER = {"mass": "obj", "friction": "*", "gain": "*"}
 TASKS = {
     "metaworld pick-place": Task(
         METAWORLD.format(task="pick-place-v3", policy="SawyerPickPlaceV3Policy"), "mujoco", _SAWYER

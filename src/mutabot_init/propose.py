@@ -8,10 +8,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 from mutabot.api.reports import MutabotError, UsageError
 from mutabot.api.values import Vocabulary, load_vocabulary, shipped_vocabularies
 
+from .beside import brought_proposals
 from .layout import (
     NOTHING_WRITTEN,
     Layout,
@@ -104,6 +106,7 @@ class _Look:
         named: proposed operations that have a name on a middleware.
         operations: calls that no shipped vocabulary describes, whether or not they are proposed.
         oracle: files on the tests' side that read from the robot.
+        beside: lines of the configuration that packages beside this one propose.
     """
 
     def __init__(self, root: Path, given: Sequence[Path], limit: float, tell: Callable[[str], None]) -> None:
@@ -131,6 +134,9 @@ class _Look:
             for one in self.operations:
                 one.is_plain = one.is_taken = not one.call.problem and not one.call.is_property
         self.oracle = self._files_that_read()
+        self.beside = [
+            line for name, one in brought_proposals().items() for line in one.lines(self._seen_by(name))
+        ]
 
     @property
     def drafts(self) -> list[Proposal | MessageEntry]:
@@ -178,6 +184,9 @@ class _Look:
             or _nodes_tell(call)
             or (_has_limits(call) and not any(one.knows_arguments(call) for one in self.known))
         ]
+
+    def _seen_by(self, name: str) -> list[Any]:
+        return [one.beside[name] for one in self.run.seen if name in one.beside]
 
     def _files_that_read(self) -> list[str]:
         targets = {one.target for one in self.operations if one.is_taken and one.is_reading}
@@ -285,7 +294,7 @@ def _configuration(found: _Look) -> str:
         "oracle": "  # reads from the robot for the tests' checks",
     }
     lines = [f"{key} = {value_text(names)}{notes.get(key, '')}" for key, names in listed.items() if names]
-    return "\n".join([*lines, "rounds = 1", "seed = 1"]) + "\n"
+    return "\n".join([*lines, "rounds = 1", "seed = 1", *found.beside]) + "\n"
 
 
 def _told(found: _Look, questions: int) -> list[str]:
@@ -299,6 +308,8 @@ def _told(found: _Look, questions: int) -> list[str]:
         lines.append(f"tests: {counts}; {_counted(found)}")
     lines += [f"  {problem}" for problem in run.problems[:3] if not run.trouble]
     lines.append(f"wrote {CONFIGURATION}")
+    tables = (line for line in found.beside if re.match(r"\[\w", line))
+    lines += [f"  {line.replace('  # ', ': ')}" for line in tables]
     for one in found.known:
         calls = counted(sum(map(one.describes, found.calls)), "call")
         lines.append(f"vocabulary {one.name}: comes with mutabot, describes {calls}")

@@ -163,7 +163,9 @@ class WatchedCalls:
     Attributes:
         calls: callables in the order in which they were first used.
         uses: what was done under names.
+        beside: what packages beside this one saw, by their names.
     """
 
     calls: list[WatchedCallable] = field(default_factory=list)
     uses: list[Use] = field(default_factory=list)
+    beside: dict[str, Any] = field(default_factory=dict)

@@ -18,3 +18,6 @@ EXTENSION = Extension(
         )
     },
 )
+
+#: what `mutabot init` asks for parameters of the world that it has seen
+PROPOSAL = "mutabot_world.proposed:PROPOSAL"

@@ -116,6 +116,21 @@ def sensor(model: Any, change: NumberChange, *, names: str, random: Random) -> N
     _after_steps(model, read)
 
 
+def names_of(model: Any, kind: str) -> dict[int, str]:
+    """The names of the bodies, geoms, joints, actuators or sensors of a model, by their numbers.
+
+    A shape without a name is called like its body, an actuator like what it drives.
+    """
+    count = {"body": "nbody", "geom": "ngeom", "joint": "njnt", "actuator": "nu", "sensor": "nsensor"}[kind]
+    known = {number: str(getattr(model, kind)(number).name) for number in range(getattr(model, count))}
+    for number in [number for number, name in known.items() if not name]:
+        if kind == "geom":
+            known[number] = str(model.body(model.geom_bodyid[number]).name)
+        elif kind == "actuator" and int(model.actuator_trntype[number]) in (0, 1):  # of joints
+            known[number] = str(model.joint(model.actuator_trnid[number, 0]).name)
+    return known
+
+
 def _of_joints(model: Any, change: NumberChange, names: str, values: Any) -> None:
     dofs = {0: 6, 1: 3, 2: 1, 3: 1}
     for joint in _named(model, "joint", names, lambda one: int(model.jnt_type[one]) in (2, 3)):
@@ -129,8 +144,7 @@ def _named(
     model: Any, kind: str, names: str, fits: Callable[[int], bool] = lambda number: True
 ) -> Iterator[int]:
     """Yield the numbers of the things that are meant. Raises NothingThereError if there are none."""
-    count = {"body": "nbody", "geom": "ngeom", "joint": "njnt", "actuator": "nu", "sensor": "nsensor"}[kind]
-    known = {number: getattr(model, kind)(number).name for number in range(getattr(model, count))}
+    known = names_of(model, kind)
     found = [number for number, name in known.items() if fnmatchcase(name, names) and fits(number)]
     if not found:
         there = ", ".join(sorted({name for number, name in known.items() if name and fits(number)})) or "none"

@@ -20,6 +20,7 @@ from typing import Any
 
 from mutabot.api.processes import CallOrigin, Observer
 from mutabot.api.values import Form
+from mutabot_init.beside import brought_proposals
 from mutabot_init.watched import Command, Use, Values, WatchedCallable, WatchedCalls
 from mutabot_init.watching.callee import (
     Callee,
@@ -88,6 +89,7 @@ class Watch(Observer):
         self._only_class = cache(_only_class)
         self._uses: dict[tuple[Form, str, bool, bool], Use] = {}
         self._lock = threading.RLock()
+        self._beside = {name: one.watch() for name, one in brought_proposals().items()}
 
     def called(self, name: str, found: Any, receiver: Any, caller: CallOrigin) -> Any:
         """Return what is called in the place of ``found``, which was read from ``receiver``."""
@@ -138,9 +140,10 @@ class Watch(Observer):
             look(values, value, message=True)
 
     def data(self) -> WatchedCalls:
-        """What was seen: callables, and what was done under names."""
+        """What was seen: callables, what was done under names, and what packages beside this one saw."""
         calls = [self._call(seen) for seen in list(self._seen.values())]
-        return WatchedCalls(calls, list(self._uses.values()))
+        beside = {name: seen() for name, seen in self._beside.items()}
+        return WatchedCalls(calls, list(self._uses.values()), beside)
 
     def _is_of_tests(self, callee: Callee) -> bool:
         return self.is_test(callee.file) is True

@@ -1,0 +1,39 @@
+"""What packages beside this one watch in the same run of the tests, and add to the draft.
+
+The module that keeps a package's ``EXTENSION`` names an object that keeps ``Proposal`` beside that, by
+reference: ``PROPOSAL = "module:name"``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from importlib import import_module
+from importlib.metadata import entry_points
+from typing import Any, Protocol
+
+
+class Proposal(Protocol):
+    """What a package watches and proposes."""
+
+    def watch(self) -> Callable[[], Any]:
+        """Watch this process, which has not imported the program yet.
+
+        Returns a function that returns what was seen so far, as plain data.
+        """
+
+    def lines(self, seen: Sequence[Any]) -> list[str]:
+        """The lines for the end of the configuration, from what each process saw, with a remark at first."""
+
+
+def brought_proposals() -> dict[str, Proposal]:
+    """The proposals of packages, by the packages' names; a package that cannot be used proposes nothing."""
+    found: dict[str, Proposal] = {}
+    for entry in entry_points(group="mutabot"):
+        try:
+            reference = getattr(import_module(entry.module), "PROPOSAL", "")
+            module, _, name = reference.partition(":")
+            if name:
+                found[entry.name] = getattr(import_module(module), name)
+        except Exception:  # commands that use such a package say what is wrong with it
+            continue
+    return found
