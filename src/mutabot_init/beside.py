@@ -1,7 +1,7 @@
 """What packages beside this one watch in the same run of the tests, and add to the draft.
 
-The module that keeps a package's ``EXTENSION`` names an object that keeps ``Proposal`` beside that, by
-reference: ``PROPOSAL = "module:name"``.
+The module that keeps a package's ``EXTENSION`` names an object that keeps ``Proposer`` beside that, by
+reference: ``PROPOSER = "module:name"``.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from importlib.metadata import entry_points
 from typing import Any, Protocol
 
 
-class Proposal(Protocol):
+class Proposer(Protocol):
     """What a package watches and proposes."""
 
     def watch(self) -> Callable[[], Any]:
@@ -25,12 +25,12 @@ class Proposal(Protocol):
         """The lines for the end of the configuration, from what each process saw, with a remark at first."""
 
 
-def brought_proposals() -> dict[str, Proposal]:
+def brought_proposers() -> dict[str, Proposer]:
     """The proposals of packages, by the packages' names; a package that cannot be used proposes nothing."""
-    found: dict[str, Proposal] = {}
+    found: dict[str, Proposer] = {}
     for entry in entry_points(group="mutabot"):
         try:
-            reference = getattr(import_module(entry.module), "PROPOSAL", "")
+            reference = getattr(import_module(entry.module), "PROPOSER", "")
             module, _, name = reference.partition(":")
             if name:
                 found[entry.name] = getattr(import_module(module), name)

@@ -13,7 +13,7 @@ from typing import Any
 from mutabot.api.reports import MutabotError, UsageError
 from mutabot.api.values import Vocabulary, load_vocabulary, shipped_vocabularies
 
-from .beside import brought_proposals
+from .beside import brought_proposers
 from .layout import (
     NOTHING_WRITTEN,
     Layout,
@@ -135,7 +135,7 @@ class _Look:
                 one.is_plain = one.is_taken = not one.call.problem and not one.call.is_property
         self.oracle = self._files_that_read()
         self.beside = [
-            line for name, one in brought_proposals().items() for line in one.lines(self._seen_by(name))
+            line for name, one in brought_proposers().items() for line in one.lines(self._seen_by(name))
         ]
 
     @property

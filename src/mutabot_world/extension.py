@@ -20,4 +20,4 @@ EXTENSION = Extension(
 )
 
 #: what `mutabot init` asks for parameters of the world that it has seen
-PROPOSAL = "mutabot_world.proposed:PROPOSAL"
+PROPOSER = "mutabot_world.proposed:PROPOSER"

@@ -20,7 +20,7 @@ _MOST = 4
 _SHIPPED = Path(__file__).with_name("mujoco.toml")
 
 
-class WorldProposal:
+class WorldProposer:
     """Parameters of the simulated world."""
 
     def watch(self) -> Callable[[], Any]:
@@ -54,7 +54,7 @@ class WorldProposal:
         return [*head, f"parameters = {json.dumps(files)}"] if files else [*head, *_parameters(names)]
 
 
-PROPOSAL = WorldProposal()
+PROPOSER = WorldProposer()
 
 
 def _things(model: Any) -> Iterator[tuple[str, list[str]]]:

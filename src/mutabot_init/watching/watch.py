@@ -20,7 +20,7 @@ from typing import Any
 
 from mutabot.api.processes import CallOrigin, Observer
 from mutabot.api.values import Form
-from mutabot_init.beside import brought_proposals
+from mutabot_init.beside import brought_proposers
 from mutabot_init.watched import Command, Use, Values, WatchedCallable, WatchedCalls
 from mutabot_init.watching.callee import (
     Callee,
@@ -89,7 +89,7 @@ class Watch(Observer):
         self._only_class = cache(_only_class)
         self._uses: dict[tuple[Form, str, bool, bool], Use] = {}
         self._lock = threading.RLock()
-        self._beside = {name: one.watch() for name, one in brought_proposals().items()}
+        self._beside = {name: one.watch() for name, one in brought_proposers().items()}
 
     def called(self, name: str, found: Any, receiver: Any, caller: CallOrigin) -> Any:
         """Return what is called in the place of ``found``, which was read from ``receiver``."""

@@ -43,7 +43,7 @@ def test_it_imports_the_standard_library_and_the_interface() -> None:
 def test_processes_below_the_tests_need_no_pytest_for_it() -> None:
     code = (
         "import sys, mutabot_init.watching.watch, mutabot.runtime.observer, mutabot_init.beside\n"
-        "[one.watch() for one in mutabot_init.beside.brought_proposals().values()]\n"
+        "[one.watch() for one in mutabot_init.beside.brought_proposers().values()]\n"
         "heavy = {'pytest', '_pytest', 'pydantic', 'rich', 'typer', 'mujoco', 'numpy', 'libcst'}\n"
         "print(sorted(heavy & set(sys.modules)))"
     )
