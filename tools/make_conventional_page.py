@@ -22,7 +22,8 @@ HEAD = """\
 <!-- Written by tools/make_conventional_page.py from the operators' own examples. Do not edit. -->
 
 The operators of textbooks change program text and know nothing of robots. Use them to compare with the
-[robot operators](operators.md): `--family conventional`, `text` or `robot,conventional,text`.
+[robot operators](operators.md): `--family conventional`, `text` or `robot,conventional,text`. Family `bugs`
+has what [real bugs](real-bugs.md) of robot programs ask for beyond these. It is planted only on request.
 
 No file is changed: while the program is imported, each place is compiled as *the original, unless an
 alternative is chosen*. Tracebacks and `inspect.getsource` show your text. Values computed during import

@@ -8,8 +8,9 @@ PROVIDER = "source"
 
 CONVENTIONAL = "conventional"
 TEXT = "text"
+BUGS = "bugs"
 #: in the order of their numbers
-OF_TEXT = (CONVENTIONAL, TEXT)
+OF_TEXT = (CONVENTIONAL, TEXT, BUGS)
 
 
 EXTENSION = Extension(interface=2, faults={PROVIDER: "mutabot_source.provider:SourceFaults"})

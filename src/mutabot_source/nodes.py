@@ -67,6 +67,7 @@ class ModuleTree:
             is_operand_of_unary=isinstance(parent, ast.UnaryOp),
             is_callee=is_callee,
             is_argument=self._is_argument(node),
+            is_loop=self._is_loop(node),
         )
 
     def _is_argument(self, node: ast.AST) -> bool:
@@ -74,6 +75,12 @@ class ModuleTree:
         if isinstance(parent, ast.keyword | ast.Starred):
             return self._is_argument(parent)
         return isinstance(parent, ast.Call) and node is not parent.func
+
+    def _is_loop(self, node: ast.AST) -> bool:
+        parent = self._parents[node]
+        if isinstance(parent, ast.BoolOp | ast.UnaryOp):
+            return self._is_loop(parent)
+        return isinstance(parent, ast.While) and node is parent.test
 
     def _is_condition(self, node: SyntaxNode) -> bool:
         """Whether only the truth of a value matters."""

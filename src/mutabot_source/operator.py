@@ -59,6 +59,7 @@ class Surroundings:
         is_operand_of_unary: whether a unary operator stands right before it.
         is_argument: whether it is an argument of a call.
         is_callee: whether it is what a call calls.
+        is_loop: whether it decides if a loop goes on.
     """
 
     is_value: bool = True
@@ -66,6 +67,7 @@ class Surroundings:
     is_operand_of_unary: bool = False
     is_argument: bool = False
     is_callee: bool = False
+    is_loop: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -117,7 +117,7 @@ def edits_for(facts: Facts, mutant: Mapping[str, Any]) -> list[Edit]:
     Raises CannotWriteError where this editor knows none.
     """
     source = Source(facts.folder / mutant["file"], mutant["file"])
-    if mutant["family"] in ("conventional", "text"):
+    if mutant["family"] in ("conventional", "text", "bugs"):
         return [text_edit(source, mutant)]
     if mutant["family"] not in ("robot", "graded"):
         raise CannotWriteError(f"family {mutant['family']}")

@@ -1,0 +1,1 @@
+"""Bugs of public robot programs, and which operators plant them."""

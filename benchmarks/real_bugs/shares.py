@@ -1,0 +1,76 @@
+"""Which operators plant the real bugs of ``reading.toml``, with 95 % intervals (Wilson): tables in Markdown.
+
+Use: ``python benchmarks/real_bugs/shares.py``.
+"""
+
+from __future__ import annotations
+
+import sys
+import tomllib
+from collections import Counter
+from collections.abc import Callable, Sequence
+from math import sqrt
+from pathlib import Path
+from typing import Any
+
+READING = Path(__file__).with_name("reading.toml")
+#: a bug that any test finds that reaches it
+_CRASH = "crash"
+_Z = 1.96
+Bug = dict[str, Any]
+
+
+def silent(file: Path = READING) -> list[Bug]:
+    """Return the bugs that are no plain crash."""
+    return [one for one in tomllib.loads(file.read_text(encoding="utf-8"))["bug"] if one["class"] != _CRASH]
+
+
+def now(bug: Bug) -> str:
+    """Return how well the robot operators and those of family bugs plant it: E, M, T or N."""
+    return str(bug.get("now", bug["robot"]))
+
+
+def share(bugs: Sequence[Bug], holds: Callable[[Bug], bool]) -> str:
+    """Return how many bugs a condition holds for, as text: number, share and interval."""
+    count, size = sum(map(holds, bugs)), len(bugs)
+    part = count / size
+    middle = (part + _Z**2 / (2 * size)) / (1 + _Z**2 / size)
+    half = _Z * sqrt(part * (1 - part) / size + _Z**2 / (4 * size**2)) / (1 + _Z**2 / size)
+    return f"{count} of {size} = {100 * part:.0f} % ({100 * (middle - half):.0f}–{100 * (middle + half):.0f})"
+
+
+def by_operator(bugs: Sequence[Bug]) -> dict[str, Counter[str]]:
+    """Return how many bugs each operator of family bugs plants, by how well: E or M."""
+    found: dict[str, Counter[str]] = {}
+    for one in bugs:
+        if "now" in one:
+            found.setdefault(one["now_by"], Counter())[one["now"]] += 1
+    return found
+
+
+def main() -> int:
+    """The command."""
+    bugs = silent()
+    before: Callable[[Bug], str] = lambda one: str(one["robot"])  # noqa: E731
+    conventional: Callable[[Bug], str] = lambda one: str(one["conventional"])  # noqa: E731
+    either: Callable[[Bug], str] = lambda one: min(now(one), conventional(one))  # noqa: E731  # E is before M
+    print(f"| {len(bugs)} silent bugs | exact | exact or near |\n|---|---|---|")
+    for name, letter in (
+        ("robot operators", before),
+        ("robot operators and family `bugs`", now),
+        ("conventional operators", conventional),
+        ("all three", either),
+    ):
+        exact = share(bugs, lambda one, letter=letter: letter(one) == "E")  # type: ignore[misc]
+        near = share(bugs, lambda one, letter=letter: letter(one) in "EM")  # type: ignore[misc]
+        print(f"| {name} | {exact} | {near} |")
+    print("\n| operator | exact | near | exact, and by no conventional operator |\n|---|---|---|---|")
+    for name, counts in sorted(by_operator(bugs).items(), key=lambda one: -one[1]["E"]):
+        alone = [one for one in bugs if one.get("now_by") == name and one["now"] == "E"]
+        own = sum(conventional(one) != "E" for one in alone)
+        print(f"| {name} | {counts['E']} | {counts['M']} | {own} |")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,26 @@
+"""Calls with other arguments, as text and nodes of the original."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterable
+
+from mutabot_source.operator import TextParts
+
+
+def call(node: ast.Call, keywords: Iterable[ast.keyword], arguments: Iterable[ast.expr] = ()) -> TextParts:
+    """A call with these keywords, and its own arguments or these."""
+    given: list[TextParts] = [
+        ("*", one.value) if isinstance(one, ast.Starred) else (one,) for one in arguments or node.args
+    ]
+    given += [(f"{one.arg}=" if one.arg is not None else "**", one.value) for one in keywords]
+    parts: list[str | ast.expr] = [node.func, "("]
+    for number, argument in enumerate(given):
+        parts += [", "] if number else []
+        parts += argument
+    return (*parts, ")")
+
+
+def last_name(node: ast.expr) -> str:
+    """The last part of the name of what is called; empty if it has none."""
+    return node.attr if isinstance(node, ast.Attribute) else node.id if isinstance(node, ast.Name) else ""
