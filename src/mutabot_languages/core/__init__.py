@@ -1,0 +1,1 @@
+"""What all languages share: texts, tokens, trees, the machine that runs them, and the border to the cell."""

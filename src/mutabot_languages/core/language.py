@@ -1,0 +1,100 @@
+"""A language: how its files are named, read and run; and what mutabot asks of it, as a front end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import FrameType
+from typing import Any
+
+from .machine import Dialect, Machine, ProgramTask, Steps
+from .parser import ParsedFile, StatementParser
+from .station import Station
+from .text import SourceText, TextSpan, decode
+from .tree import STATEMENTS, ProgramNode
+
+_LONGEST = 60
+_CALL = Station.call.__code__
+#: expressions that may read something of the cell
+_EXPRESSIONS = frozenset({"call", "method", "index", "name", "field"})
+
+
+@dataclass(frozen=True, slots=True)
+class RobotLanguage:
+    """A language that robot programs are written in.
+
+    Attributes:
+        name: what users call it.
+        suffixes: how its files end, in small letters.
+        parser: of its files.
+        dialect: makes what its names mean.
+        prepare: makes a run ready, before its first task starts: generators of operations are not allowed.
+        main: the steps of the main task, given the run and the name of a routine, which may be empty.
+        machine: what runs it.
+        beside: other files that belong to a file by their names.
+    """
+
+    name: str
+    suffixes: tuple[str, ...]
+    parser: type[StatementParser]
+    dialect: Callable[[], Dialect]
+    prepare: Callable[[Machine, ProgramTask], Steps]
+    main: Callable[[Machine, ProgramTask, str], Steps]
+    machine: type[Machine] = Machine
+    beside: Callable[[Path], list[Path]] = lambda file: []
+
+    def text_of(self, content: bytes) -> str:
+        """The text of a file: UTF-8 if it is that, else Latin-1."""
+        return decode(content)[0]
+
+    def read(self, name: str, text: str) -> ParsedFile:
+        """Read a file; what cannot be read is in its diagnostics."""
+        return self.parser(SourceText(name, text)).parse()
+
+    def names(self, source: str) -> Mapping[TextSpan, tuple[str, int]]:
+        """Names of all statements, calls and readings in a file."""
+        parsed = self.read("", source)
+        found: dict[TextSpan, tuple[str, int]] = {}
+        counts: dict[tuple[str, str], int] = {}
+        for node, routine in sites(parsed.tree):
+            extent = parsed.source.extent(node.start, node.end)
+            if extent in found:
+                continue
+            text = site_text(node, source)
+            counts[routine, text] = counts.get((routine, text), 0) + 1
+            found[extent] = text, counts[routine, text]
+        return found
+
+    def file_of(self, frame: FrameType) -> str | None:
+        """The file that the machine carries out in its call of the cell; None for all other frames."""
+        if frame.f_code is not _CALL:
+            return None
+        file: str = frame.f_locals["site"].file
+        return file if file.lower().endswith(self.suffixes) else None
+
+    def position_of(self, frame: FrameType) -> tuple[TextSpan, str]:
+        """The part of the program that makes a call of the cell, and its routine."""
+        site: Any = frame.f_locals["site"]
+        return site.extent, site.routine
+
+
+def sites(tree: ProgramNode) -> Iterator[tuple[ProgramNode, str]]:
+    """Nodes that may be a site, with the name of the routine they stand in."""
+    waiting: list[tuple[ProgramNode, str]] = [(tree, "<module>")]
+    while waiting:
+        node, routine = waiting.pop()
+        if node.kind in STATEMENTS or node.kind in _EXPRESSIONS:
+            yield node, routine
+        inner = node.name if node.kind == "routine" else routine
+        for body in reversed(node.bodies):
+            waiting.extend((one, inner) for one in reversed(body))
+        waiting.extend((one, routine) for one in reversed(node.parts))
+
+
+def site_text(node: ProgramNode, text: str) -> str:
+    """What a site's name is: what is called, or how the node begins."""
+    if node.kind in ("call", "method") and node.name:
+        return node.name
+    shown = " ".join(text[node.start : node.end].split("\n", maxsplit=1)[0].split())
+    return shown if len(shown) <= _LONGEST else f"{shown[: _LONGEST - 1]}…"

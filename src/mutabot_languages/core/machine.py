@@ -1,0 +1,782 @@
+"""The machine: it carries out the tree of any language, a generator for each task, in simulated time.
+
+A task yields a ``TaskOperation`` whenever time has to pass: a motion or a wait. Which task goes on when is
+decided by ``schedule.TaskSchedule``. What a name means says the ``Dialect``.
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable, Generator, Mapping
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+from mutabot_languages.errors import ProgramError, UnsupportedError
+
+from .station import TICK, ProgramPlace, Station
+from .text import SourceText
+from .tree import ProgramNode
+
+#: statements that a program may carry out in all, and loops without time passing until a tick does
+MOST_STEPS = 2_000_000
+_IDLE_LOOPS = 20
+_DEEPEST_CALLS = 60
+
+
+@dataclass(frozen=True, slots=True)
+class TaskOperation:
+    """What a task waits for.
+
+    Attributes:
+        kind: ``move``, ``wait`` or ``until``.
+        site: the part of the program.
+        motion: of a motion: the arm's method, its arguments and a part of its speed.
+        seconds: of a wait; of ``until``, after which it ends anyway.
+        condition: what is waited for.
+    """
+
+    kind: str
+    site: ProgramPlace
+    motion: tuple[str, tuple[Any, ...], float] | None = None
+    seconds: float = 0.0
+    condition: Callable[[], bool] | None = None
+
+
+Steps = Generator[TaskOperation, Any, Any]
+
+
+class Variable:
+    """A place for a value."""
+
+    __slots__ = ("type", "value")
+
+    def __init__(self, value: Any = None, type: str = "") -> None:
+        self.value, self.type = value, type
+
+
+class Structure(dict[str, Any]):
+    """A structure: its components by name, in the order of its type."""
+
+    type = ""
+
+    @classmethod
+    def of(cls, type: str, components: Mapping[str, Any]) -> Structure:
+        """A structure of a type."""
+        made = cls(components)
+        made.type = type
+        return made
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Structure:
+        return Structure.of(self.type, {name: copy.deepcopy(one, memo) for name, one in self.items()})
+
+
+@dataclass(slots=True)
+class ProgramUnit:
+    """A file that is being run.
+
+    Attributes:
+        path: where it stands, as front ends say it.
+        source: its text.
+        tree: what stands in it.
+        names: its own variables.
+        watched: nodes by their starts of whose execution somebody is told.
+    """
+
+    path: str
+    source: SourceText
+    tree: ProgramNode
+    names: dict[str, Variable] = field(default_factory=dict)
+    watched: Mapping[int, Callable[[], None]] = field(default_factory=dict)
+
+
+@dataclass(slots=True)
+class Routine:
+    """A routine and the file it stands in."""
+
+    node: ProgramNode
+    unit: ProgramUnit
+
+
+class RoutineScope:
+    """What a running routine knows.
+
+    Attributes:
+        unit: the file it stands in.
+        routine: its name, as sites have it.
+        names: its variables.
+        outer: of the routine around it, if it stands in one.
+        given: names of its optional parameters that got an argument.
+    """
+
+    __slots__ = ("given", "names", "outer", "retry", "routine", "routines", "unit")
+
+    def __init__(self, unit: ProgramUnit, routine: str, outer: RoutineScope | None = None) -> None:
+        self.unit, self.routine, self.outer = unit, routine, outer
+        self.names: dict[str, Variable] = {}
+        self.given: set[str] = set()
+        self.routines: dict[str, Routine] = {}
+        self.retry = 0
+
+
+class ControlFlow(Exception):  # noqa: N818  (never leaves the machine)
+    """Ends a loop, a routine or the program."""
+
+    def __init__(self, kind: str, value: Any = None) -> None:
+        super().__init__(kind)
+        self.kind, self.value = kind, value
+
+
+class ProgramRaised(Exception):  # noqa: N818  (as above)
+    """An error that the program raises itself, by its number."""
+
+    def __init__(self, number: Any, text: str) -> None:
+        super().__init__(text)
+        self.number = number
+
+
+class Dialect:
+    """What a language gives its names, operators and instructions.
+
+    Class attributes:
+        first: the number of the first element of an array.
+        constants: values by name.
+        functions: what a name that is called means: it gets the task, the node and the scope, and returns a
+            value or a generator of operations that does.
+        ignored: what is accepted without an effect, and noted.
+    """
+
+    first: ClassVar[int] = 0
+    constants: ClassVar[Mapping[str, Any]] = {}
+    functions: Mapping[str, Callable[..., Any]] = {}
+    ignored: frozenset[str] = frozenset()
+
+    def declare(self, task: ProgramTask, node: ProgramNode, scope: RoutineScope, *, is_global: bool) -> Steps:
+        """Make the variable of a declaration."""
+        raise NotImplementedError
+
+    def name(self, task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Any:
+        """The value of a name that is no variable. Raises UnsupportedError."""
+        raise task.unsupported(node, scope)
+
+    def index(self, task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Any:
+        """The value of an index of a name that is no variable; NotImplemented if it is none of these."""
+        return NotImplemented
+
+    def assign(self, task: ProgramTask, target: ProgramNode, value: Any, scope: RoutineScope) -> Any:
+        """Set something that is no variable; NotImplemented if it is none of these."""
+        return NotImplemented
+
+    def binary(self, operator: str, left: Any, right: Any) -> Any:
+        """The value of a binary operation. Raises TypeError, ValueError, ZeroDivisionError."""
+        raise NotImplementedError
+
+    def unary(self, operator: str, value: Any) -> Any:
+        """The value of a unary operation."""
+        return -value if operator == "-" else value if operator == "+" else not self.truth(value)
+
+    def literal(self, task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+        """The value of a list, a pose or an aggregate."""
+        raise NotImplementedError
+
+    def truth(self, value: Any) -> bool:
+        """Whether a condition holds."""
+        return bool(value)
+
+    def assigned(self, variable: Variable, value: Any) -> Any:
+        """What a variable of a type gets."""
+        return copy.deepcopy(value) if isinstance(value, (list, dict)) else value
+
+    def matches(self, subject: Any, label: Any) -> bool:
+        """Whether a case of a switch is meant."""
+        return bool(subject == label)
+
+    def is_reference(self, parameter: ProgramNode) -> bool:
+        """Whether a parameter is the caller's variable itself."""
+        return False
+
+
+class ProgramTask:
+    """One thread of a program.
+
+    Args:
+        machine: the run it belongs to.
+        name: of the task.
+    """
+
+    def __init__(self, machine: Machine, name: str) -> None:
+        self.machine, self.dialect, self.station = machine, machine.dialect, machine.station
+        self.name = name
+        self.depth = 0
+        self.idle_loops = 0
+
+    # errors and places
+
+    def site(self, node: ProgramNode, scope: RoutineScope) -> ProgramPlace:
+        """The part of the program that a node is."""
+        return self.machine.site(node, scope)
+
+    def place(self, node: ProgramNode, scope: RoutineScope) -> str:
+        """Where a node stands, for messages."""
+        source = scope.unit.source
+        return f"{source.name}:{source.line_of(node.start)}"
+
+    def unsupported(self, node: ProgramNode, scope: RoutineScope, what: str = "") -> UnsupportedError:
+        """Say that something is not carried out."""
+        source = scope.unit.source
+        line = source.line_of(node.start)
+        return UnsupportedError(f"unsupported: {what or node.name} at line {line} of {source.name}")
+
+    def error(self, node: ProgramNode, scope: RoutineScope, text: str) -> ProgramError:
+        """An error of the program at a node."""
+        return ProgramError(f"{self.place(node, scope)}: {text} (in {scope.routine})")
+
+    # statements
+
+    def run(self, body: list[ProgramNode], scope: RoutineScope) -> Steps:
+        """Carry out statements, with the jumps between them."""
+        at = 0
+        while at < len(body):
+            try:
+                yield from self.statement(body[at], scope)
+            except ControlFlow as leave:
+                if leave.kind != "goto":
+                    raise
+                found = [index for index, one in enumerate(body) if _is_label(one, leave.value)]
+                if not found:
+                    raise
+                at = found[0]
+                yield from self.pause(body[at], scope)
+                continue
+            at += 1
+
+    def statement(self, node: ProgramNode, scope: RoutineScope) -> Steps:
+        """Carry out one statement."""
+        self.machine.step(node, scope)
+        if scope.unit.watched and node.start in scope.unit.watched:
+            scope.unit.watched[node.start]()
+        handler = _STATEMENTS.get(node.kind)
+        try:
+            if handler is not None:
+                yield from handler(self, node, scope)
+            else:
+                yield from self.value(node, scope)
+        except (
+            TypeError,
+            ValueError,
+            ZeroDivisionError,
+            IndexError,
+            KeyError,
+            OverflowError,
+            AttributeError,
+        ) as error:
+            if isinstance(error, self.machine.station_errors):
+                raise
+            raise self.error(node, scope, f"{type(error).__name__}: {error}") from error
+
+    def _assign(self, node: ProgramNode, scope: RoutineScope) -> Steps:
+        target, value = node.parts
+        found = yield from self.value(value, scope)
+        yield from self.store(target, found, scope, node.name)
+
+    def store(self, target: ProgramNode, value: Any, scope: RoutineScope, how: str = "") -> Steps:
+        """Give a variable, a component or an element a value."""
+        if target.kind == "group":
+            target = target.parts[0]
+        if target.kind == "name":
+            special = self.dialect.assign(self, target, value, scope)
+            if special is NotImplemented:
+                self._variable_for(target, scope, how, value)
+            elif special is not None:
+                yield from special
+            return
+        if target.kind not in ("index", "field"):
+            raise self.error(target, scope, "only a variable can get a value")
+        special = self.dialect.assign(self, target, value, scope)
+        if special is not NotImplemented:
+            if special is not None:
+                yield from special
+            return
+        owner = yield from self.value(target.parts[0], scope)
+        if target.kind == "field":
+            if not isinstance(owner, dict):
+                raise self.error(target, scope, f"there is no component {target.name}")
+            old = owner.get(target.name)
+            owner[target.name] = self.dialect.assigned(Variable(old, getattr(old, "type", "")), value)
+            return
+        for part in target.parts[1:-1]:
+            owner = owner[self._number(part, (yield from self.value(part, scope)), scope)]
+        index = self._number(target.parts[-1], (yield from self.value(target.parts[-1], scope)), scope)
+        if not isinstance(owner, list) or not 0 <= index < len(owner):
+            raise self.error(target, scope, f"there is no element {index + self.dialect.first}")
+        old = owner[index]
+        owner[index] = self.dialect.assigned(Variable(old, getattr(old, "type", "")), value)
+
+    def _number(self, node: ProgramNode, value: Any, scope: RoutineScope) -> int:
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or value != int(value):
+            raise self.error(node, scope, f"an index must be a whole number, not {value!r}")
+        return int(value) - self.dialect.first
+
+    def _variable_for(self, target: ProgramNode, scope: RoutineScope, how: str, value: Any) -> None:
+        found = None if how == "local" else self.find(target.name, scope, of_globals=how == "global")
+        if found is None:
+            names = self.machine.globals if how == "global" else scope.names
+            found = names[target.name] = Variable()
+        found.value = self.dialect.assigned(found, value)
+
+    def _if(self, node: ProgramNode, scope: RoutineScope) -> Steps:
+        for condition, body in zip(node.parts, node.bodies, strict=False):
+            if self.dialect.truth((yield from self.value(condition, scope))):
+                yield from self.run(body, scope)
+                return
+        if len(node.bodies) > len(node.parts):
+            yield from self.run(node.bodies[-1], scope)
+
+    def _loop(
+        self, node: ProgramNode, scope: RoutineScope, before: ProgramNode | None, after: ProgramNode | None
+    ) -> Steps:
+        while True:
+            if before is not None and not self.dialect.truth((yield from self.value(before, scope))):
+                return
+            if (yield from self.round(node, scope)):
+                return
+            if after is not None and self.dialect.truth((yield from self.value(after, scope))):
+                return
+
+    def round(self, node: ProgramNode, scope: RoutineScope) -> Steps:
+        """Carry out the body of a loop once; returns whether the loop is left."""
+        began = self.station.time
+        try:
+            yield from self.run(node.bodies[0], scope)
+        except ControlFlow as leave:
+            if leave.kind == "break":
+                return True
+            if leave.kind != "continue":
+                raise
+        if self.station.time == began:
+            yield from self.pause(node, scope)
+        else:
+            self.idle_loops = 0
+        return False
+
+    def pause(self, node: ProgramNode, scope: RoutineScope) -> Steps:
+        """Let a tick pass now and then in a loop that lets none pass itself."""
+        self.machine.step(node, scope)
+        self.idle_loops += 1
+        if self.idle_loops >= _IDLE_LOOPS:
+            self.idle_loops = 0
+            yield from self.wait(node, scope, TICK)
+
+    def _while(self, node: ProgramNode, scope: RoutineScope) -> Steps:
+        yield from self._loop(node, scope, node.parts[0], None)
+
+    def _repeat(self, node: ProgramNode, scope: RoutineScope) -> Steps:
+        yield from self._loop(node, scope, None, node.parts[0])
+
+    def _endless(self, node: ProgramNode, scope: RoutineScope) -> Steps:
+        yield from self._loop(node, scope, None, None)
+
+    def _for(self, node: ProgramNode, scope: RoutineScope) -> Steps:
+        values = yield from self.values(node.parts, scope)
+        start, end, step = values[0], values[1], values[2] if len(values) > 2 else None
+        if step is None:
+            step = node.value if node.value is not None else 1 if end >= start else -1
+        if step == 0:
+            raise self.error(node, scope, "a loop with the step 0")
+        counter = self.find(node.name, scope) if self.dialect.first and node.value is not None else None
+        own = counter is None
+        if counter is None:
+            counter = Variable()
+            hidden = scope.names.get(node.name)
+            scope.names[node.name] = counter
+        counter.value = start
+        while (counter.value <= end) if step > 0 else (counter.value >= end):
+            if (yield from self.round(node, scope)):
+                break
+            counter.value += step
+        if own:
+            if hidden is not None:
+                scope.names[node.name] = hidden
+            elif node.value is None:
+                del scope.names[node.name]
+
+    def _switch(self, node: ProgramNode, scope: RoutineScope) -> Steps:
+        subject = yield from self.value(node.parts[0], scope)
+        chosen = None
+        for labels, body in zip(node.value, node.bodies, strict=True):
+            if labels is None:
+                chosen = body if chosen is None else chosen
+                continue
+            for label in labels:
+                if self.dialect.matches(subject, (yield from self.value(label, scope))):
+                    yield from self._case(body, scope)
+                    return
+        if chosen is not None:
+            yield from self._case(chosen, scope)
+
+    def _case(self, body: list[ProgramNode], scope: RoutineScope) -> Steps:
+        try:
+            yield from self.run(body, scope)
+        except ControlFlow as leave:
+            if leave.kind != "break" or self.dialect.first:  # a break of URScript ends the case
+                raise
+
+    def _return(self, node: ProgramNode, scope: RoutineScope) -> Steps:
+        raise ControlFlow("return", (yield from self.value(node.parts[0], scope)) if node.parts else None)
+
+    def _leave(self, node: ProgramNode, scope: RoutineScope) -> Steps:
+        raise ControlFlow(node.kind, node.name)
+        yield  # pragma: no cover  (makes it a generator)
+
+    def _declare(self, node: ProgramNode, scope: RoutineScope) -> Steps:
+        yield from self.dialect.declare(self, node, scope, is_global=False)
+
+    def _routine(self, node: ProgramNode, scope: RoutineScope) -> Steps:
+        scope.routines[node.name] = Routine(node, scope.unit)
+        return
+        yield  # pragma: no cover
+
+    def _opaque(self, node: ProgramNode, scope: RoutineScope) -> Steps:
+        found = scope.unit.source.text[node.start : node.end].strip().splitlines()
+        raise self.error(node, scope, f"this could not be read: {found[0][:60] if found else ''}")
+        yield  # pragma: no cover
+
+    def _nothing(self, node: ProgramNode, scope: RoutineScope) -> Steps:
+        return
+        yield  # pragma: no cover
+
+    # values
+
+    def value(self, node: ProgramNode, scope: RoutineScope) -> Steps:
+        """The value of an expression."""
+        kind = node.kind
+        if kind in ("number", "text", "constant"):
+            return node.value
+        if kind == "name":
+            found = self.find(node.name, scope)
+            if found is not None:
+                return found.value
+            if node.name in self.dialect.constants:
+                return copy.deepcopy(self.dialect.constants[node.name])
+            return self.dialect.name(self, node, scope)
+        if kind == "group":
+            return (yield from self.value(node.parts[0], scope))
+        if kind == "call":
+            return (yield from self.call(node, scope))
+        if kind == "binary":
+            return (yield from self._binary(node, scope))
+        if kind == "unary":
+            return self.dialect.unary(node.name, (yield from self.value(node.parts[0], scope)))
+        if kind == "index":
+            return (yield from self._index(node, scope))
+        if kind == "field":
+            owner = yield from self.value(node.parts[0], scope)
+            if isinstance(owner, dict) and node.name in owner:
+                return owner[node.name]
+            raise self.error(node, scope, f"there is no component {node.name}")
+        if kind in ("list", "pose", "aggregate", "enum", "method", "option"):
+            return (yield from self.dialect.literal(self, node, scope))
+        raise self.unsupported(node, scope, node.name or kind)
+
+    def _binary(self, node: ProgramNode, scope: RoutineScope) -> Steps:
+        left = yield from self.value(node.parts[0], scope)
+        if node.name == "and" and not self.dialect.truth(left):
+            return False
+        if node.name == "or" and self.dialect.truth(left):
+            return True
+        right = yield from self.value(node.parts[1], scope)
+        try:
+            return self.dialect.binary(node.name, left, right)
+        except (TypeError, ValueError, ZeroDivisionError, OverflowError) as error:
+            raise self.error(node, scope, f"{node.name} of {left!r} and {right!r}: {error}") from error
+
+    def _index(self, node: ProgramNode, scope: RoutineScope) -> Steps:
+        base = node.parts[0]
+        if base.kind == "name" and self.find(base.name, scope) is None:
+            found = self.dialect.index(self, node, scope)
+            if found is not NotImplemented:
+                return (yield from found) if isinstance(found, Generator) else found
+        owner = yield from self.value(base, scope)
+        for part in node.parts[1:]:
+            index = self._number(part, (yield from self.value(part, scope)), scope)
+            if not isinstance(owner, (list, str)) or not 0 <= index < len(owner):
+                raise self.error(node, scope, f"there is no element {index + self.dialect.first}")
+            owner = owner[index]
+        return owner
+
+    def values(
+        self, nodes: list[ProgramNode], scope: RoutineScope
+    ) -> Generator[TaskOperation, Any, list[Any]]:
+        """The values of several expressions, in their order."""
+        found = list[Any]()
+        for node in nodes:
+            found.append((yield from self.value(node, scope)))  # no comprehension can yield
+        return found
+
+    # names and calls
+
+    def find(self, name: str, scope: RoutineScope, *, of_globals: bool = False) -> Variable | None:
+        """A variable, from the inside out; None if there is none."""
+        inner: RoutineScope | None = None if of_globals else scope
+        while inner is not None:
+            if name in inner.names:
+                return inner.names[name]
+            inner = inner.outer
+        return scope.unit.names.get(name) or self.machine.globals.get(name)
+
+    def find_routine(self, name: str, scope: RoutineScope) -> Routine | None:
+        """A routine, from the inside out; None if there is none."""
+        inner: RoutineScope | None = scope
+        while inner is not None:
+            if name in inner.routines:
+                return inner.routines[name]
+            inner = inner.outer
+        own = scope.unit.tree.value or {}
+        return own.get(name) or self.machine.routines.get(name)
+
+    def call(self, node: ProgramNode, scope: RoutineScope) -> Steps:
+        """Call a function of the cell map, a routine of the program, or what the language brings."""
+        entry = self.station.function(node.name)
+        if entry is not None:
+            return (yield from self._mapped(node, entry, scope))
+        routine = self.find_routine(node.name, scope)
+        if routine is not None:
+            return (yield from self.call_routine(routine, node.parts, node, scope))
+        function = self.dialect.functions.get(node.name)
+        if function is not None:
+            found = function(self, node, scope)
+            return (yield from found) if isinstance(found, Generator) else found
+        if node.name in self.dialect.ignored:
+            self.station.note(
+                f"{node.name} at line {scope.unit.source.line_of(node.start)} has no effect here"
+            )
+            return None
+        raise self.unsupported(node, scope)
+
+    def _mapped(self, node: ProgramNode, entry: Mapping[str, Any], scope: RoutineScope) -> Steps:
+        self.station.start_function(self.site(node, scope), entry)
+        if entry.get("wait"):
+            yield from self.wait(node, scope, float(entry["wait"]))
+        return entry.get("result", True)
+
+    def call_routine(
+        self,
+        routine: Routine,
+        arguments: list[ProgramNode],
+        node: ProgramNode,
+        scope: RoutineScope,
+        outer: RoutineScope | None = None,
+    ) -> Steps:
+        """Call a routine of the program; what it returns."""
+        if self.depth >= _DEEPEST_CALLS:
+            raise self.error(node, scope, f"more than {_DEEPEST_CALLS} calls inside each other")
+        inner = RoutineScope(routine.unit, routine.node.name, self._outer(routine, scope))
+        back = yield from self._bind(routine.node, arguments, node, scope, inner)
+        self.depth += 1
+        try:
+            yield from self.body(routine, inner)
+        except ControlFlow as leave:
+            if leave.kind != "return":
+                raise
+            return leave.value
+        finally:
+            self.depth -= 1
+        for target, name in back:
+            yield from self.store(target, inner.names[name].value, scope)
+        return None
+
+    def body(self, routine: Routine, inner: RoutineScope) -> Steps:
+        """Carry out the body of a routine."""
+        yield from self.run(routine.node.bodies[0], inner)
+
+    def _outer(self, routine: Routine, scope: RoutineScope) -> RoutineScope | None:
+        inner: RoutineScope | None = scope
+        while inner is not None:
+            if inner.routines.get(routine.node.name) is routine:
+                return inner
+            inner = inner.outer
+        return None
+
+    def _bind(
+        self,
+        routine: ProgramNode,
+        arguments: list[ProgramNode],
+        node: ProgramNode,
+        scope: RoutineScope,
+        inner: RoutineScope,
+    ) -> Generator[TaskOperation, Any, list[tuple[ProgramNode, str]]]:
+        """Give parameters their arguments; returns what is to be stored back afterwards."""
+        back: list[tuple[ProgramNode, str]] = []
+        named = {one.name: one for one in arguments if one.kind == "option"}
+        unnamed = [one for one in arguments if one.kind != "option"]
+        for parameter in routine.parts:
+            given: ProgramNode | None = None
+            if parameter.name in named:
+                option = named.pop(parameter.name)
+                given = option.parts[0] if option.parts else None
+                inner.given.add(parameter.name)
+            elif not (isinstance(parameter.value, dict) and parameter.value.get("optional")):
+                given = unnamed.pop(0) if unnamed else None
+                if given is not None:
+                    inner.given.add(parameter.name)
+            type = parameter.value.get("type", "") if isinstance(parameter.value, dict) else ""
+            if given is None or given.kind == "omitted":
+                value = (yield from self.value(parameter.parts[0], scope)) if parameter.parts else None
+                inner.names[parameter.name] = Variable(value, type)
+                continue
+            variable = self.find(given.name, scope) if given.kind == "name" else None
+            if self.dialect.is_reference(parameter) and variable is not None:
+                inner.names[parameter.name] = variable
+                continue
+            value = yield from self.value(given, scope)
+            made = inner.names[parameter.name] = Variable(None, type)
+            made.value = self.dialect.assigned(made, value)
+            if self.dialect.is_reference(parameter) and given.kind in ("index", "field"):
+                back.append((given, parameter.name))
+        if named or unnamed:
+            extra = next(iter(named), "") or f"argument {len(routine.parts) + 1}"
+            raise self.error(node, scope, f"{routine.name} takes no {extra}")
+        return back
+
+    # operations
+
+    def wait(self, node: ProgramNode, scope: RoutineScope, seconds: float) -> Steps:
+        """Let time pass."""
+        if seconds > 0:
+            yield TaskOperation("wait", self.site(node, scope), seconds=float(seconds))
+
+    def move(
+        self, node: ProgramNode, scope: RoutineScope, motion: tuple[str, tuple[Any, ...], float]
+    ) -> Steps:
+        """Carry out a motion."""
+        yield TaskOperation("move", self.site(node, scope), motion=motion)
+
+    def until(
+        self,
+        node: ProgramNode,
+        scope: RoutineScope,
+        condition: ProgramNode,
+        seconds: float = 0.0,
+        wanted: Any = True,
+    ) -> Steps:
+        """Wait until a condition holds; returns whether it does, or the seconds (if any) are over."""
+        began = self.station.time
+        while not self.dialect.matches(self.dialect.truth((yield from self.value(condition, scope))), wanted):
+            if seconds and self.station.time - began >= seconds - TICK / 2:
+                return False
+            self.machine.step(node, scope)
+            yield from self.wait(node, scope, TICK)
+        return True
+
+    def arguments(
+        self, node: ProgramNode, scope: RoutineScope
+    ) -> Generator[TaskOperation, Any, tuple[list[Any], dict[str, Any]]]:
+        """The values of a call's arguments: those in order, and those by name."""
+        values, named = list[Any](), dict[str, Any]()
+        for part in node.parts:
+            if part.kind == "option":
+                named[part.name] = (yield from self.value(part.parts[0], scope)) if part.parts else True
+            elif part.kind == "omitted":
+                values.append(None)
+            else:
+                values.append((yield from self.value(part, scope)))
+        return values, named
+
+
+def _is_label(node: ProgramNode, name: Any) -> bool:
+    return node.kind == "label" and node.name == name
+
+
+_STATEMENTS: dict[str, Callable[[ProgramTask, ProgramNode, RoutineScope], Steps]] = {
+    "assign": ProgramTask._assign,
+    "if": ProgramTask._if,
+    "while": ProgramTask._while,
+    "repeat": ProgramTask._repeat,
+    "loop": ProgramTask._endless,
+    "for": ProgramTask._for,
+    "switch": ProgramTask._switch,
+    "return": ProgramTask._return,
+    "break": ProgramTask._leave,
+    "continue": ProgramTask._leave,
+    "goto": ProgramTask._leave,
+    "exit": ProgramTask._leave,
+    "declare": ProgramTask._declare,
+    "routine": ProgramTask._routine,
+    "record": ProgramTask._nothing,
+    "empty": ProgramTask._nothing,
+    "label": ProgramTask._nothing,
+    "opaque": ProgramTask._opaque,
+}
+
+
+class Machine:
+    """A run of a program.
+
+    Args:
+        dialect: of its language.
+        station: the cell.
+        units: its files.
+        until: ends the run where it holds, between two statements.
+        limit: simulated seconds after which it is an error to be still running.
+    """
+
+    task_class: ClassVar[type[ProgramTask]] = ProgramTask
+
+    def __init__(
+        self,
+        dialect: Dialect,
+        station: Station,
+        units: list[ProgramUnit],
+        until: Callable[[], bool] | None,
+        limit: float,
+    ) -> None:
+        self.dialect, self.station, self.units = dialect, station, units
+        self.globals: dict[str, Variable] = {}
+        self.routines: dict[str, Routine] = {}
+        self.tasks: dict[str, Steps] = {}
+        self.running: dict[int, Routine] = {}
+        self._until, self._end = until, station.time + limit
+        self._limit = limit
+        self._left = MOST_STEPS
+        self._sites: dict[tuple[int, int], ProgramPlace] = {}
+        errors = type(station.cell).__mro__[0].__module__
+        self.station_errors = _cell_errors(errors)
+
+    def step(self, node: ProgramNode, scope: RoutineScope) -> None:
+        """Count a statement. Raises ProgramError when there were too many, or it takes too long."""
+        self._left -= 1
+        source = scope.unit.source
+        if self._left < 0:
+            raise ProgramError(f"{source.name}: more than {MOST_STEPS} statements: it may never end")
+        if self._until is not None and self._until():
+            raise ControlFlow("exit")
+        if self.station.time > self._end:
+            raise ProgramError(
+                f"{source.name}:{source.line_of(node.start)}: the program is not over after "
+                f"{self._limit:g} s: let it end, or give run() an end: until=…, or limit=…"
+            )
+
+    def site(self, node: ProgramNode, scope: RoutineScope) -> ProgramPlace:
+        """The part of the program that a node is."""
+        key = (id(scope.unit), id(node))
+        found = self._sites.get(key)
+        if found is None:
+            extent = scope.unit.source.extent(node.start, node.end)
+            found = self._sites[key] = ProgramPlace(scope.unit.path, extent, scope.routine)
+        return found
+
+    def start(self, name: str, steps: Steps) -> None:
+        """Start a task."""
+        self.tasks[name] = steps
+
+    def task(self, name: str) -> ProgramTask:
+        """A new task of this run."""
+        return self.task_class(self, name)
+
+
+def _cell_errors(module: str) -> tuple[type[BaseException], ...]:
+    """The errors of the cell, which are those of no program: they pass as they are."""
+    import sys  # noqa: PLC0415
+
+    package = sys.modules.get(module.partition(".")[0])
+    found = getattr(package, "CellError", None)
+    return (found,) if isinstance(found, type) else ()

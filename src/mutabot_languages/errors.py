@@ -1,0 +1,17 @@
+"""What reading and running a robot program can raise."""
+
+from __future__ import annotations
+
+from mutabot.api.reports import MutabotError
+
+
+class LanguageError(MutabotError):
+    """A program cannot be read or run."""
+
+
+class ProgramError(LanguageError):
+    """The program itself stops with an error, as a controller would."""
+
+
+class UnsupportedError(LanguageError):
+    """The program uses something that is not carried out; the message names it and its line."""

@@ -1,0 +1,1 @@
+"""KRL: programs of KUKA robots, ``.src`` with its ``.dat``, and ``$config.dat``."""

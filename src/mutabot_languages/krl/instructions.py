@@ -1,0 +1,263 @@
+"""The instructions and functions of KRL: motions, waits, ``BAS``, triggers and mathematics."""
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Callable
+from typing import Any
+
+from mutabot_languages.core.frames import Frame
+from mutabot_languages.core.machine import ControlFlow, ProgramTask, RoutineScope, Steps, Structure
+from mutabot_languages.core.names import name_set
+from mutabot_languages.core.tree import ProgramNode
+
+from .dialect import KrlMachine, frame_of, of_axes, of_frame, set_frame
+
+#: what has no effect in the cell, and is noted
+IGNORED = name_set(
+    """continue a10 a10_ini a20 a50 h70 h50 userspot bas_tq msgnotify msgquit msgloop msgdialog set_kr_msg
+    set_kr_dlg clear_kr_msg varstate ir_stopm user_grp usergrp a_10 a_20 spottech grp err_raise cwrite cast_to
+    set_torque_limits reset_torque_limits brake resume delete_backward_buffer lk_ping
+    setbreakpoint sync_cmd on_error_proceed programsync lock unlock tech_motion kcp_ippno chkgrp interrupt_off
+    interrupt_on bwini sb_ini vw cwrite_text kuka_notify p00 act_drive_bus"""
+)
+
+
+def machine_of(task: ProgramTask) -> KrlMachine:
+    """The run that a task belongs to."""
+    machine = task.machine
+    assert isinstance(machine, KrlMachine)
+    return machine
+
+
+def _angles(task: ProgramTask, value: Any) -> list[float]:
+    """Joint angles of an axis position; axes that are not named stay."""
+    now = [math.degrees(one) for one in task.station.cell.arm.setpoint]
+    names = [f"a{number}" for number in range(1, 7)] + ["e1"]
+    return [float(value.get(name, now[index])) for index, name in enumerate(names[: len(now)])]
+
+
+def _is_axes(value: Any) -> bool:
+    return (isinstance(value, dict) and "a1" in value) or (isinstance(value, dict) and (
+        any(name in value for name in ("a2", "a3", "a4", "a5", "a6")) and "x" not in value
+    ))  # fmt: skip
+
+
+def _complete(task: ProgramTask, value: Any, now: Frame) -> Frame:
+    """The frame of a target; components that it does not name stay as they are."""
+    base = machine_of(task).base
+    here = of_frame(base.inverse() * now, "frame")
+    return base * frame_of({**here, **{name: one for name, one in value.items() if name in here}})
+
+
+def _move(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    """PTP, LIN, CIRC, their splines, and all of them relative."""
+    yield from _with(task, node, scope)
+    machine, station = machine_of(task), task.station
+    targets = yield from task.values([one for one in node.parts if one.kind != "option"], scope)
+    options = {one.name: one for one in node.parts if one.kind == "option"}
+    name = node.name
+    kind = name.removesuffix("_rel").lstrip("s") if name not in ("spl", "spl_rel") else "lin"
+    kind = "ptp" if kind in ("tp", "async_ptp") else kind
+    site = task.site(node, scope)
+    if name.endswith("_rel"):
+        start = station.commanded(site)
+        targets = [_relative(task, one, options, start) for one in targets]
+    if kind == "ptp" and _is_axes(targets[0]):
+        yield from task.move(node, scope, station.joint_move(_angles(task, targets[0]), machine.pace[1]))
+    else:
+        start = station.commanded(site)
+        frames = [
+            one if isinstance(one, Frame) else station.forward(_angles(task, one)) if _is_axes(one)
+            else _complete(task, one, start)
+            for one in targets
+        ]  # fmt: skip
+        if kind == "ptp":
+            yield from task.move(node, scope, station.joint_move(station.inverse(frames[0]), machine.pace[1]))
+        elif kind == "circ" and len(frames) > 1:
+            for motion in station.arc(start, frames[0], frames[1], machine.pace[0]):
+                yield from task.move(node, scope, motion)
+        else:
+            yield from task.move(node, scope, station.line(frames[0], machine.pace[0]))
+    yield from _fire(task)
+
+
+def _relative(task: ProgramTask, value: Any, options: dict[str, ProgramNode], start: Frame) -> Any:
+    """The target of a relative motion: in the axes of the base, or of the tool."""
+    if _is_axes(value):
+        now = [math.degrees(one) for one in task.station.cell.arm.setpoint]
+        names = [f"a{number}" for number in range(1, 7)] + ["e1"]
+        angles = [one + float(value.get(name, 0.0)) for name, one in zip(names, now, strict=False)]
+        return of_axes(angles)
+    shift = frame_of({"x": 0.0, **value})
+    frame = options.get("frame")
+    if frame is not None and frame.parts[0].name == "tool":
+        return start * shift
+    base = machine_of(task).base
+    here = base.inverse() * start
+    moved = tuple(p + q for p, q in zip(here.position, shift.position, strict=True))
+    turned = Frame(rotation=shift.rotation) * Frame(rotation=here.rotation)
+    return base * Frame((moved[0], moved[1], moved[2]), turned.rotation)
+
+
+def _with(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    """System variables that a spline motion sets for itself."""
+    for option in node.parts:
+        if option.kind == "option" and option.name == "with":
+            target, value = option.parts
+            yield from task.store(target, (yield from task.value(value, scope)), scope)
+
+
+def spline(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    """The motions of a spline block, one after the other."""
+    yield from task.run(node.bodies[0], scope)
+
+
+def _trigger(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> None:
+    """What a trigger does is done at the end of the next motion."""
+    machine_of(task).triggers.append((node.bodies[0][0], scope))
+
+
+def _fire(task: ProgramTask) -> Steps:
+    machine = machine_of(task)
+    waiting, machine.triggers = machine.triggers, []
+    for action, scope in waiting:
+        yield from task.statement(action, scope)
+
+
+def _wait_seconds(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    yield from task.wait(node, scope, float((yield from task.value(node.parts[0], scope))))
+
+
+def _wait_for(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    yield from task.until(node, scope, node.parts[0])
+
+
+def _halt(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> None:
+    task.station.note(f"HALT at line {scope.unit.source.line_of(node.start)}: the program goes on here")
+
+
+def _pulse(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    target, value, seconds = node.parts[0], *(yield from task.values(node.parts[1:3], scope))
+    yield from task.store(target, value, scope)
+    yield from task.wait(node, scope, float(seconds))
+    yield from task.store(target, not value, scope)
+
+
+def _interrupt(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> None:
+    """Interrupt 3 with IR_STOPM is in every program; what others do is not carried out."""
+    if node.name == "interrupt decl" and node.bodies[0][0].name != "ir_stopm":
+        raise task.unsupported(node, scope, f"INTERRUPT … DO {node.bodies[0][0].name}")
+    task.station.note(f"{node.name} at line {scope.unit.source.line_of(node.start)} has no effect here")
+
+
+def _bas(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    """BAS(#COMMAND, value): what the inline forms set before a motion."""
+    command = node.parts[0].name if node.parts and node.parts[0].kind == "enum" else ""
+    value = 0.0
+    if len(node.parts) > 1 and node.parts[1].kind != "omitted":
+        value = yield from task.value(node.parts[1], scope)
+    machine = machine_of(task)
+    if command == "initmov":
+        machine.pace[:] = [0.25, 1.0]
+    elif command in ("vel_ptp", "ptp_params"):
+        machine.pace[1] = max(0.01, float(value) / 100)
+    elif command in ("vel_cp", "cp_params"):
+        machine.pace[0] = float(value)
+    elif command in ("tool", "base"):
+        _number_frame(task, f"${command}", int(value))
+    elif command == "frames":
+        _forms(task, scope)
+    elif command not in _BAS:
+        raise task.unsupported(node, scope, f"BAS(#{command.upper()})")
+
+
+_BAS = name_set("acc_ptp acc_cp acc_gluing ptp_dat cp_dat vel_sptp out_sync out_async ex_base ext_motion")
+
+
+def _forms(task: ProgramTask, scope: RoutineScope) -> None:
+    """Tool and base of the data of the inline form, ``FDAT_ACT``."""
+    found = task.find("fdat_act", scope)
+    if found is None or not isinstance(found.value, dict):
+        return
+    for name, key in (("$tool", "tool_no"), ("$base", "base_no")):
+        if key in found.value:
+            _number_frame(task, name, int(found.value[key]))
+
+
+def _number_frame(task: ProgramTask, name: str, number: int) -> None:
+    """Set the tool or the base by its number; 0 and below stand for none."""
+    machine = machine_of(task)
+    table = f"{name[1:]}_data"
+    variable = task.machine.globals.get(table)
+    value: Any = machine.system.get(f"{table}[{number}]")
+    if value is None and variable is not None and isinstance(variable.value, list):
+        value = variable.value[number - 1] if 0 < number <= len(variable.value) else None
+    if value is None and number > 0:
+        task.station.note(f"{table.upper()}[{number}] is not declared: it is taken for zero")
+    set_frame(machine, name, value if value else of_frame(Frame(), "frame"))
+
+
+def _plain(function: Callable[..., Any]) -> Callable[..., Steps]:
+    """A function of values alone."""
+
+    def call(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+        values, _ = yield from task.arguments(node, scope)
+        try:
+            return function(*values)
+        except (TypeError, ValueError, IndexError, ZeroDivisionError, OverflowError) as error:
+            raise task.error(node, scope, f"{node.name}: {error}") from error
+
+    return call
+
+
+def _forward(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    values, _ = yield from task.arguments(node, scope)
+    at = machine_of(task).base.inverse() * task.station.forward(_angles(task, values[0]))
+    return of_frame(at, "e6pos")
+
+
+def _inverse(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    values, _ = yield from task.arguments(node, scope)
+    frame = machine_of(task).base * frame_of(values[0])
+    return of_axes(task.station.inverse(frame))
+
+
+def _inverse_position(value: Any) -> Structure:
+    return of_frame(frame_of(value).inverse(), "frame")
+
+
+def _end(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> None:
+    raise ControlFlow("exit")
+
+
+_MOVES = """ptp lin circ ptp_rel lin_rel circ_rel sptp slin scirc spl sptp_rel slin_rel scirc_rel spl_rel"""
+
+FUNCTIONS: dict[str, Callable[..., Any]] = {
+    **dict.fromkeys(_MOVES.split(), _move), "wait sec": _wait_seconds, "wait for": _wait_for, "halt": _halt,
+    "pulse": _pulse, "trigger": _trigger, "bas": _bas, "cancel": _end,
+    **dict.fromkeys(
+        ("interrupt decl", "interrupt on", "interrupt off", "interrupt enable", "interrupt disable"),
+        _interrupt
+    ),
+    "forward": _forward, "inverse": _inverse, "inv_pos": _plain(_inverse_position),
+    "abs": _plain(abs), "sqrt": _plain(math.sqrt),
+    "sin": _plain(lambda angle: math.sin(math.radians(angle))),
+    "cos": _plain(lambda angle: math.cos(math.radians(angle))),
+    "tan": _plain(lambda angle: math.tan(math.radians(angle))),
+    "acos": _plain(lambda value: math.degrees(math.acos(value))),
+    "asin": _plain(lambda value: math.degrees(math.asin(value))),
+    "atan2": _plain(lambda y, x: math.degrees(math.atan2(y, x))),
+    "round": _plain(lambda value: math.floor(value + 0.5)), "trunc": _plain(math.trunc),
+    "strlen": _plain(len), "strdecllen": _plain(len), "strcomp": _plain(lambda one, other, *_: one == other),
+    "strclear": _plain(lambda *_: True),
+    "toint": _plain(int), "copy": _plain(copy.deepcopy),
+    "svel_joint": _plain(float), "sacc_joint": _plain(float), "svel_cp": _plain(lambda value,
+    *_: float(value)),
+    "stool2": _plain(lambda value: value), "sbase": _plain(lambda value: value),
+    "sload": _plain(lambda value: value), "sipo_mode": _plain(lambda value: value),
+    "sapo": _plain(lambda v: v),
+    "sapo_ptp": _plain(lambda value, *_: value), "sgear_jerk": _plain(float), "sjerk": _plain(lambda *v: 0.0),
+    "tool_adj": _plain(lambda value: value),
+}  # fmt: skip

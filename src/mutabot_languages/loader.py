@@ -1,0 +1,161 @@
+"""Load a robot program from its files and run it on a cell."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from .core.language import RobotLanguage
+from .core.machine import ProgramUnit
+from .core.schedule import TaskSchedule
+from .core.signals import CellMap
+from .core.station import Station
+from .core.text import decode
+from .core.tree import ProgramNode
+from .edits import ActiveEdits, active, applied
+from .errors import LanguageError
+from .registry import LANGUAGES, language_for
+
+_MAIN = "main"
+
+
+@dataclass(frozen=True, slots=True)
+class ProgramRun:
+    """What became of a run.
+
+    Attributes:
+        variables: the program's global variables at its end, by name.
+        outputs: the last value of each output, by name.
+        notes: what had no effect in the cell, each once.
+        seconds: simulated time that it took.
+    """
+
+    variables: Mapping[str, Any]
+    outputs: Mapping[str, Any]
+    notes: tuple[str, ...]
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class RobotProgram:
+    """A robot program.
+
+    Attributes:
+        files: its files, the one with the main routine first.
+        language: what they are written in.
+        cell_map: what its signals are in the cell.
+    """
+
+    files: tuple[Path, ...]
+    language: RobotLanguage
+    cell_map: CellMap = field(default_factory=CellMap)
+
+    def run(
+        self,
+        cell: Any,
+        routine: str = "",
+        *,
+        inputs: Mapping[str, Any] | None = None,
+        until: Callable[[], bool] | None = None,
+        limit: float = 600.0,
+        seed: int = 0,
+    ) -> ProgramRun:
+        """Run it from the beginning to its end.
+
+        Args:
+            cell: a ``mutabot_cell.Cell``.
+            routine: to start with, instead of the program's own beginning.
+            inputs: values of inputs by name, or functions that give them; they go before the cell map.
+            until: ends the run, between two statements, as soon as it holds: for programs without an end.
+            limit: simulated seconds, s, after which it is an error that the program still runs.
+            seed: of the order in which tasks take turns.
+
+        Raises:
+            LanguageError: a file cannot be read.
+            ProgramError: the program stops with an error, such as a pose out of reach.
+            UnsupportedError: it uses something that is not carried out.
+            mutabot_cell.CellError: the cell stops it, such as by a protective stop.
+        """
+        station = Station(cell, self.cell_map, inputs or {})
+        units = [unit for file in self.files for unit in [self._unit(file)]]
+        machine = self.language.machine(self.language.dialect(), station, units, until, limit)
+        began = station.time
+        task = machine.task(_MAIN)
+        schedule = TaskSchedule(machine, seed)
+        for steps in (self.language.prepare(machine, task), self.language.main(machine, task, routine)):
+            machine.start(_MAIN, steps)
+            schedule.run(_MAIN)
+        names = {name: one.value for name, one in machine.globals.items()}
+        for unit in units:
+            names |= {name: one.value for name, one in unit.names.items()}
+        return ProgramRun(names, dict(station.outputs), tuple(station.notes), station.time - began)
+
+    def _unit(self, file: Path) -> ProgramUnit:
+        try:
+            content = file.read_bytes()
+        except OSError as error:
+            raise LanguageError(f"{file}: the program cannot be read: {error.strerror}") from None
+        text, _ = decode(content)
+        found = [one for one in active() if one.concern(file.resolve(), content)]
+        text = applied(text, [edit for one in found for edit in one.edits])
+        parsed = self.language.read(file.name, text)
+        unit = ProgramUnit(str(file.resolve()), parsed.source, parsed.tree)
+        unit.watched = {start: one.reached for one in found for start in _watched(parsed.tree, one)}
+        return unit
+
+
+def load(
+    path: str | PathLike[str], *more: str | PathLike[str], cell_map: str | PathLike[str] | None = None
+) -> RobotProgram:
+    """A program from its files.
+
+    Args:
+        path: the file with the main routine. Of KRL, the ``.dat`` beside a ``.src``, and ``$config.dat``,
+            belong to it by themselves.
+        more: other files of the program.
+        cell_map: the TOML file that says what its signals are in the cell; ``cell_map.toml`` beside the
+            program by default, if there is one.
+
+    Raises LanguageError for a file that is not there or of no known language, and for a wrong cell map.
+    """
+    files = [Path(path), *map(Path, more)]
+    languages = [language_for(one.name) for one in files]
+    for file, language in zip(files, languages, strict=True):
+        if language is None or language is not languages[0]:
+            known = ", ".join(suffix for one in LANGUAGES for suffix in one.suffixes)
+            raise LanguageError(
+                f"{file}: the files of a program have one language, and end with one of {known}"
+            )
+        if not file.is_file():
+            raise LanguageError(f"{file}: there is no such file")
+    found = languages[0]
+    assert found is not None
+    for file in tuple(files):
+        files += [one for one in found.beside(file) if one not in files]
+    beside = files[0].parent / "cell_map.toml"
+    chosen = Path(cell_map) if cell_map is not None else beside if beside.is_file() else None
+    return RobotProgram(tuple(files), found, CellMap.read(chosen) if chosen is not None else CellMap())
+
+
+def _watched(tree: ProgramNode, edits: ActiveEdits) -> list[int]:
+    """Where the statements begin that are different."""
+    shift, found = 0, list[int]()
+    for edit in sorted(edits.edits, key=lambda one: one.start):
+        start, end = edit.start + shift, edit.start + shift + len(edit.text)
+        inside = [
+            node
+            for body in _bodies(tree)
+            for node in body
+            if node.kind != "routine" and node.start <= start and node.end >= end
+        ]
+        if inside:
+            found.append(min(inside, key=lambda node: (node.end - node.start, -node.start)).start)
+        shift += len(edit.text) - (edit.end - edit.start)
+    return found
+
+
+def _bodies(tree: ProgramNode) -> list[list[ProgramNode]]:
+    return [body for node in tree.walk() for body in node.bodies]

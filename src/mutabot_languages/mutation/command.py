@@ -1,0 +1,83 @@
+"""``mutabot diff`` and ``mutabot export``: mutants of robot programs as differences of their text."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from mutabot.api.faults import Project
+from mutabot.api.processes import Request
+from mutabot.api.reports import CommandContext, UsageError
+
+from .planning import PlannedText, planned_texts
+from .provider import variant_of
+
+_Words = Annotated[
+    list[str] | None,
+    typer.Argument(
+        metavar="[WORD]...", help="Only mutants in whose id all these words stand, such as a file's name."
+    ),
+]
+_Folder = Annotated[Path, typer.Argument(metavar="DIR", help="The folder to write to; it must be empty.")]
+
+
+def diff(context: CommandContext, request: Request, words: _Words = None) -> None:
+    """Show mutants of robot programs as differences of their text.
+
+    Each is what `patch` takes, below a comment with its id.
+    """
+    for one in _chosen(request, words):
+        context.print(f"# {mutant_id(one)}")
+        for line in one.program.diff(one.difference):
+            context.print(line)
+
+
+def export(context: CommandContext, request: Request, folder: _Folder, words: _Words = None) -> None:
+    """Write mutated robot programs, a folder each, for the maker's own simulator.
+
+    `mutants.json` in the folder says which mutant is in which folder.
+    """
+    if folder.exists() and any(folder.iterdir()):
+        raise UsageError(f"{folder} is not empty: name a new folder")
+    index: dict[str, str] = {}
+    for number, one in enumerate(_chosen(request, words), start=1):
+        place = folder / str(number)
+        for program in [one.program, *one.others]:
+            target = place / program.file
+            target.parent.mkdir(parents=True, exist_ok=True)
+            is_changed = program is one.program
+            text = program.changed(one.difference) if is_changed else program.text
+            target.write_bytes(text.encode(program.encoding))
+        index[str(number)] = mutant_id(one)
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "mutants.json").write_text(
+        json.dumps(index, indent=1, ensure_ascii=False) + "\n", encoding="utf-8"
+    )
+    context.print(f"{len(index)} mutants in {folder}, each with all files of the program")
+
+
+def mutant_id(one: PlannedText) -> str:
+    """The id that campaigns give it."""
+    variant = variant_of(one.difference)
+    return f"{one.site.id}:{one.difference.operator}{f'={variant}' if variant else ''}"
+
+
+def _chosen(request: Request, words: list[str] | None) -> list[PlannedText]:
+    files = Project(request.root, request.configuration.program).program_files()
+    found = [one for one in planned_texts(request.root, files) if one.difference.reason is None]
+    chosen = [one for one in found if all(_stands(word, mutant_id(one)) for word in words or ())]
+    if not chosen:
+        what = f"with {' '.join(words)}" if words else "of these languages"
+        raise UsageError(f"there is no mutant {what} in {', '.join(files) or 'the program'}")
+    return chosen
+
+
+def _stands(word: str, name: str) -> bool:
+    return re.search(rf"(?<![\w-]){re.escape(word)}(?![\w-])", name) is not None
+
+
+__all__ = ["diff", "export"]

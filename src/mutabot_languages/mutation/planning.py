@@ -1,0 +1,106 @@
+"""The mutants of a program's files, from their text alone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from mutabot.api.faults import Site
+from mutabot_languages.core.language import site_text
+from mutabot_languages.core.text import decode
+from mutabot_languages.core.tree import ProgramNode
+from mutabot_languages.registry import language_for, rewriter_of
+
+from .differences import ProgramFile, TextChange
+from .rewriting import Sizes
+
+
+@dataclass(frozen=True, slots=True)
+class PlannedText:
+    """A mutant of a file.
+
+    Attributes:
+        program: the file.
+        others: the other files of the program.
+        site: where it is.
+        difference: what it changes.
+        description: one line that an engineer recognises.
+    """
+
+    program: ProgramFile
+    others: tuple[ProgramFile, ...]
+    site: Site
+    difference: TextChange
+    description: str
+
+
+def read_program(
+    root: Path, files: list[str], tell: Callable[[str], None] | None = None
+) -> list[ProgramFile]:
+    """Read those of these files that are of our languages; what cannot be read is said."""
+    found: list[ProgramFile] = []
+    for file in files:
+        language = language_for(file)
+        if language is None:
+            continue
+        content = (root / file).read_bytes()
+        text, encoding = decode(content)
+        parsed = language.read(file, text)
+        for diagnostic in parsed.diagnostics if tell is not None else ():
+            if tell is not None:
+                tell(diagnostic.text)
+        found.append(ProgramFile(file, language, content, encoding, text, parsed))
+    for one in found:
+        one.others.extend(other for other in found if other is not one and other.language is one.language)
+    return found
+
+
+def mutants_of(program: ProgramFile, sizes: Sizes | None = None) -> Iterator[PlannedText]:
+    """The mutants of a file, in the order of its text."""
+    occurrences = _occurrences(program)
+    rewriter = rewriter_of(program.language)(program, sizes)
+    made = sorted(rewriter.differences(), key=lambda one: (one.node.start, one.node.end))
+    seen: set[tuple[str, tuple[object, ...]]] = set()
+    for one in made:
+        key = (one.operator, one.edits)
+        if key in seen or not program.is_sound(one):
+            continue
+        seen.add(key)
+        site = _site(program, one.node, occurrences)
+        note = f" ({one.note})" if one.note else ""
+        yield PlannedText(program, tuple(program.others), site, one, f"{program.shown(one)}{note}")
+
+
+def planned_texts(root: Path, files: list[str]) -> Iterator[PlannedText]:
+    """All mutants of a program's files."""
+    for program in read_program(root, files):
+        yield from mutants_of(program)
+
+
+_NodeKey = tuple[int, int]
+
+
+def _occurrences(program: ProgramFile) -> dict[_NodeKey, tuple[str, str, int]]:
+    """Routine, text and number of each node among those with this text in this routine."""
+    counts: dict[tuple[str, str], int] = {}
+    found: dict[_NodeKey, tuple[str, str, int]] = {}
+    waiting: list[tuple[ProgramNode, str]] = [(program.parsed.tree, "<module>")]
+    while waiting:
+        node, routine = waiting.pop()
+        if (node.start, node.end) not in found:
+            text = site_text(node, program.text)
+            counts[routine, text] = counts.get((routine, text), 0) + 1
+            found[node.start, node.end] = routine, text, counts[routine, text]
+        inner = node.name if node.kind == "routine" else routine
+        below = [(one, routine) for one in node.parts] + [
+            (one, inner) for body in node.bodies for one in body
+        ]
+        waiting.extend(sorted(below, key=lambda one: one[0].start, reverse=True))
+    return found
+
+
+def _site(program: ProgramFile, node: ProgramNode, occurrences: dict[_NodeKey, tuple[str, str, int]]) -> Site:
+    routine, text, number = occurrences[node.start, node.end]
+    extent = program.parsed.source.extent(node.start, node.end)
+    return Site.in_program(program.file, extent, routine, text, number)

@@ -1,0 +1,130 @@
+"""Plans mutants of the text of robot programs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from mutabot.api.faults import (
+    Activation,
+    FaultProvider,
+    Original,
+    Planned,
+    PlannedMutant,
+    ProgramText,
+    Project,
+    Rule,
+    Site,
+)
+from mutabot_languages.edits import digest
+
+from .differences import TextChange
+from .planning import PlannedText, mutants_of, read_program
+from .rewriting import Sizes
+from .rules import BY_NAME, CONVENTIONAL, FAMILY, RULES
+
+PROVIDER = "languages"
+ACTIVE = "mutabot_languages.mutation.active:TextDifference"
+_ORDER = (FAMILY, CONVENTIONAL)
+
+
+class LanguageFaults(FaultProvider):
+    """Mutants of the text of URScript, RAPID and KRL programs."""
+
+    name = PROVIDER
+    families = _ORDER
+    location = "part of a program"
+    in_program = True
+
+    def __init__(self) -> None:
+        self._root = Path()
+        self._files: list[str] = []
+
+    def rules(self) -> Sequence[Rule]:
+        """All operators on these texts."""
+        return RULES
+
+    def is_monotone(self, operator: str) -> bool:
+        """False: a point that is shifted far may be out of reach where a nearer one does harm unseen."""
+        return False
+
+    def texts(self, project: Project, first: int, tell: Callable[[str], None]) -> Sequence[ProgramText]:
+        """No Python text is looked at; what cannot be read of the program is said here."""
+        read_program(project.root, project.program_files(), tell)
+        return ()
+
+    def plan(self, project: Project, original: Original) -> Planned:
+        """The mutants of all files of the program that are of these languages."""
+        self._root, self._files = project.root, project.program_files()
+        planned = Planned()
+        reached = _tests_by_file(original)
+        sites: set[Site] = set()
+        for program in read_program(project.root, self._files):
+            for one in mutants_of(program):
+                rule = BY_NAME[one.difference.operator]
+                if not project.asks_for(rule):
+                    continue
+                planned.mutants.append(self._planned(rule, one))
+                sites.add(one.site)
+        for site in sorted(sites):
+            for round, tests in enumerate(original.tests):
+                seen = reached.get(round)
+                planned.reach(round, site, tests if not seen else [test for test in tests if test in seen])
+        return planned
+
+    def at_magnitude(self, planned: PlannedMutant, magnitude: float) -> PlannedMutant:
+        """The same fault by another magnitude."""
+        mutant = planned.mutant
+        for program in read_program(self._root, self._files):
+            if program.file != mutant.site.span.file:
+                continue
+            for one in mutants_of(program, Sizes.only(magnitude)):
+                is_same = one.difference.operator == mutant.operator and one.site == mutant.site
+                if is_same and one.difference.variant == mutant.variant.rstrip("0123456789.medg"):
+                    return self._planned(BY_NAME[mutant.operator], one)
+        return super().at_magnitude(planned, magnitude)
+
+    def _planned(self, rule: Rule, one: PlannedText) -> PlannedMutant:
+        difference = one.difference
+        variant = variant_of(difference)
+        made = self.mutant(
+            rule,
+            one.site,
+            one.description,
+            variant=variant,
+            magnitude=difference.magnitude,
+            unit=difference.unit,
+        )
+        if difference.magnitude is not None:
+            made = replace(made, direction=difference.variant)
+        data: dict[str, Any] = {
+            "file": one.program.file,
+            "digest": digest(one.program.content),
+            "edits": [[edit.start, edit.end, edit.text] for edit in difference.edits],
+        }
+        active = Activation(ACTIVE, data, awaits=Activation.FIRST_TEST, is_of_tests=True)
+        order = (_ORDER.index(rule.family),)
+        return PlannedMutant(made, difference.reason, order=order, does=data, active=active)
+
+
+def _tests_by_file(original: Original) -> dict[int, set[str]]:
+    """The tests of each round in which a program of these languages has called the cell."""
+    from mutabot_languages.registry import language_for  # noqa: PLC0415
+
+    found: dict[int, set[str]] = {}
+    for place, hits in original.hits.items():
+        if language_for(place.site.span.file) is None:
+            continue
+        for hit in hits:
+            round, test = hit.where
+            found.setdefault(round, set()).add(test)
+    return found
+
+
+def variant_of(difference: TextChange) -> str:
+    """The variant of its mutant."""
+    if difference.magnitude is None:
+        return difference.variant
+    return f"{difference.variant}{difference.magnitude:g}{difference.unit}"

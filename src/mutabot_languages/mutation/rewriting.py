@@ -1,0 +1,209 @@
+"""How operators rewrite a program, as far as that is the same in all languages."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+from mutabot_languages.core.tree import ProgramNode
+from mutabot_languages.edits import Edit
+
+from .differences import ProgramFile, TextChange
+
+#: the usual magnitudes of a shifted point, mm, and of a turned one, degrees
+SHIFTS = (1.0, 5.0, 20.0, 50.0)
+TURNS = (2.0, 10.0, 45.0)
+AXES = ("x", "y", "z")
+NO_BLENDING = "corners are not rounded here, so that it cannot be observed"
+NO_CONFIGURATION = "the arm takes the nearest configuration here, so that it cannot be observed"
+
+
+@dataclass(frozen=True, slots=True)
+class Sizes:
+    """Which magnitudes of faults with sizes are made: the usual ones, or one that is asked for."""
+
+    shifts: Sequence[float] = SHIFTS
+    turns: Sequence[float] = TURNS
+
+    @classmethod
+    def only(cls, size: float) -> Sizes:
+        """This magnitude alone."""
+        return cls((size,), (size,))
+
+
+class Rewriter:
+    """Makes the differences of a file.
+
+    Class attributes:
+        arithmetic, relations, logic: operators that stand for each other.
+        negation: how a condition is negated, around ``{}``.
+        nothing: what stands for a statement that is missing.
+        ignores_case: whether operators may be written in capital letters.
+    """
+
+    arithmetic: ClassVar[tuple[str, ...]] = ("+", "-", "*", "/")
+    relations: ClassVar[Mapping[str, tuple[str, ...]]]
+    logic: ClassVar[Mapping[str, str]]
+    negation: ClassVar[str]
+    nothing: ClassVar[str] = ""
+    ignores_case: ClassVar[bool] = False
+
+    def __init__(self, program: ProgramFile, sizes: Sizes | None = None) -> None:
+        self.program, self.text = program, program.text
+        self.sizes = sizes or Sizes()
+
+    def differences(self) -> Iterator[TextChange]:
+        """All of the file, in the order of its text as far as that is one."""
+        for node, parents in self._nodes():
+            if self.is_generated(node, parents):
+                continue
+            yield from self.of_node(node, parents)
+            yield from self.conventional(node, parents)
+
+    def _nodes(self) -> Iterator[tuple[ProgramNode, tuple[ProgramNode, ...]]]:
+        waiting: list[tuple[ProgramNode, tuple[ProgramNode, ...]]] = [(self.program.parsed.tree, ())]
+        while waiting:
+            node, parents = waiting.pop()
+            if parents:
+                yield node, parents
+            inner = (*parents, node)
+            below = [*node.parts, *(one for body in node.bodies for one in body)]
+            waiting.extend((one, inner) for one in sorted(below, key=lambda one: one.start, reverse=True))
+
+    # what a language says
+
+    def is_generated(self, node: ProgramNode, parents: tuple[ProgramNode, ...]) -> bool:
+        """Whether a node stands in a part of the file that a tool has written."""
+        return False
+
+    def of_node(self, node: ProgramNode, parents: tuple[ProgramNode, ...]) -> Iterator[TextChange]:
+        """The differences of robot operators that are about a node."""
+        raise NotImplementedError
+
+    def shifted(self, target: ProgramNode, axis: int, metres: float) -> tuple[Edit, ...] | None:
+        """The edits that shift a pose along an axis; None if nobody knows how."""
+        raise NotImplementedError
+
+    def turned(self, target: ProgramNode, axis: int, degrees: float) -> tuple[Edit, ...] | None:
+        """The edits that turn a pose about an axis of its own; None if nobody knows how."""
+        raise NotImplementedError
+
+    # what they share
+
+    def written(self, node: ProgramNode) -> str:
+        """A node as it stands in the text."""
+        return self.text[node.start : node.end]
+
+    def put(self, node: ProgramNode, text: str) -> tuple[Edit, ...]:
+        """The edit that puts a text in the place of a node."""
+        return (Edit(node.start, node.end, text),)
+
+    def without(self, node: ProgramNode) -> tuple[Edit, ...]:
+        """The edit that takes a statement out."""
+        return (Edit(node.start, node.end, self.nothing),)
+
+    def sized(
+        self,
+        operator: str,
+        node: ProgramNode,
+        subject: ProgramNode,
+        change: Callable[[ProgramNode, int, float], tuple[Edit, ...] | None],
+        sizes: Sequence[float],
+        unit: str,
+        factor: float,
+    ) -> Iterator[TextChange]:
+        """A fault with sizes, along each axis, both ways."""
+        for axis, name in enumerate(AXES):
+            for sign in ("+", "-"):
+                for size in sizes:
+                    edits = change(subject, axis, float(f"{sign}{size * factor:.9g}"))
+                    if edits is not None:
+                        yield TextChange(operator, node, edits, f"{name}{sign}", size, unit)
+
+    def moved(self, node: ProgramNode, target: ProgramNode) -> Iterator[TextChange]:
+        """The differences of a motion's target."""
+        yield from self.sized("shift-target", node, target, self.shifted, self.sizes.shifts, "mm", 0.001)
+        yield from self.sized("turn-target", node, target, self.turned, self.sizes.turns, "deg", 1.0)
+
+    def scaled(
+        self, operator: str, node: ProgramNode, number: ProgramNode, factors: Sequence[float]
+    ) -> Iterator[TextChange]:
+        """A number that is multiplied."""
+        if number.kind != "number" or not number.value:
+            return
+        for factor in factors:
+            text = f"{float(number.value) * factor:.6g}"
+            yield TextChange(operator, node, self.put(number, text), f"×{factor:g}")
+
+    def conventional(self, node: ProgramNode, parents: tuple[ProgramNode, ...]) -> Iterator[TextChange]:
+        """The differences of conventional operators that are about a node."""
+        if node.kind == "binary":
+            yield from self._operators(node)
+        if node.kind in ("if", "while", "repeat"):
+            for index, condition in enumerate(node.parts):
+                text = self.negation.format(self.written(condition))
+                yield TextChange("negate-condition", condition, self.put(condition, text), str(index or ""))
+        if node.kind == "number" and self.is_plain_number(node, parents):
+            yield from self._numbers(node)
+        is_dropped = node.kind in ("assign", "return", "break", "continue", "goto", "call")
+        if is_dropped and self.is_statement(node, parents) and not self.is_of_robot(node):
+            yield TextChange("drop-any", node, self.without(node))
+
+    def is_statement(self, node: ProgramNode, parents: tuple[ProgramNode, ...]) -> bool:
+        """Whether a node stands by itself."""
+        if parents[-1].kind == "if" and parents[-1].name == "compact":  # it has to have one
+            return False
+        return any(one is node for body in parents[-1].bodies for one in body)
+
+    def is_of_robot(self, node: ProgramNode) -> bool:
+        """Whether the robot or its signals take part in a statement: an operator of its own drops these."""
+        return False
+
+    def is_plain_number(self, node: ProgramNode, parents: tuple[ProgramNode, ...]) -> bool:
+        """Whether a number is one of a calculation, a comparison or an assignment."""
+        return parents[-1].kind in ("binary", "assign", "for")
+
+    def _operators(self, node: ProgramNode) -> Iterator[TextChange]:
+        left, right = node.parts
+        between = self.text[left.end : right.start]
+        start = (between.lower() if self.ignores_case else between).find(node.name)
+        if start < 0:
+            return
+        for operator, others in (
+            ("replace-arithmetic", self.arithmetic if node.name in self.arithmetic else ()),
+            ("replace-relation", self.relations.get(node.name, ())),
+            ("replace-logic", (self.logic[node.name],) if node.name in self.logic else ()),
+        ):
+            for other in others:
+                if other != node.name and not self._is_text(node):
+                    yield TextChange(
+                        operator,
+                        node,
+                        (Edit(left.end + start, left.end + start + len(node.name), other),),
+                        other,
+                    )
+
+    def _is_text(self, node: ProgramNode) -> bool:
+        return any(one.kind == "text" for one in node.walk())
+
+    def _numbers(self, node: ProgramNode) -> Iterator[TextChange]:
+        texts = {"0": "0", "plus": f"{node.value + 1:g}"} if isinstance(node.value, (int, float)) else {}
+        for variant, text in texts.items():
+            if float(text) != float(node.value):
+                yield TextChange("replace-number", node, self.put(node, text), variant)
+
+
+def signed_number(node: ProgramNode) -> float | None:
+    """The value of a number with or without a sign; None for anything else."""
+    if node.kind == "number":
+        return float(node.value)
+    if node.kind == "unary" and node.name in "+-" and node.parts[0].kind == "number":
+        return -float(node.parts[0].value) if node.name == "-" else float(node.parts[0].value)
+    return None
+
+
+def named_number(value: float) -> str:
+    """A number as programs write it, without a tail of zeros."""
+    text = f"{value:.6f}".rstrip("0").rstrip(".")
+    return "0" if text in ("-0", "") else text

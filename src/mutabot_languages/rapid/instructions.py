@@ -1,0 +1,586 @@
+"""The instructions and functions of RAPID: motions, signals, waits, frames, mathematics and texts."""
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Callable
+from typing import Any
+
+from mutabot_languages.core.frames import IDENTITY, Frame
+from mutabot_languages.core.machine import (
+    ControlFlow,
+    ProgramRaised,
+    ProgramTask,
+    RoutineScope,
+    Steps,
+    Structure,
+    Variable,
+)
+from mutabot_languages.core.names import name_set
+from mutabot_languages.core.station import TICK
+from mutabot_languages.core.tree import ProgramNode
+
+from .types import STRUCTURES, frame_of, put_frame, shaped
+
+#: what has no effect in the cell, and is noted
+IGNORED = name_set(
+    """confl confj singarea accset velset pathaccllim pathacclim gripload tpwrite errwrite tperase tpshow
+    skipwarn
+    syncmoveon syncmoveoff waitsynctask syncmoveundo actunit deactunit actevent evtset motionsup
+    speedrefresh worldacclim
+    pathresol softact softdeact corrclear load unload save startload waitload cancelload eraseModule
+    stopmove startmove
+    storepath restopath clearpath logtext spystart spystop setsysdata resetretrycount resetpppdata bookerrno
+    isleep iwatch idisable ienable idelete motionprocessmodeset circpathmode tuneservo tunereset eoffson
+    eoffsoff
+    eoffsset opennocompress setallhdpos breakpoint break uimsgbox uimsgwrite saferuncheck wzdisable wzenable
+    jointlimitset sysstopaction manloadidproc paridposvalid tpreadnum accsetmax cyclestartedreset
+    enabletaskauto
+    gripsetload cpoff cpon speedlim speedlimit robotwarning wait_sync reconnect process_stop errlog
+    writestrbin
+    tplogmessage systemstopaction""".lower()
+)
+_TIMEOUT = "err_wait_maxtime"
+
+
+def structures(task: ProgramTask) -> Any:
+    """The structures of the program."""
+    return getattr(task.dialect, "structures", STRUCTURES)
+
+
+def _base(task: ProgramTask, wobj: Any) -> Frame:
+    """The frame of a work object on the robot's base, with the program's displacement."""
+    frame = IDENTITY if wobj is None else frame_of(wobj["uframe"]) * frame_of(wobj["oframe"])
+    shift = getattr(task.machine, "displacement", None)
+    return frame if shift is None else frame * shift
+
+
+def _target(task: ProgramTask, value: Any, type: str) -> Any:
+    return shaped(value, type, structures(task))
+
+
+def _move(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    """MoveJ, MoveL, MoveC, MoveAbsJ and those that set an output or call a routine at their end."""
+    values, named = yield from _given(task, node, scope)
+    name = node.name
+    is_circle, is_joint = name.startswith("movec"), name.startswith("moveabsj")
+    via = values.pop(0) if is_circle else None
+    if len(values) < 4 and not (is_joint and len(values) >= 3):
+        raise task.error(node, scope, f"{name} takes a target, a speed, a zone and a tool")
+    target, speed = values[0], _target(task, values[1], "speeddata")
+    tool = _target(task, values[3], "tooldata") if len(values) > 3 else None
+    station = task.station
+    if tool is not None:
+        station.tool = frame_of(tool["tframe"])
+    wobj = named.get("wobj")
+    base = _base(task, _target(task, wobj, "wobjdata") if wobj is not None else None)
+    pace = float(named.get("v") or speed["v_tcp"]) / 1000
+    if pace <= 0:
+        raise task.error(node, scope, f"{name} with the speed {pace * 1000:g} mm/s")
+    part = pace / float(station.model.tool_limits.speed)
+    if is_joint:
+        joints = [float(one) for one in _target(task, target, "jointtarget")["robax"].values()]
+        joints += _seventh(task, _target(task, target, "jointtarget"))
+        yield from task.move(node, scope, station.joint_move(joints, part))
+    else:
+        frame = base * frame_of(_target(task, target, "robtarget"))
+        if named.get("t"):
+            start = station.commanded(task.site(node, scope))
+            pace = max(1e-4, start.distance(frame) / float(named["t"]))
+            part = pace / float(station.model.tool_limits.speed)
+        if is_circle:
+            middle = base * frame_of(_target(task, via, "robtarget"))
+            start = station.commanded(task.site(node, scope))
+            for motion in station.arc(start, middle, frame, pace):
+                yield from task.move(node, scope, motion)
+        elif name.startswith("movej"):
+            yield from task.move(node, scope, station.joint_move(station.inverse(frame), part))
+        else:
+            yield from task.move(node, scope, station.line(frame, pace))
+    yield from _at_end(task, node, scope, name, values)
+
+
+def _seventh(task: ProgramTask, target: Any) -> list[float]:
+    """The first external axis is the seventh joint of an arm that has one."""
+    value = float(target["extax"]["eax_a"])
+    return [value] if task.station.joints > 6 and abs(value) < 1e8 else []
+
+
+def _at_end(task: ProgramTask, node: ProgramNode, scope: RoutineScope, name: str, values: list[Any]) -> Steps:
+    if name.endswith(("do", "ao", "go")) and len(values) > 5:
+        signals = [one for one in node.parts if one.kind != "option"]
+        signal = signals[-2].name
+        task.station.write(task.site(node, scope), signal, values[-1])
+    elif name.endswith("sync") and values and isinstance(values[-1], str):
+        yield from _call_by_name(task, node, scope, values[-1].lower(), [])
+
+
+def _given(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Any:
+    """The arguments of a motion; signals are not read."""
+    values, named = list[Any](), dict[str, Any]()
+    plain = [one for one in node.parts if one.kind != "option"]
+    skipped = plain[-2:-1] if node.name.endswith(("do", "ao", "go")) and len(plain) > 5 else []
+    for part in node.parts:
+        if part.kind == "option":
+            if part.value == "conditional" and part.parts[0].name not in scope.given:
+                continue
+            named[part.name] = (yield from task.value(part.parts[0], scope)) if part.parts else True
+        elif part in skipped:
+            values.append(None)
+        else:
+            values.append((yield from task.value(part, scope)))
+    return values, named
+
+
+# signals
+
+
+def _signal(task: ProgramTask, node: ProgramNode, scope: RoutineScope, part: ProgramNode) -> str:
+    """The name of a signal: of an alias, or of a parameter, that of its signal."""
+    found = task.find(part.name, scope) if part.kind == "name" else None
+    if found is not None and isinstance(found.value, str):
+        return found.value
+    return part.name
+
+
+def _set(value: int) -> Callable[..., Any]:
+    def write(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> None:
+        task.station.write(task.site(node, scope), _signal(task, node, scope, node.parts[0]), value)
+
+    return write
+
+
+def _set_to(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    """SetDO, SetGO, SetAO, with a delay."""
+    parts = [one for one in node.parts if one.kind != "option"]
+    value = yield from task.value(parts[1], scope)
+    for option in node.parts:
+        if option.kind == "option" and option.name == "sdelay" and option.parts:
+            yield from task.wait(node, scope, float((yield from task.value(option.parts[0], scope))))
+    task.station.write(task.site(node, scope), _signal(task, node, scope, parts[0]), value)
+
+
+def _pulse(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    parts = [one for one in node.parts if one.kind != "option"]
+    named = {one.name: one for one in node.parts if one.kind == "option"}
+    seconds = 0.2
+    if "plength" in named:
+        seconds = float((yield from task.value(named["plength"].parts[0], scope)))
+    signal = _signal(task, node, scope, parts[0])
+    task.station.write(task.site(node, scope), signal, 1)
+    yield from task.wait(node, scope, seconds)
+    task.station.write(task.site(node, scope), signal, 0)
+
+
+def _invert(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> None:
+    signal = _signal(task, node, scope, node.parts[0])
+    before = task.station.outputs.get(signal.lower(), 0)
+    task.station.write(task.site(node, scope), signal, 0 if before else 1)
+
+
+def _read(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Any:
+    return task.station.read(task.site(node, scope), _signal(task, node, scope, node.parts[0]))
+
+
+def _test(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> bool:
+    return bool(_read(task, node, scope))
+
+
+def _number_in(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Any:
+    value = _read(task, node, scope)
+    return int(value) if isinstance(value, bool) else value
+
+
+def _output(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Any:
+    return int(task.station.outputs.get(_signal(task, node, scope, node.parts[0]).lower(), 0))
+
+
+# waits
+
+
+def _wait_time(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    values, _ = yield from task.arguments(node, scope)
+    yield from task.wait(node, scope, float(values[-1]) if values else 0.0)
+
+
+def _options(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Any:
+    named: dict[str, ProgramNode] = {one.name: one for one in node.parts if one.kind == "option"}
+    seconds = 0.0
+    if "maxtime" in named:
+        seconds = float((yield from task.value(named["maxtime"].parts[0], scope)))
+    return seconds, named.get("timeflag")
+
+
+def _wait_signal(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    parts = [one for one in node.parts if one.kind != "option"]
+    wanted = yield from task.value(parts[1], scope)
+    signal = _signal(task, node, scope, parts[0])
+    site = task.site(node, scope)
+
+    def holds() -> bool:
+        is_output = node.name.startswith(("waitdo", "waitgo", "waitao"))
+        value = task.station.outputs.get(signal.lower(), 0) if is_output else task.station.read(site, signal)
+        return float(value) == float(wanted)
+
+    yield from _poll(task, node, scope, holds)
+
+
+def _poll(task: ProgramTask, node: ProgramNode, scope: RoutineScope, holds: Callable[[], bool]) -> Steps:
+    seconds, flag = yield from _options(task, node, scope)
+    began = task.station.time
+    while not holds():
+        if seconds and task.station.time - began >= seconds - TICK / 2:
+            yield from _timed_out(task, node, scope, flag)
+            return
+        task.machine.step(node, scope)
+        yield from task.wait(node, scope, TICK)
+    if flag is not None and flag.parts:
+        yield from task.store(flag.parts[0], False, scope)
+
+
+def _timed_out(task: ProgramTask, node: ProgramNode, scope: RoutineScope, flag: ProgramNode | None) -> Steps:
+    if flag is None or not flag.parts:
+        raise ProgramRaised(_TIMEOUT, f"{node.name} waited in vain")
+    yield from task.store(flag.parts[0], True, scope)
+
+
+def _wait_until(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    condition = next(one for one in node.parts if one.kind != "option")
+    seconds, flag = yield from _options(task, node, scope)
+    if not (yield from task.until(node, scope, condition, seconds)):
+        yield from _timed_out(task, node, scope, flag)
+    elif flag is not None and flag.parts:
+        yield from task.store(flag.parts[0], False, scope)
+
+
+# frames
+
+
+def _offs(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    values, _ = yield from task.arguments(node, scope)
+    target = _target(task, values[0], "robtarget")
+    made = copy.deepcopy(target)
+    for name, amount in zip("xyz", values[1:], strict=True):
+        made["trans"][name] += amount
+    return made
+
+
+def _rel_tool(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    values, named = yield from task.arguments(node, scope)
+    target = _target(task, values[0], "robtarget")
+    shift = Frame(tuple(one / 1000 for one in values[1:4]))
+    turn = IDENTITY
+    for name, axis in (("rx", (1, 0, 0)), ("ry", (0, 1, 0)), ("rz", (0, 0, 1))):
+        angle = math.radians(float(named.get(name) or 0.0))
+        turn = turn * Frame.of_vector((0, 0, 0), [one * angle for one in axis])
+    return put_frame(target, frame_of(target) * shift * turn)
+
+
+def _here(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    """CRobT and CPos: where the tool is, in a work object."""
+    _, named = yield from task.arguments(node, scope)
+    station = task.station
+    if named.get("tool"):
+        station.tool = frame_of(_target(task, named["tool"], "tooldata")["tframe"])
+    wobj = named.get("wobj")
+    base = _base(task, _target(task, wobj, "wobjdata") if wobj else None)
+    at = base.inverse() * station.actual(task.site(node, scope))
+    made = put_frame(_target(task, _NOWHERE, "robtarget"), at)
+    return made["trans"] if node.name == "cpos" else made
+
+
+_FREE = [9e9] * 6
+_NOWHERE = [[0, 0, 0], [1, 0, 0, 0], [0, 0, 0, 0], _FREE]
+
+
+def _joints(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Any:
+    angles = task.station.angles(task.site(node, scope))
+    return _joint_target(task, angles)
+
+
+def _joint_target(task: ProgramTask, angles: list[float]) -> Any:
+    extra = [angles[6] if len(angles) > 6 else 9e9, *_FREE[1:]]
+    return _target(task, [angles[:6], extra], "jointtarget")
+
+
+def _calc_joints(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    values, named = yield from task.arguments(node, scope)
+    task.station.tool = frame_of(_target(task, values[1], "tooldata")["tframe"])
+    wobj = named.get("wobj")
+    base = _base(task, _target(task, wobj, "wobjdata") if wobj else None)
+    frame = base * frame_of(_target(task, values[0], "robtarget"))
+    return _joint_target(task, task.station.inverse(frame))
+
+
+def _calc_target(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    values, named = yield from task.arguments(node, scope)
+    joints = _target(task, values[0], "jointtarget")
+    if len(values) > 1:
+        task.station.tool = frame_of(_target(task, values[1], "tooldata")["tframe"])
+    wobj = named.get("wobj")
+    base = _base(task, _target(task, wobj, "wobjdata") if wobj else None)
+    angles = [*joints["robax"].values(), *_seventh(task, joints)]
+    now = [math.degrees(one) for one in task.station.cell.arm.setpoint]
+    at = task.station.forward([*angles, *now[len(angles) :]][: task.station.joints])
+    return put_frame(_target(task, _NOWHERE, "robtarget"), base.inverse() * at)
+
+
+def _displace(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    """PDispSet, and PDispOff without arguments."""
+    values, _ = yield from task.arguments(node, scope)
+    shift = frame_of(_target(task, values[0], "pose")) if values else None
+    task.machine.displacement = shift  # type: ignore[attr-defined]
+
+
+def _orient(frame: Frame) -> Structure:
+    return Structure.of("orient", dict(zip(("q1", "q2", "q3", "q4"), frame.rotation, strict=True)))
+
+
+def _orient_zyx(z: float, y: float, x: float) -> Structure:
+    return _orient(Frame.of_euler((0, 0, 0), z, y, x))
+
+
+def _euler(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    values, named = yield from task.arguments(node, scope)
+    rotation = list(_target(task, values[0], "orient").values())
+    z, y, x = Frame.of_quaternion((0, 0, 0), rotation).euler()
+    return {"x": x, "y": y, "z": z}[next(iter(named), "x")]
+
+
+def _pose_record(task: ProgramTask, frame: Frame) -> Structure:
+    return put_frame(_target(task, [[0, 0, 0], [1, 0, 0, 0]], "pose"), frame)
+
+
+def _pose_mult(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    values, _ = yield from task.arguments(node, scope)
+    one, other = (frame_of(_target(task, value, "pose")) for value in values)
+    return _pose_record(task, one * other)
+
+
+def _pose_inv(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    values, _ = yield from task.arguments(node, scope)
+    return _pose_record(task, frame_of(_target(task, values[0], "pose")).inverse())
+
+
+def _pose_vect(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    values, _ = yield from task.arguments(node, scope)
+    frame = frame_of(_target(task, values[0], "pose"))
+    vector = _target(task, values[1], "pos")
+    at = (frame * Frame(tuple(one / 1000 for one in vector.values()))).position
+    return Structure.of("pos", dict(zip("xyz", (one * 1000 for one in at), strict=True)))
+
+
+def _def_frame(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    """DefFrame of three points: the first is the origin, the second on x,
+    the third in the plane of x and y."""
+    values, _ = yield from task.arguments(node, scope)
+    places = [frame_of(_target(task, one, "robtarget")).position for one in values[:3]]
+    origin, on_x, in_plane = places
+    x = _unit(tuple(p - q for p, q in zip(on_x, origin, strict=True)))
+    towards = tuple(p - q for p, q in zip(in_plane, origin, strict=True))
+    z = _unit(_cross(x, towards))
+    y = _cross(z, x)
+    from mutabot_languages.core.station import matrix_frame  # noqa: PLC0415
+
+    frame = matrix_frame(_Rows(origin), _Rows(tuple(zip(x, y, z, strict=True))))
+    return _pose_record(task, frame)
+
+
+class _Rows:
+    def __init__(self, rows: Any) -> None:
+        self._rows = rows
+
+    def tolist(self) -> Any:
+        return list(self._rows)
+
+
+def _unit(vector: Any) -> Any:
+    length = math.hypot(*vector)
+    if length < 1e-9:
+        raise ValueError("points that fall together make no frame")
+    return tuple(one / length for one in vector)
+
+
+def _cross(a: Any, b: Any) -> Any:
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+# program flow
+
+
+def _leave(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Any:
+    if node.name == "exitcycle":
+        raise ControlFlow("exit")
+    task.station.note(f"{node.name} at line {scope.unit.source.line_of(node.start)} has no effect here")
+
+
+def _late(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    """``%"name"%`` calls a routine by its name."""
+    name = yield from task.value(node.parts[0], scope)
+    return (yield from _call_by_name(task, node, scope, str(name).lower(), node.parts[1:]))
+
+
+def _call_by_var(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    values, _ = yield from task.arguments(node, scope)
+    return (yield from _call_by_name(task, node, scope, f"{values[0]}{int(values[1])}".lower(), []))
+
+
+def _call_by_name(
+    task: ProgramTask, node: ProgramNode, scope: RoutineScope, name: str, arguments: list[ProgramNode]
+) -> Steps:
+    routine = task.find_routine(name.rpartition(":")[2], scope)
+    if routine is None:
+        raise ProgramRaised("err_refunkprc", f"there is no routine {name}")
+    return (yield from task.call_routine(routine, arguments, node, scope))
+
+
+def _present(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> bool:
+    return node.parts[0].name in scope.given
+
+
+def _change(change: Callable[[float, float], float]) -> Callable[..., Steps]:
+    """Incr, Decr, Add and Clear."""
+
+    def call(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+        now = yield from task.value(node.parts[0], scope)
+        by = (yield from task.value(node.parts[1], scope)) if len(node.parts) > 1 else 1
+        yield from task.store(node.parts[0], change(now, by), scope)
+
+    return call
+
+
+def _clock(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Any:
+    """ClkReset, ClkStart, ClkStop and ClkRead of a clock."""
+    variable: Variable | None = task.find(node.parts[0].name, scope)
+    if variable is None:
+        raise task.error(node, scope, f"there is no clock {node.parts[0].name}")
+    passed, since = variable.value if isinstance(variable.value, tuple) else (0.0, None)
+    now = task.station.time
+    if node.name == "clkread":
+        return passed + (now - since if since is not None else 0.0)
+    if node.name == "clkreset":
+        passed, since = 0.0, None
+    elif node.name == "clkstart":
+        since = now if since is None else since
+    elif since is not None:
+        passed, since = passed + now - since, None
+    variable.value = (passed, since)
+    return None
+
+
+def _dim(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    values, _ = yield from task.arguments(node, scope)
+    found = values[0]
+    for _ in range(int(values[1]) - 1):
+        found = found[0]
+    return len(found)
+
+
+def _plain(function: Callable[..., Any]) -> Callable[..., Steps]:
+    """A function of values alone."""
+
+    def call(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+        values, named = yield from task.arguments(node, scope)
+        try:
+            return function(*values, **named)
+        except (TypeError, ValueError, IndexError, ZeroDivisionError, OverflowError) as error:
+            raise task.error(node, scope, f"{node.name}: {error}") from error
+
+    return call
+
+
+def _round(value: float, dec: int = 0, **_: Any) -> float:
+    return float(math.floor(value * 10**dec + 0.5) / 10**dec)
+
+
+def _trunc(value: float, dec: int = 0, **_: Any) -> float:
+    return float(math.trunc(value * 10**dec) / 10**dec)
+
+
+def number_text(value: float, decimals: int, **_: Any) -> str:
+    """NumToStr."""
+    return f"{value:.{int(decimals)}f}"
+
+
+def value_text(value: Any, **_: Any) -> str:
+    """ValToStr: a value as RAPID writes it."""
+    if isinstance(value, bool):
+        return "TRUE" if value else "FALSE"
+    if isinstance(value, (dict, list)):
+        inner = value.values() if isinstance(value, dict) else value
+        return f"[{','.join(value_text(one) for one in inner)}]"
+    return f"{value:g}" if isinstance(value, (int, float)) else f'"{value}"'
+
+
+def _distance(one: Any, other: Any) -> float:
+    a, b = (list(value.values()) if isinstance(value, dict) else value for value in (one, other))
+    return math.dist(a, b)
+
+
+def _str_to_val(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    """StrToVal of numbers and truth values; returns whether it could be read."""
+    text = yield from task.value(node.parts[0], scope)
+    known = {"true": True, "false": False}
+    try:
+        value: Any = known.get(text.strip().lower())
+        value = float(text) if value is None else value
+    except ValueError:
+        return False
+    yield from task.store(node.parts[1], value, scope)
+    return True
+
+
+def _bits(change: Callable[[int, int], int]) -> Callable[..., Any]:
+    return _plain(lambda one, other: change(int(one), int(other)))
+
+
+_MOVES = (
+    "movej movel movec moveabsj movejdo moveldo movecdo movejao movelao movecao movejgo movelgo movecgo "
+    "movejsync movelsync movecsync"
+)
+
+FUNCTIONS: dict[str, Callable[..., Any]] = {
+    **dict.fromkeys(_MOVES.split(), _move),
+    "set": _set(1), "reset": _set(0), "setdo": _set_to, "setgo": _set_to, "setao": _set_to, "pulsedo": _pulse,
+    "invertdo": _invert, "testdi": _test, "dinput": _number_in, "ginput": _number_in, "ainput": _number_in,
+    "doutput": _output, "goutput": _output, "aoutput": _output,
+    "waittime": _wait_time, "waitrob": lambda task, node, scope: None, "waituntil": _wait_until,
+    **dict.fromkeys(["waitdi", "waitdo", "waitgi", "waitgo", "waitai", "waitao"], _wait_signal),
+    "offs": _offs, "reltool": _rel_tool, "crobt": _here, "cpos": _here, "cjointt": _joints,
+    "calcjointt": _calc_joints, "calcrobt": _calc_target, "pdispset": _displace, "pdispoff": _displace,
+    "orientzyx": _plain(_orient_zyx), "eulerzyx": _euler, "posemult": _pose_mult, "poseinv": _pose_inv,
+    "posevect": _pose_vect, "defframe": _def_frame,
+    "%": _late, "callbyvar": _call_by_var, "present": _present, "stop": _leave, "exitcycle": _leave,
+    "incr": _change(lambda now, by: now + 1), "decr": _change(lambda now, by: now - 1),
+    "add": _change(lambda now, by: now + by), "clear": _change(lambda now, by: 0),
+    **dict.fromkeys(["clkreset", "clkstart", "clkstop", "clkread"], _clock), "dim": _dim,
+    "abs": _plain(abs), "absnum": _plain(abs), "sqrt": _plain(math.sqrt), "pow": _plain(lambda a, b: a**b),
+    "exp": _plain(math.exp), "round": _plain(_round), "trunc": _plain(_trunc),
+    "sin": _plain(lambda angle: math.sin(math.radians(angle))),
+    "cos": _plain(lambda angle: math.cos(math.radians(angle))),
+    "tan": _plain(lambda angle: math.tan(math.radians(angle))),
+    "asin": _plain(lambda value: math.degrees(math.asin(value))),
+    "acos": _plain(lambda value: math.degrees(math.acos(value))),
+    "atan": _plain(lambda value: math.degrees(math.atan(value))),
+    "atan2": _plain(lambda y, x: math.degrees(math.atan2(y, x))),
+    "max": _plain(max), "min": _plain(min), "distance": _plain(_distance),
+    "vectmagn": _plain(lambda value: math.hypot(*value.values())),
+    "numtostr": _plain(number_text), "dnumtostr": _plain(number_text), "valtostr": _plain(value_text),
+    "strlen": _plain(len), "strpart": _plain(lambda text, at,
+    count: text[int(at) - 1 : int(at) - 1 + int(count)]),
+    "strfind": _plain(lambda text, at, chars: next(
+        (n + 1 for n in range(int(at) - 1, len(text)) if text[n] in chars), len(text) + 1)),
+    "strmatch": _plain(lambda text, at, part: text.find(part, int(at) - 1) + 1 or len(text) + 1),
+    "strtoval": _str_to_val, "numtodnum": _plain(float), "dnumtonum": _plain(float),
+    "bitand": _bits(lambda a, b: a & b), "bitor": _bits(lambda a, b: a | b), "bitxor": _bits(lambda a,
+    b: a ^ b),
+    "bitlsh": _bits(lambda a, b: a << b), "bitrsh": _bits(lambda a, b: a >> b),
+    "bitcheck": _plain(lambda value, bit: bool(int(value) >> int(bit) - 1 & 1)),
+    "gettime": _plain(lambda **_: 0), "ctime": _plain(lambda: "00:00:00"),
+    "cdate": _plain(lambda: "2000-01-01"),
+    "runmode": _plain(lambda **_: 0), "opmode": _plain(lambda: 1),
+    "gettaskname": _plain(lambda **_: "T_ROB1"),
+    "robos": _plain(lambda: False), "isstopstateevent": _plain(lambda **_: False),
+    "cspeedoverride": _plain(lambda **_: 100.0), "maxrobspeed": _plain(lambda: 5000.0),
+}  # fmt: skip

@@ -1,0 +1,1 @@
+"""URScript: programs of Universal Robots, ``.script`` and ``.urscript``."""

@@ -1,0 +1,451 @@
+"""What URScript's names mean: motions, poses, signals, time and mathematics, in m and rad."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Generator, Mapping
+from typing import Any, ClassVar
+
+from mutabot_languages.core.frames import IDENTITY, Frame
+from mutabot_languages.core.machine import ControlFlow, Dialect, ProgramTask, RoutineScope, Steps
+from mutabot_languages.core.names import name_set
+from mutabot_languages.core.tree import ProgramNode
+from mutabot_languages.errors import ProgramError
+
+
+class UrPose(list[float]):
+    """A pose ``p[x, y, z, rx, ry, rz]``: m, and a rotation vector in rad."""
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> UrPose:
+        return UrPose(self)
+
+
+def frame_of(value: Any) -> Frame:
+    """The frame of a pose. Raises TypeError for anything else."""
+    if not isinstance(value, UrPose) or len(value) != 6:
+        raise TypeError(f"expected a pose p[…], found {value!r}")
+    return Frame.of_vector(value[:3], value[3:])
+
+
+def pose_of(frame: Frame) -> UrPose:
+    """The pose of a frame."""
+    return UrPose([*frame.position, *frame.vector()])
+
+
+#: what has no effect in the cell, and is noted
+IGNORED = name_set(
+    """set_payload set_target_payload set_gravity set_payload_mass set_payload_cog popup textmsg
+    set_tool_voltage set_analog_outputdomain set_analog_inputrange set_standard_analog_input_domain
+    set_tool_analog_input_domain set_tool_communication set_runstate_standard_digital_output_to_value
+    modbus_set_runstate_dependent_choice set_runstate_configurable_digital_output_to_value
+    set_runstate_tool_digital_output_to_value set_runstate_gp_boolean_output_to_value
+    set_input_actions_to_default set_tool_digital_output_mode set_tool_output_mode
+    set_standard_digital_input_action set_configurable_digital_input_action set_gp_boolean_input_action
+    set_tool_digital_input_action set_safety_mode_transition_hardness step_count_reset
+    set_payload_inertia enter_critical exit_critical set_conveyor_tick_count set_runstate_outputs
+    set_standard_analog_output_domain set_euromap_runstate_dependent_choice set_baselight_off
+    position_deviation_warning zero_ftsensor request_boolean_from_primary_client protective_stop_reset
+    conveyor_pulse_decode set_digital_input_action write_to_log reset_revolution_counter
+    set_analog_output_domain set_flag_action assert reset_world_model"""
+)
+
+
+class UrDialect(Dialect):
+    """The dialect of URScript."""
+
+    first: ClassVar = 0
+    constants: ClassVar = {
+        "MATH_PI": math.pi, "pi": math.pi, "PI": math.pi, "NO": 0, "d_base": 0,
+    }  # fmt: skip
+    ignored = IGNORED
+
+    def __init__(self) -> None:
+        self.functions: Mapping[str, Callable[..., Any]] = FUNCTIONS
+
+    def binary(self, operator: str, left: Any, right: Any) -> Any:
+        """The value of a binary operation."""
+        match operator:
+            case "==":
+                return left == right
+            case "!=":
+                return left != right
+            case "and":
+                return bool(left) and bool(right)
+            case "or":
+                return bool(left) or bool(right)
+            case "xor":
+                return bool(left) != bool(right)
+            case "+" | "-" | "*" if isinstance(left, list) or isinstance(right, list):
+                return _elementwise(operator, left, right)
+            case "+" if isinstance(left, str) or isinstance(right, str):
+                return text_of(left) + text_of(right)
+        return arithmetic(operator, left, right)
+
+    def literal(self, task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+        """The value of a list, a pose, or a method of something."""
+        if node.kind == "method":
+            raise task.unsupported(node, scope, f".{node.name}()")
+        if node.kind == "option":
+            raise task.error(node, scope, f"{node.name}= stands only in calls")
+        values = yield from task.values(node.parts, scope)
+        return UrPose(float(one) for one in values) if node.kind == "pose" else values
+
+    def assigned(self, variable: Any, value: Any) -> Any:
+        """Lists are copied."""
+        return (
+            type(value)(self.assigned(variable, one) for one in value) if isinstance(value, list) else value
+        )
+
+
+def _elementwise(operator: str, left: Any, right: Any) -> Any:
+    if isinstance(left, list) and isinstance(right, list):
+        if len(left) != len(right) or operator == "*":
+            raise TypeError("lists of different lengths")
+        made = [arithmetic(operator, one, other) for one, other in zip(left, right, strict=True)]
+    elif isinstance(left, list):
+        made = [arithmetic(operator, one, right) for one in left]
+    else:
+        made = [arithmetic(operator, left, one) for one in right]
+    return UrPose(made) if isinstance(left, UrPose) or isinstance(right, UrPose) else made
+
+
+def arithmetic(operator: str, left: Any, right: Any) -> Any:
+    """A binary operation of numbers. Raises TypeError for anything else."""
+    if isinstance(left, bool) or isinstance(right, bool) or not _are_numbers(left, right):
+        if operator in ("<", ">", "<=", ">=") and _are_numbers(left, right):
+            left, right = float(left), float(right)
+        else:
+            raise TypeError("only numbers can be calculated with")
+    match operator:
+        case "+":
+            return left + right
+        case "-":
+            return left - right
+        case "*":
+            return left * right
+        case "/":
+            return left / right
+        case "%":
+            return (
+                math.fmod(left, right)
+                if isinstance(left, float) or isinstance(right, float)
+                else left % right
+            )
+        case "<":
+            return left < right
+        case ">":
+            return left > right
+        case "<=":
+            return left <= right
+        case ">=":
+            return left >= right
+    raise TypeError(f"no operator {operator}")
+
+
+def _are_numbers(*values: Any) -> bool:
+    return all(isinstance(one, (int, float)) for one in values)
+
+
+def text_of(value: Any) -> str:
+    """A value as URScript prints it."""
+    if isinstance(value, bool):
+        return "True" if value else "False"
+    if isinstance(value, UrPose):
+        return f"p[{', '.join(f'{one:g}' for one in value)}]"
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _given(
+    task: ProgramTask, node: ProgramNode, scope: RoutineScope, names: str
+) -> Generator[Any, Any, dict[str, Any]]:
+    """The arguments of a call by their names; those that are not given are missing."""
+    values, named = yield from task.arguments(node, scope)
+    order = names.split()
+    if len(values) > len(order) or set(named) - set(order):
+        raise task.error(node, scope, f"{node.name} takes {', '.join(order)}")
+    return {**dict(zip(order, values, strict=False)), **named}
+
+
+def _move(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    """movej, movel, movep: to a pose, or to joint angles."""
+    given = yield from _given(task, node, scope, "pose a v t r")
+    target = next((given.pop(name) for name in ("pose", "q") if name in given), None)
+    yield from move_to(task, node, scope, target, given)
+
+
+def move_to(
+    task: ProgramTask, node: ProgramNode, scope: RoutineScope, target: Any, given: Mapping[str, Any]
+) -> Steps:
+    """Carry out movej, movel or movep."""
+    station = task.station
+    if not isinstance(target, list) or len(target) < 6 or not _are_numbers(*target):
+        raise task.error(node, scope, f"{node.name} to {target!r}: expected a pose or six joint angles")
+    angles = None if isinstance(target, UrPose) else [math.degrees(one) for one in target]
+    seconds = float(given.get("t") or 0.0)
+    if node.name == "movej":
+        speed = float(given.get("v", 1.05))
+        _check(task, node, scope, speed)
+        if angles is None:
+            angles = station.inverse(frame_of(target))
+        if seconds > 0:
+            now = station.call(task.site(node, scope), task.station.cell.arm.commanded_joints)
+            speed = math.radians(max(abs(a - b) for a, b in zip(angles, now, strict=False))) / seconds
+        yield from task.move(node, scope, station.joint_move(angles, speed / _fastest_joint(station)))
+        return
+    speed = float(given.get("v", 0.25))
+    _check(task, node, scope, speed)
+    frame = frame_of(target) if angles is None else station.forward(angles)
+    if seconds > 0:
+        speed = max(1e-6, station.commanded(task.site(node, scope)).distance(frame) / seconds)
+    yield from task.move(node, scope, station.line(frame, speed))
+
+
+def _check(task: ProgramTask, node: ProgramNode, scope: RoutineScope, speed: float) -> None:
+    if not speed > 0:
+        raise task.error(node, scope, f"{node.name} with the speed {speed:g}")
+
+
+def _fastest_joint(station: Any) -> float:
+    speeds = station.model.limits.speed
+    return float(max(speeds) if isinstance(speeds, (tuple, list)) else speeds)
+
+
+def _movec(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    given = yield from _given(task, node, scope, "via to a v r mode")
+    via, end = frame_of(given["via"]), frame_of(given["to"])
+    start = task.station.commanded(task.site(node, scope))
+    for motion in task.station.arc(start, via, end, float(given.get("v", 0.25))):
+        yield from task.move(node, scope, motion)
+
+
+def _sleep(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    values, _ = yield from task.arguments(node, scope)
+    yield from task.wait(node, scope, float(values[0]))
+
+
+def _sync(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    yield from task.wait(node, scope, 0.01)
+
+
+def _set_tcp(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    values, _ = yield from task.arguments(node, scope)
+    task.station.tool = frame_of(values[0])
+
+
+def _inverse(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    given = yield from _given(task, node, scope, "x qnear maxPositionError maxOrientationError tcp")
+    near = given.get("qnear")
+    degrees = [math.degrees(one) for one in near] if near else None
+    if degrees is not None and len(degrees) < task.station.joints:
+        degrees = None
+    found = task.station.inverse(frame_of(given["x"]), degrees)
+    return [math.radians(one) for one in found]
+
+
+def _forward(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    values, _ = yield from task.arguments(node, scope)
+    if values:
+        return pose_of(task.station.forward([math.degrees(one) for one in values[0]]))
+    return pose_of(task.station.commanded(task.site(node, scope)))
+
+
+def _run(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    """``run thread()`` starts a task and gives its number."""
+    call = node.parts[0]
+    routine = task.find_routine(call.name, scope)
+    if routine is None:
+        raise task.error(node, scope, f"there is no thread {call.name}")
+    machine = task.machine
+    number = getattr(machine, "threads", 0) + 1
+    machine.threads = number  # type: ignore[attr-defined]
+    name = f"{call.name} {number}"
+    machine.start(name, machine.task(name).call_routine(routine, call.parts, node, scope))
+    return UrThread([name])
+    yield  # pragma: no cover
+
+
+class UrThread(tuple[str, ...]):
+    """A thread that was started."""
+
+    __slots__ = ()
+
+
+def _kill(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    thread = yield from _thread(task, node, scope)
+    steps = task.machine.tasks.pop(thread, None)
+    if steps is not None:
+        steps.close()
+
+
+def _thread(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    value = yield from task.value(node.parts[0], scope)
+    if not isinstance(value, tuple):
+        raise task.error(node, scope, f"{node.name} of {value!r}, which is no thread")
+    return value[0]
+
+
+def _join(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    thread = yield from _thread(task, node, scope)
+    while thread in task.machine.tasks:
+        yield from task.wait(node, scope, 0.01)
+
+
+def _reader(name: str) -> Callable[..., Steps]:
+    """A function that reads a signal ``name[n]``."""
+
+    def read(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+        values, _ = yield from task.arguments(node, scope)
+        return task.station.read(task.site(node, scope), f"{name}[{int(values[0])}]")
+
+    return read
+
+
+def _writer(name: str) -> Callable[..., Steps]:
+    """A function that sets a signal ``name[n]``."""
+
+    def write(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+        values, _ = yield from task.arguments(node, scope)
+        number, value = values
+        task.station.write(task.site(node, scope), f"{name}[{int(number)}]", value)
+
+    return write
+
+
+def _output(name: str) -> Callable[..., Steps]:
+    """A function that gives the last value of an output."""
+
+    def read(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+        values, _ = yield from task.arguments(node, scope)
+        return task.station.outputs.get(f"{name}[{int(values[0])}]", False)
+
+    return read
+
+
+def _plain(function: Callable[..., Any]) -> Callable[..., Steps]:
+    """A function of values alone."""
+
+    def call(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+        values, _ = yield from task.arguments(node, scope)
+        try:
+            return function(*values)
+        except (TypeError, ValueError, IndexError, ZeroDivisionError, OverflowError) as error:
+            raise task.error(node, scope, f"{node.name}: {error}") from error
+
+    return call
+
+
+def _pose_now(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> UrPose:
+    is_actual = "actual" in node.name
+    site = task.site(node, scope)
+    return pose_of(task.station.actual(site) if is_actual else task.station.commanded(site))
+
+
+def _joints_now(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> list[float]:
+    site = task.site(node, scope)
+    if "target" in node.name:
+        return [math.radians(one) for one in task.station.call(site, task.station.cell.arm.commanded_joints)]
+    return [math.radians(one) for one in task.station.angles(site)]
+
+
+def _wrench(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Any:
+    wrench = task.station.call(task.site(node, scope), task.station.cell.force_sensor.wrench)
+    forces = [wrench.fx, wrench.fy, wrench.fz, wrench.tx, wrench.ty, wrench.tz]
+    return math.hypot(*forces[:3]) if node.name == "force" else forces
+
+
+def _halt(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Any:
+    raise ControlFlow("exit")
+
+
+def _moved(a: Frame, b: Frame, sign: float) -> tuple[float, float, float]:
+    (x, y, z), (u, v, w) = a.position, b.position
+    return (x + sign * u, y + sign * v, z + sign * w)
+
+
+def _pose_add(one: Any, other: Any) -> UrPose:
+    a, b = frame_of(one), frame_of(other)
+    shift = _moved(a, b, 1.0)
+    return pose_of(Frame(shift, (Frame(rotation=a.rotation) * Frame(rotation=b.rotation)).rotation))
+
+
+def _pose_sub(one: Any, other: Any) -> UrPose:
+    a, b = frame_of(one), frame_of(other)
+    shift = _moved(a, b, -1.0)
+    turn = Frame(rotation=a.rotation) * Frame(rotation=b.rotation).inverse()
+    return pose_of(Frame(shift, turn.rotation))
+
+
+def _euler(roll: float, pitch: float, yaw: float) -> list[float]:
+    degrees = [math.degrees(one) for one in (yaw, pitch, roll)]
+    return list(Frame.of_euler((0, 0, 0), *degrees).vector())
+
+
+def _rpy(values: Any) -> list[float]:
+    yaw, pitch, roll = Frame.of_vector((0, 0, 0), values).euler()
+    return [math.radians(one) for one in (roll, pitch, yaw)]
+
+
+_PLAIN: dict[str, Callable[..., Any]] = {
+    "pose_trans": lambda a, b: pose_of(frame_of(a) * frame_of(b)),
+    "pose_inv": lambda a: pose_of(frame_of(a).inverse()),
+    "pose_add": _pose_add,
+    "pose_sub": _pose_sub,
+    "pose_dist": lambda a, b: frame_of(a).distance(frame_of(b)),
+    "point_dist": lambda a, b: math.dist(a[:3], b[:3]),
+    "interpolate_pose": lambda a, b, part: pose_of(frame_of(a).between(frame_of(b), part)),
+    "wrench_trans": lambda a, b: b,
+    "rpy2rotvec": lambda *given: _euler(*(given[0] if isinstance(given[0], list) else given)),
+    "rotvec2rpy": lambda *given: _rpy(given[0] if isinstance(given[0], list) else given),
+    "d2r": math.radians, "r2d": math.degrees, "sin": math.sin, "cos": math.cos, "tan": math.tan,
+    "asin": math.asin, "acos": math.acos, "atan": math.atan, "atan2": math.atan2, "sqrt": math.sqrt,
+    "pow": lambda a, b: a**b, "log": lambda base, value: math.log(value, base), "floor": math.floor,
+    "ceil": math.ceil,
+    "norm": lambda value: math.hypot(*value) if isinstance(value, list) else abs(value),
+    "length": len, "size": len, "to_num": float, "to_str": text_of, "str_cat": lambda a,
+    b: text_of(a) + text_of(b),
+    "str_len": len, "str_empty": lambda text: not text, "str_at": lambda text, at: text[at],
+    "str_sub": lambda text, at, count=None: text[at:] if count is None else text[at : at + count],
+    "str_find": lambda text, part, start=0: text.find(part, start),
+    "integer_to_binary_list": lambda value: [bool(int(value) >> bit & 1) for bit in range(32)],
+    "binary_list_to_integer": lambda bits: sum(1 << at for at, bit in enumerate(bits) if bit),
+    "normalize": lambda value: [one / math.hypot(*value) for one in value],
+    "make_list": lambda count, value=0, capacity=0: [value] * int(count),
+    "abs": abs, "max": max, "min": min, "round": round,
+}  # fmt: skip
+_SIGNALS = {
+    "standard_digital": "standard_digital", "configurable_digital": "configurable_digital",
+    "tool_digital": "tool_digital", "digital": "standard_digital", "standard_analog": "standard_analog",
+    "analog": "standard_analog", "tool_analog": "tool_analog", "flag": "flag", "euromap": "euromap",
+    "gp_boolean": "gp_boolean",
+}  # fmt: skip
+
+FUNCTIONS: dict[str, Callable[..., Any]] = {
+    "movej": _move, "movel": _move, "movep": _move, "movec": _movec, "sleep": _sleep, "sync": _sync,
+    "set_tcp": _set_tcp, "get_inverse_kin": _inverse, "get_forward_kin": _forward, "run": _run, "kill": _kill,
+    "join": _join, "halt": _halt, "get_actual_tcp_pose": _pose_now, "get_target_tcp_pose": _pose_now,
+    "get_actual_tool_flange_pose": _pose_now, "get_actual_joint_positions": _joints_now,
+    "get_target_joint_positions": _joints_now, "get_joint_positions": _joints_now, "force": _wrench,
+    "get_tcp_force": _wrench, "get_steptime": lambda task, node, scope: 0.01,
+    "stopj": lambda task, node, scope: None, "stopl": lambda task, node, scope: None,
+    "is_steady": lambda task, node, scope: True,
+    "get_tcp_offset": lambda task, node, scope: pose_of(task.station.tool),
+    "is_within_safety_limits": _plain(lambda *given: True),
+    **{name: _plain(function) for name, function in _PLAIN.items()},
+    **{f"get_{name}_in": _reader(f"{signal}_in") for name, signal in _SIGNALS.items()},
+    **{f"set_{name}_out": _writer(f"{signal}_out") for name, signal in _SIGNALS.items()},
+    **{f"get_{name}_out": _output(f"{signal}_out") for name, signal in _SIGNALS.items()},
+}  # fmt: skip
+
+
+def _has_inverse(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    try:
+        yield from _inverse(task, node, scope)
+    except ProgramError:
+        return False
+    return True
+
+
+FUNCTIONS["get_inverse_kin_has_solution"] = _has_inverse
+FUNCTIONS["set_flag"] = _writer("flag")
+FUNCTIONS["get_flag"] = _output("flag")
+NO_TOOL = IDENTITY

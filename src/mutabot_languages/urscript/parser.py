@@ -1,0 +1,291 @@
+"""URScript as it reads: lines end statements, names keep their capitals, ``end`` closes blocks."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from mutabot_languages.core.parser import StatementParser, Unexpected
+from mutabot_languages.core.text import SourceText
+from mutabot_languages.core.tokens import Lexis
+from mutabot_languages.core.tree import ProgramNode
+
+_END = frozenset({"end"})
+_BRANCH = frozenset({"end", "elif", "else"})
+_CASE = frozenset({"end", "case", "default"})
+#: words that begin a line whatever brackets are still open
+_BEGINNINGS = frozenset(
+    (
+        "def", "thread", "sec", "if", "elif", "else", "while", "end", "return", "global", "local", "break",
+        "continue",
+    )
+)  # fmt: skip
+_OPENING = frozenset("([{")
+_CLOSING = frozenset(")]}")
+CONSTANTS = {"True": True, "False": False, "true": True, "false": False, "None": None}
+KEYWORDS = frozenset(
+    {
+        "def", "thread", "sec", "end", "if", "elif", "else", "while", "return", "break", "continue", "halt",
+        "global", "local", "run", "and", "or", "xor", "not", "pass",
+    }
+)  # fmt: skip
+
+
+class URScriptParser(StatementParser):
+    """The parser of URScript."""
+
+    lexis: ClassVar = Lexis.of(
+        {
+            "space": r"[ \t\f\v\ufeff\xa0\x00]+|\\\r?\n",
+            "comment": r"#[^\r\n]*",
+            "newline": r"\r\n|\r|\n",
+            "label": r"\$[^\r\n]*",
+            "name": r"[^\W\d]\w*",
+            "number": r"0[xX][0-9a-fA-F]+|0[bB][01]+|(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?",
+            "text": r'"[^"\r\n]*"|\'[^\'\r\n]*\'',
+            "sign": r"<=|>=|==|!=|[-+*/%<>=()\[\]{},.:;@^&|~]",
+        },
+        ignores_case=False,
+    )
+    binary: ClassVar = {
+        "or": 1, "xor": 1, "and": 2, "==": 3, "!=": 3, "<": 3, ">": 3, "<=": 3, ">=": 3, "+": 4, "-": 4,
+        "*": 5, "/": 5, "%": 5,
+    }  # fmt: skip
+    unary: ClassVar = {"not": 3, "-": 6, "+": 6}
+    terminators: ClassVar = frozenset({"end", "elif", "else"})
+
+    def __init__(self, source: SourceText) -> None:
+        super().__init__(source)
+        self._join_lines()
+
+    def _join_lines(self) -> None:
+        """Take out the ends of lines inside brackets, but not before what can only begin a statement."""
+        depth, kept = 0, list[int]()
+        kinds, words = self.kinds, self.words
+        for index, (kind, word) in enumerate(zip(kinds, words, strict=True)):
+            if kind == "sign":
+                depth = depth + 1 if word in _OPENING else max(depth - 1, 0) if word in _CLOSING else depth
+            elif kind == "newline" and depth:
+                if words[index + 1] not in _BEGINNINGS:
+                    continue
+                depth = 0
+            kept.append(index)
+        self.kinds, self.words = [kinds[one] for one in kept], [words[one] for one in kept]
+        self.starts = [self.starts[one] for one in kept]
+        self.ends = [self.ends[one] for one in kept]
+
+    def statement(self) -> ProgramNode | None:
+        """Read a statement; None for an empty line."""
+        kind, word, start = self.kinds[self.at], self.words[self.at], self.starts[self.at]
+        if kind == "newline" or word == ";":
+            self.at += 1
+            return None
+        if kind == "label":
+            self.at += 1
+            return self.node("empty", "label", start)
+        if kind == "sign" and word == "@":  # an annotation of the next definition
+            while self.kinds[self.at] not in ("newline", "end"):
+                self.at += 1
+            return None
+        reader = getattr(self, f"_{word}", None) if word in KEYWORDS else None
+        found: ProgramNode = reader(start) if reader is not None else self._simple(start)
+        self._end_of_line()
+        return found
+
+    def _end_of_line(self) -> None:
+        if self.kinds[self.at] not in ("newline", "end") and self.words[self.at] not in (
+            ";",
+            "end",
+            "elif",
+            "else",
+        ):
+            raise Unexpected("the end of the statement")
+
+    def _def(self, start: int) -> ProgramNode:
+        kind = self.words[self.at]
+        self.at += 1
+        name = self.identifier("the name of a function")
+        outer, self.within = self.within, f"{kind} {name}"
+        try:
+            self.expect("(")
+            parameters = self.sequence(")", self._parameter)
+            self.expect(":")
+            body = self.block(_END)
+            self.close("end", start)
+        finally:
+            self.within = outer
+        return self.node("routine", name, start, parameters, [body], kind)
+
+    _thread = _sec = _def
+
+    def _parameter(self) -> ProgramNode:
+        start = self.starts[self.at]
+        name = self.identifier("a parameter")
+        default = [self.expression()] if self.accept("=") else []
+        return self.node("parameter", name, start, default)
+
+    def _if(self, start: int) -> ProgramNode:
+        self.at += 1
+        conditions, bodies = [self.expression()], list[list[ProgramNode]]()
+        self._colon()
+        bodies.append(self.block(_BRANCH))
+        while self.words[self.at] == "elif":
+            self.at += 1
+            conditions.append(self.expression())
+            self._colon()
+            bodies.append(self.block(_BRANCH))
+        if self.accept("else"):
+            self._colon()
+            bodies.append(self.block(_END))
+        self.close("end", start)
+        return self.node("if", "", start, conditions, bodies)
+
+    def _colon(self) -> None:
+        """Read the colon after a condition; without it the block is clear as well."""
+        if not self.accept(":"):
+            self._note(Unexpected("':'"))
+
+    def _while(self, start: int) -> ProgramNode:
+        self.at += 1
+        condition = self.expression()
+        self._colon()
+        body = self.block(_END)
+        self.close("end", start)
+        return self.node("while", "", start, [condition], [body])
+
+    def _switch(self, start: int) -> ProgramNode:
+        self.at += 1
+        subject = self.expression()
+        self.expect(":")
+        labels: list[list[ProgramNode] | None] = []
+        bodies: list[list[ProgramNode]] = []
+        while self.kinds[self.at] == "newline":
+            self.at += 1
+        while self.words[self.at] in ("case", "default"):
+            is_case = self.words[self.at] == "case"
+            self.at += 1
+            labels.append([self.expression()] if is_case else None)
+            self.expect(":")
+            bodies.append(self.block(_CASE))
+        self.close("end", start)
+        return self.node("switch", "", start, [subject], bodies, labels)
+
+    def _return(self, start: int) -> ProgramNode:
+        self.at += 1
+        has_value = self.kinds[self.at] not in ("newline", "end") and self.words[self.at] not in _BRANCH
+        return self.node("return", "", start, [self.expression()] if has_value else [])
+
+    def _break(self, start: int) -> ProgramNode:
+        self.at += 1
+        return self.node("break", "", start)
+
+    def _continue(self, start: int) -> ProgramNode:
+        self.at += 1
+        return self.node("continue", "", start)
+
+    def _pass(self, start: int) -> ProgramNode:
+        self.at += 1
+        return self.node("empty", "pass", start)
+
+    def _halt(self, start: int) -> ProgramNode:
+        self.at += 1
+        if self.accept("("):
+            self.expect(")")
+        return self.node("exit", "halt", start)
+
+    def _global(self, start: int) -> ProgramNode:
+        scope = self.words[self.at]
+        self.at += 1
+        target = self.primary()
+        if not self.accept("="):
+            return self.node("empty", scope, start)
+        return self.node("assign", scope, start, [target, self.expression()])
+
+    _local = _global
+
+    def _simple(self, start: int) -> ProgramNode:
+        word = self.words[self.at]
+        follows = self.words[self.at + 1] if self.kinds[self.at] != "end" else ""
+        if word == "switch" and follows != "=":
+            return self._switch(start)
+        if word in ("enter_critical", "exit_critical", "halt"):
+            self.at += 1
+            return self.node("empty", word, start)
+        if word in ("kill", "join") and self.kinds[self.at + 1] == "name":
+            self.at += 1
+            return self.node("call", word, start, [self.primary()])
+        if word in self.unary or self.kinds[self.at] in ("number", "text"):
+            raise Unexpected("a statement")
+        target = self.expression()
+        if self.accept("="):
+            if target.kind not in ("name", "index", "field"):
+                raise Unexpected("a variable before '='")
+            return self.node("assign", "", start, [target, self.expression()])
+        if target.kind in ("call", "method"):
+            return target
+        raise Unexpected("'=' or '('")
+
+    def _argument(self) -> ProgramNode:
+        start = self.starts[self.at]
+        if self.kinds[self.at] == "name" and self.words[self.at + 1] == "=":
+            name = self.words[self.at]
+            self.at += 2
+            return self.node("option", name, start, [self.expression()])
+        return self.expression()
+
+    def primary(self) -> ProgramNode:
+        """Read a literal, a name, a call, or what stands in parentheses, with what follows it."""
+        kind, word, start = self.kinds[self.at], self.words[self.at], self.starts[self.at]
+        if kind == "number":
+            self.at += 1
+            return self.node("number", word, start, value=number_of(word))
+        if kind == "text":
+            self.at += 1
+            return self.node("text", word, start, value=word[1:-1])
+        if word == "(":
+            self.at += 1
+            inner = self.expression()
+            self.expect(")")
+            return self._after(ProgramNode("group", "", start, self.ends[self.at - 1], [inner]), start)
+        if word in ("[", "{"):
+            self.at += 1
+            closing = "]" if word == "[" else "}"
+            return self._after(self.node("list", "", start, self.sequence(closing, self._argument)), start)
+        if word == "run" and self.kinds[self.at + 1] == "name":
+            self.at += 1
+            return self.node("call", "run", start, [self.primary()])
+        if kind != "name" or (word in KEYWORDS and word not in ("run", "pass", "sec")):
+            raise Unexpected("an expression")
+        self.at += 1
+        if word in CONSTANTS:
+            return self.node("constant", word, start, value=CONSTANTS[word])
+        if word == "p" and self.words[self.at] == "[":
+            self.at += 1
+            return self._after(self.node("pose", "", start, self.sequence("]", self.expression)), start)
+        return self._after(self.node("name", word, start), start)
+
+    def _after(self, found: ProgramNode, start: int) -> ProgramNode:
+        """Read calls, indexes and fields after a primary."""
+        while True:
+            word = self.words[self.at]
+            if word == "(" and found.kind in ("name", "field", "method"):
+                self.at += 1
+                arguments = self.sequence(")", self._argument)
+                if found.kind == "field":
+                    found = self.node("method", found.name, start, [found.parts[0], *arguments])
+                else:
+                    found = self.node("call", found.name, start, arguments)
+            elif word == "[":
+                self.at += 1
+                found = self.node("index", "", start, [found, *self.sequence("]", self.expression)])
+            elif word == "." and self.kinds[self.at + 1] == "name":
+                self.at += 2
+                found = self.node("field", self.words[self.at - 1], start, [found])
+            else:
+                return found
+
+
+def number_of(word: str) -> int | float:
+    """The value of a number as it is written."""
+    if word[:2].lower() in ("0x", "0b"):
+        return int(word, 0)
+    return int(word) if word.isdecimal() else float(word)

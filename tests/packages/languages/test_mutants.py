@@ -1,0 +1,137 @@
+"""Mutants of the text: each is a difference of one line that reads clean, and has a verdict."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from mutabot_languages.mutation.planning import PlannedText, mutants_of, planned_texts, read_program
+from mutabot_languages.mutation.rewriting import Sizes
+from mutabot_languages.mutation.rules import BY_NAME
+from tests.packages.languages.programs import FILES, written
+
+
+def planned(folder: Path, language: str) -> list[PlannedText]:
+    written(folder, language)
+    return [*planned_texts(folder, [*FILES[language]])]
+
+
+def described(found: list[PlannedText], operator: str) -> list[str]:
+    return [one.description for one in found if one.difference.operator == operator]
+
+
+@pytest.mark.parametrize("language", FILES)
+def test_each_changes_one_line_and_reads_as_well_as_the_original(language: str, tmp_path: Path) -> None:
+    found = planned(tmp_path, language)
+    assert len(found) > 80
+    for one in found:
+        diff = one.program.diff(one.difference)
+        assert [line[0] for line in diff[2:]] == ["@", "-", "+"], diff
+        changed = one.program.changed(one.difference)
+        assert one.program.language.read("", changed).diagnostics == ()
+        kept = one.program.text
+        for edit in sorted(one.difference.edits, key=lambda edit: -edit.start):
+            kept = kept[: edit.start] + edit.text + kept[edit.end :]
+        assert kept == changed
+
+
+@pytest.mark.parametrize("language", FILES)
+def test_ids_are_different(language: str, tmp_path: Path) -> None:
+    found = planned(tmp_path, language)
+    keys = [
+        (one.site.id, one.difference.operator, one.difference.variant, one.difference.magnitude)
+        for one in found
+    ]
+    assert len(keys) == len(set(keys))
+
+
+def test_they_read_as_an_engineer_would_write_them(tmp_path: Path) -> None:
+    rapid, krl, script = (planned(tmp_path, language) for language in ("rapid", "krl", "urscript"))
+    assert described(rapid, "reverse-offset") == ["Offs(pOver,0,0,-100) → Offs(pOver,0,0,100)"]
+    assert "WAIT FOR $IN[25]==TRUE → WAIT SEC 0" in described(krl, "forget-wait")
+    assert "PTP XP1 C_PTP deleted" in described(krl, "drop-statement")
+    assert "movej(over, a=1.4, v=1.05) → movel(over)" in described(script, "swap-motion")
+    assert "WaitDI part, 1\\MaxTime:=2 → WaitDI part, 0\\MaxTime:=2" in described(rapid, "invert-input")
+    blends = [one for one in (*rapid, *krl) if one.difference.operator == "change-blend"]
+    assert blends
+    assert all("cannot be observed" in (one.difference.reason or "") for one in blends)
+
+
+def test_every_operator_is_one_that_is_declared_and_most_have_mutants(tmp_path: Path) -> None:
+    used = {one.difference.operator for language in FILES for one in planned(tmp_path, language)}
+    assert used <= set(BY_NAME)
+    assert set(BY_NAME) - used <= {"replace-arithmetic", "drop-any", "other-input"}
+
+
+def test_what_inline_forms_and_the_ini_fold_write_has_none(tmp_path: Path) -> None:
+    assert not [one for one in planned(tmp_path, "krl") if "bas" in one.description.lower()]
+
+
+def test_another_magnitude_is_made_of_the_same_fault(tmp_path: Path) -> None:
+    written(tmp_path, "rapid")
+    (program,) = read_program(tmp_path, ["pick.mod"])
+    found = [
+        one.description
+        for one in mutants_of(program, Sizes.only(7.5))
+        if one.difference.operator == "shift-target" and one.difference.variant == "z-"
+    ]
+    assert "Offs(pOver,0,0,-107.5)" in found[1]
+
+
+TEST = """
+from pathlib import Path
+import pytest
+from mutabot_languages import load
+
+def test_pick(new_cell, mutabot_seed):
+    cell = new_cell(mutabot_seed)
+    load(Path(__file__).parent / "pick.src").run(cell, inputs={"$IN[25]": True})
+    pose = cell.truth.tool_pose()
+    assert (pose.x, pose.y, pose.z) == pytest.approx((0.5, 0.2, 0.3), abs=0.01)
+"""
+
+
+@pytest.mark.parametrize("engine", ["fork", pytest.param("replay", marks=pytest.mark.whole)])
+def test_they_have_verdicts(engine: str, tmp_path: Path) -> None:
+    written(tmp_path, "krl")
+    (tmp_path / "conftest.py").write_text("from mutabot_cell.fixtures import *\n")
+    (tmp_path / "test_pick.py").write_text(TEST)
+    settings = 'program = ["pick.src", "pick.dat"]\nvocabulary = ["cell"]\ntests = ["test_pick.py"]\n'
+    settings += 'families = ["program-text"]\n'
+    (tmp_path / "pyproject.toml").write_text(f"[tool.mutabot]\n{settings}")
+    only = ["shift-point", "drop-statement", "swap-motion", "forget-wait"]
+    options = [word for name in only for word in ("--only", name)]
+    command = [sys.executable, "-m", "mutabot", "run", "--json", "--engine", engine, "-o", "repeats=false"]
+    done = subprocess.run([*command, *options], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    found = {one["description"]: one["rounds"][0] for one in json.loads(done.stdout)["mutants"]}
+    verdicts = {text: one["verdict"] for text, one in found.items()}
+    assert {one["engine"] for one in found.values()} == {engine}
+    assert verdicts["LIN XP1 deleted"] == "killed"
+    assert verdicts["LIN XP1 → PTP XP1"] == "survived"
+    assert verdicts["WAIT FOR $IN[25]==TRUE → WAIT SEC 0"] == "survived"
+
+
+def test_diff_and_export_show_and_write_them(tmp_path: Path) -> None:
+    written(tmp_path, "krl")
+    (tmp_path / "pyproject.toml").write_text(
+        '[tool.mutabot]\nprogram = ["pick.src", "pick.dat"]\nvocabulary = ["cell"]\ntests = ["."]\n'
+    )
+
+    def mutabot(*words: str) -> subprocess.CompletedProcess[str]:
+        command = [sys.executable, "-m", "mutabot", *words]
+        return subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+
+    shown = mutabot("diff", "forget-wait").stdout.splitlines()
+    assert shown[0] == "# pick.src:pick:wait for#1:forget-wait"
+    assert shown[-2:] == ["-WAIT FOR $IN[25]==TRUE", "+WAIT SEC 0"]
+    assert mutabot("export", "out", "forget-wait").returncode == 0
+    original = (tmp_path / "pick.src").read_bytes()
+    exported = (tmp_path / "out/1/pick.src").read_bytes()
+    assert exported == original.replace(b"WAIT FOR $IN[25]==TRUE", b"WAIT SEC 0")
+    assert (tmp_path / "out/1/pick.dat").read_bytes() == (tmp_path / "pick.dat").read_bytes()
+    assert "is not empty" in mutabot("export", "out").stderr

@@ -1,0 +1,167 @@
+"""Programs run on the cell: the same task in three languages, signals, threads, errors, and what is said."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from mutabot_cell import Cell, MotionRefused
+from mutabot_languages import LanguageError, ProgramError, UnsupportedError, load
+from mutabot_languages.core.frames import Frame
+from tests.packages.languages.programs import FILES, INPUTS, written
+
+
+def run(folder: Path, name: str, text: str, **options: Any) -> tuple[Cell, Any]:
+    (folder / name).write_text(text, encoding="latin-1")
+    cell = Cell(seed=1)
+    return cell, load(folder / name).run(cell, **options)
+
+
+def test_the_same_task_ends_at_the_same_pose_in_all_languages(tmp_path: Path) -> None:
+    ends = []
+    for language in FILES:
+        cell = Cell(seed=1, noise=False)
+        load(written(tmp_path, language)).run(cell, inputs=INPUTS)
+        pose = cell.truth.tool_pose()
+        ends.append((pose.x, pose.y, pose.z))
+    assert ends[0] == pytest.approx((0.5, 0.2, 0.3), abs=0.0005)
+    assert all(math.dist(ends[0], end) < 0.0005 for end in ends)
+
+
+def test_outputs_move_the_gripper_as_the_cell_map_says(tmp_path: Path) -> None:
+    (tmp_path / "cell_map.toml").write_text("[out.grip]\ngripper = [0, 1]\n[in.part]\nholding = false\n")
+    text = "MODULE M\nPROC main()\nSet grip;\nWaitTime 1;\nb:=TestDI(part);\nENDPROC\nVAR bool b;\nENDMODULE"
+    cell, ended = run(tmp_path, "m.mod", text)
+    assert cell.truth.opening() < 0.01
+    assert ended.variables["b"] is True
+    assert ended.seconds == pytest.approx(1.0, abs=0.02)
+
+
+def test_an_input_that_nobody_explains_is_an_error_that_says_how(tmp_path: Path) -> None:
+    with pytest.raises(ProgramError, match=r"\[in\.\"standard_digital_in\[2\]\"\]"):
+        run(tmp_path, "a.script", "x = get_standard_digital_in(2)\n")
+
+
+def test_threads_take_turns_by_the_seed_and_motions_go_on_meanwhile(tmp_path: Path) -> None:
+    text = """
+def prog():
+  global count = 0
+  thread counter():
+    while True:
+      count = count + 1
+      sleep(0.1)
+    end
+  end
+  t = run counter()
+  movej([0.3, 0.2618, 3.14159, -2.2689, 0, 0.9599], v=0.5)
+  kill t
+  global seen = count
+  sleep(0.5)
+end
+"""
+    _, ended = run(tmp_path, "a.script", text)
+    assert ended.variables["seen"] > 5
+    assert ended.variables["count"] == ended.variables["seen"]
+    assert run(tmp_path, "a.script", text, seed=0)[1].seconds == ended.seconds
+
+
+def test_an_error_handler_of_rapid_tries_again_or_goes_on(tmp_path: Path) -> None:
+    text = """MODULE M
+      VAR num tried:=0;
+      VAR num after:=0;
+      PROC main()
+        WaitDI di, 1\\MaxTime:=0.1;
+        after:=1;
+        ERROR
+          tried:=tried+1;
+          IF ERRNO=ERR_WAIT_MAXTIME AND tried<3 RETRY;
+          TRYNEXT;
+      ENDPROC
+    ENDMODULE"""
+    _, ended = run(tmp_path, "m.mod", text, inputs={"di": 0})
+    assert (ended.variables["tried"], ended.variables["after"]) == (3, 1)
+    assert ended.seconds == pytest.approx(0.3, abs=0.05)
+
+
+def test_arguments_of_krl_are_the_callers_own_variables(tmp_path: Path) -> None:
+    text = """DEF m()
+INT n
+n=2
+add(n, 3)
+total=n*2
+END
+DEF add(to_it:OUT, what:IN)
+INT to_it, what
+to_it=to_it+what
+END
+"""
+    (tmp_path / "m.dat").write_text("DEFDAT M\nDECL INT total=0\nENDDAT\n")
+    _, ended = run(tmp_path, "m.src", text)
+    assert ended.variables["total"] == 10
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "what"),
+    [
+        ("a.script", 'x = 1\nsocket_open("1.2.3.4", 1)\n', "unsupported: socket_open at line 2 of a.script"),
+        (
+            "a.mod",
+            "MODULE M\nPROC main()\nEGMStop 1;\nENDPROC\nENDMODULE",
+            "unsupported: egmstop at line 3 of a.mod",
+        ),
+        ("a.src", "DEF a()\nRSI_ON(#RELATIVE)\nEND", "unsupported: rsi_on at line 2 of a.src"),
+    ],
+)
+def test_what_is_not_carried_out_is_said_by_name_and_line(
+    tmp_path: Path, name: str, text: str, what: str
+) -> None:
+    with pytest.raises(UnsupportedError) as caught:
+        run(tmp_path, name, text)
+    assert str(caught.value) == what
+
+
+def test_what_has_no_effect_is_noted(tmp_path: Path) -> None:
+    _, ended = run(tmp_path, "a.script", 'textmsg("hello")\n')
+    assert ended.notes == ("textmsg at line 1 has no effect here",)
+
+
+def test_a_pose_out_of_reach_stops_the_program(tmp_path: Path) -> None:
+    with pytest.raises(ProgramError, match="unreachable"):
+        run(tmp_path, "a.script", "movej(p[3, 0, 0.3, 0, 3.14, 0])\n")
+    with pytest.raises(MotionRefused):
+        run(tmp_path, "a.script", "movel(p[3, 0, 0.3, 0, 3.14, 0])\n")
+
+
+def test_a_program_that_never_ends_is_stopped_and_one_with_an_end_is_not(tmp_path: Path) -> None:
+    text = "DEF a()\nLOOP\nWAIT SEC 0.1\nENDLOOP\nEND"
+    with pytest.raises(ProgramError, match="is not over after 1 s"):
+        run(tmp_path, "a.src", text, limit=1.0)
+    cell = Cell()
+    load(tmp_path / "a.src").run(cell, until=lambda: cell.time > 0.45)
+    assert cell.time == pytest.approx(0.5, abs=0.02)
+
+
+def test_files_of_no_language_or_of_two_are_refused(tmp_path: Path) -> None:
+    for name in ("a.txt", "a.mod", "b.script"):
+        (tmp_path / name).touch()
+    with pytest.raises(LanguageError, match=r"end with one of \.script"):
+        load(tmp_path / "a.txt")
+    with pytest.raises(LanguageError, match="have one language"):
+        load(tmp_path / "a.mod", tmp_path / "b.script")
+    with pytest.raises(LanguageError, match="there is no such file"):
+        load(tmp_path / "missing.mod")
+
+
+def test_frames_join_turn_and_come_back() -> None:
+    frame = Frame.of_euler((1, 2, 3), 30, 20, 10)
+    assert frame.euler() == pytest.approx((30, 20, 10))
+    back = frame * frame.inverse()
+    assert back.position == pytest.approx((0, 0, 0), abs=1e-12)
+    assert back.rotation == pytest.approx((1, 0, 0, 0))
+    assert Frame.of_vector((0, 0, 0), frame.vector()).rotation == pytest.approx(frame.rotation)
+    assert frame.turn((1, 0, 0)) == pytest.approx(
+        (Frame(rotation=frame.rotation) * Frame((1, 0, 0))).position
+    )
