@@ -34,7 +34,7 @@ _TABLES: Mapping[str, set[str]] = {
     "function": _FUNCTIONS,
 }
 
-Reader = Callable[[], Any]
+InputReader = Callable[[], Any]
 
 
 @dataclass(frozen=True, slots=True)

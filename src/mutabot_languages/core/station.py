@@ -14,7 +14,7 @@ from mutabot_languages.errors import ProgramError
 
 from .frames import IDENTITY, Frame
 from .inverse import joint_target
-from .signals import CellMap, Reader, signal_name
+from .signals import CellMap, InputReader, signal_name
 
 T = TypeVar("T")
 TICK = 0.01
@@ -201,7 +201,7 @@ class Station:
         key = signal_name(name)
         return key in self._inputs or key in self._map.inputs
 
-    def _reader(self, site: ProgramPlace, entry: Mapping[str, Any]) -> Reader:
+    def _reader(self, site: ProgramPlace, entry: Mapping[str, Any]) -> InputReader:
         sensors, call = self.cell.sensors, self.call
         if "light_barrier" in entry:
             name = entry["light_barrier"] or None
