@@ -15,7 +15,7 @@ from mutabot.api.faults import ActiveFault
 from .change import NumberChange, Undo, change_at
 from .patching import live, mark_by, resolve, wrap
 
-_NEVER = "the test made no world, or the moment of the disturbance did not come"
+_NEVER = "the test made no world, its moment did not come, or nothing came that it disturbs"
 
 
 class WorldFault(ActiveFault):
@@ -23,13 +23,14 @@ class WorldFault(ActiveFault):
 
     A function of ``apply`` is called with the world and the change, and by name with ``names``, ``random``
     and the parameter's options. It raises LookupError if the world has nothing of these names. What it
-    returns, if anything, takes the disturbance away.
+    returns, if anything, takes the disturbance away. One with an argument ``acts`` calls that itself.
     """
 
     def start_test(self, test: str, random: Random) -> None:
         """Wait for the worlds of the test, or for the moment in it."""
         self._key, self._undo, self._missing = random.random(), list[Undo](), ""
         self._disturbed: dict[int, _Disturbed] = {}
+        self._says_itself = False
         self._earlier, self._has_made = list[Any](), False
         mark_by(self.raising)
         if test != self.mutant.site.span.file:
@@ -59,7 +60,7 @@ class WorldFault(ActiveFault):
 
     def end_test(self) -> None:
         """Take everything away, the last first."""
-        if self._earlier and not self._has_made:
+        if self._earlier and not self._has_made and not self._says_itself:
             self.acts()
         self._earlier.clear()
         for world in [*self._disturbed]:
@@ -116,12 +117,14 @@ class WorldFault(ActiveFault):
         try:
             before, after, undo = self._changed(world, change)
         except LookupError as error:
-            self._missing = str(error.args[0]) if error.args else str(error)
+            if not self._disturbed:
+                self._missing = str(error.args[0]) if error.args else str(error)
             return False
+        self._missing = ""
         # whether it is taken away again matters within the test alone: no other test has this fault
         is_taken_away = self.data["moment"]["kind"] == "while"
         self._disturbed[id(world)] = _Disturbed(_reference(world), undo if is_taken_away else None)
-        if is_told:
+        if is_told and not self._says_itself:
             self.acts(_plain(before), _plain(after))
         return True
 
@@ -131,7 +134,9 @@ class WorldFault(ActiveFault):
             return change_at(world, self.data["path"], change)
         function = resolve(self.data["apply"])[2]
         random = Random(f"{self._key}:{len(self._disturbed)}")
-        result = function(world, change, names=self.data["names"], random=random, **self.data["options"])
+        self._says_itself = "acts" in signature(function).parameters
+        more = {**self.data["options"], **({"acts": self.acts} if self._says_itself else {})}
+        result = function(world, change, names=self.data["names"], random=random, **more)
         return None, None, result if callable(result) else None
 
     def _let_go(self, world: int) -> None:

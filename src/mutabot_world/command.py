@@ -74,7 +74,7 @@ def sections(found: Sequence[WorldLadder]) -> Iterator[tuple[str, list[str]]]:
     yield "In sentences", [f"{one.sentence[0].upper()}{one.sentence[1:]}." for one in known]
     unseen = [f"{one.parameter} {one.direction}: {one.finding}" for one in whole if one.unseen]
     yield "Suffered unseen: all tests pass, and the world ends otherwise", unseen
-    robust = [(*_name(one), _robust(one)) for one in known]
+    robust = [(*_name(one), one.robust) for one in known]
     title = "How robust the program is: up to which size the task is done"
     yield title, _table(("parameter", "tried", "lived with up to"), robust)
     if len({one.tests for one in found}) > 1:
@@ -114,10 +114,6 @@ def _by(one: WorldLadder) -> str:
     rounds = one.found[one.noticed_from].values()
     stops = [each.is_stop for tests in rounds for each in tests.values() if each.end.value == "noticed"]
     return "check" if not any(stops) else "exception" if all(stops) else "check, exception"
-
-
-def _robust(one: WorldLadder) -> str:
-    return "not even the least" if one.robust_to is None else amount(one.robust_to, one.unit)
 
 
 def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:

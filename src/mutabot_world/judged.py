@@ -151,6 +151,14 @@ class WorldLadder:
         return found
 
     @property
+    def robust(self) -> str:
+        """This magnitude as a text, or why there is none."""
+        if self.robust_to is not None:
+            return self._amount(self.robust_to)
+        is_known = next(iter(self.ends.values()), WorldEnd.PASSED) is not WorldEnd.PASSED
+        return "not even the least" if is_known else "not known"
+
+    @property
     def bar(self) -> str:
         """One sign per magnitude."""
         signs = {

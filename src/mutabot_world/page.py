@@ -9,7 +9,6 @@ from typing import Any
 from mutabot.api.reports import RecordedPaths, ReportPages, Results
 
 from .judged import WorldEnd, WorldLadder, suites
-from .sizes import amount
 
 #: recordings that are drawn, and edge of a drawing in pixels
 _DRAWN, _EDGE = 30, 260
@@ -56,15 +55,10 @@ def page(results: Results, found: Sequence[WorldLadder], recordings: Any) -> str
         for one in whole
     )
     told = "".join(f"<li>{_text(one.sentence)}{_finding(one)}" for one in whole)
-    robust = "".join(
-        f"<tr><td>{_text(_name(one))}<td>"
-        + ("not even the least" if one.robust_to is None else _text(amount(one.robust_to, one.unit)))
-        for one in whole
-        if one.ends
-    )
+    robust = "".join(f"<tr><td>{_text(_name(one))}<td>{_text(one.robust)}" for one in whole if one.ends)
     parts = (
         "<h1>Disturbances of the world</h1>"
-        f"<p>{_text(results.state)}, {_counted(results.rounds)}</p>{legend}",
+        f"<p>{_text(results.state)}, {results.rounds} round{'s' * (results.rounds != 1)}</p>{legend}",
         f'<h2>Parameters by tests</h2><div class="wide"><table>{head}{rows}</table></div>',
         f"<h2>What the tests notice</h2><ul>{told}</ul>",
         "<h2>How robust the program is</h2><p>The size up to which the task is done.</p>"
@@ -134,10 +128,6 @@ def _finding(one: WorldLadder) -> str:
 
 def _name(one: WorldLadder) -> str:
     return f"{one.parameter} {'−' if one.direction == '-' else one.direction}".strip()
-
-
-def _counted(rounds: int) -> str:
-    return f"{rounds} round{'' if rounds == 1 else 's'}"
 
 
 def _short(test: str) -> str:

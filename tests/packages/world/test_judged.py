@@ -46,7 +46,8 @@ def test_what_is_noticed_and_up_to_where_the_task_is_done_are_two_numbers() -> N
 
 def test_nothing_is_claimed_of_an_end_that_nothing_tells() -> None:
     one = ladder("PPN")
-    assert (one.robust_to, one.unseen, one.bar) == (None, [], "??█")
+    assert (one.robust, one.unseen, one.bar) == ("not known", [], "??█")
+    assert ladder("UUN").robust == "not even the least"
 
 
 def test_a_suite_notices_what_any_test_notices() -> None:
