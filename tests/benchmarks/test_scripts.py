@@ -31,6 +31,7 @@ SHORT: dict[str, list[str]] = {
     "interception": [],
     "judged": ["fluent_api", "--conventional", "0"],
     "kill_and_resume": ["--kills", "1"],
+    "languages_judged": ["--sample", "2", "--only", "pick.src"],
     "paper_scores": ["."],
     "paper_seeds": ["1"],
     "processes_in_a_row": ["--count", "1", "--examples", "scales"],

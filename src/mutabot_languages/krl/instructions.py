@@ -17,10 +17,11 @@ from .dialect import KrlMachine, frame_of, of_axes, of_frame, set_frame
 #: what has no effect in the cell, and is noted
 IGNORED = name_set(
     """continue a10 a10_ini a20 a50 h70 h50 userspot bas_tq msgnotify msgquit msgloop msgdialog set_kr_msg
-    set_kr_dlg clear_kr_msg varstate ir_stopm user_grp usergrp a_10 a_20 spottech grp err_raise cwrite cast_to
-    set_torque_limits reset_torque_limits brake resume delete_backward_buffer lk_ping
-    setbreakpoint sync_cmd on_error_proceed programsync lock unlock tech_motion kcp_ippno chkgrp interrupt_off
-    interrupt_on bwini sb_ini vw cwrite_text kuka_notify p00 act_drive_bus"""
+    set_kr_dlg clear_kr_msg varstate ir_stopm user_grp usergrp a_10 a_20 spottech grp err_raise cwrite
+    cast_to set_torque_limits reset_torque_limits brake resume delete_backward_buffer lk_ping
+    use_cm_pro_values err_clear setbreakpoint sync_cmd on_error_proceed programsync lock unlock
+    tech_motion kcp_ippno chkgrp interrupt_off interrupt_on bwini sb_ini vw cwrite_text kuka_notify p00
+    act_drive_bus"""
 )
 
 
@@ -253,7 +254,9 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
     "strlen": _plain(len), "strdecllen": _plain(len), "strcomp": _plain(lambda one, other, *_: one == other),
     "strclear": _plain(lambda *_: True),
     "toint": _plain(int), "copy": _plain(copy.deepcopy),
-    "svel_joint": _plain(float), "sacc_joint": _plain(float), "svel_cp": _plain(lambda value,
+    "svel_joint": _plain(float),
+    "sacc_cp": _plain(float),
+    "sori_typ": _plain(lambda value: value), "sacc_joint": _plain(float), "svel_cp": _plain(lambda value,
     *_: float(value)),
     "stool2": _plain(lambda value: value), "sbase": _plain(lambda value: value),
     "sload": _plain(lambda value: value), "sipo_mode": _plain(lambda value: value),

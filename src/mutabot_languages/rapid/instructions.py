@@ -543,7 +543,8 @@ _MOVES = (
 FUNCTIONS: dict[str, Callable[..., Any]] = {
     **dict.fromkeys(_MOVES.split(), _move),
     "set": _set(1), "reset": _set(0), "setdo": _set_to, "setgo": _set_to, "setao": _set_to, "pulsedo": _pulse,
-    "invertdo": _invert, "testdi": _test, "dinput": _number_in, "ginput": _number_in, "ainput": _number_in,
+    "invertdo": _invert, "testdi": _test, "dinput": _number_in, "ginput": _number_in,
+    "ginputdnum": _number_in, "ainput": _number_in,
     "doutput": _output, "goutput": _output, "aoutput": _output,
     "waittime": _wait_time, "waitrob": lambda task, node, scope: None, "waituntil": _wait_until,
     **dict.fromkeys(["waitdi", "waitdo", "waitgi", "waitgo", "waitai", "waitao"], _wait_signal),
@@ -576,6 +577,7 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
     "bitand": _bits(lambda a, b: a & b), "bitor": _bits(lambda a, b: a | b), "bitxor": _bits(lambda a,
     b: a ^ b),
     "bitlsh": _bits(lambda a, b: a << b), "bitrsh": _bits(lambda a, b: a >> b),
+    "bitcheckdnum": _plain(lambda value, bit: bool(int(value) >> int(bit) - 1 & 1)),
     "bitcheck": _plain(lambda value, bit: bool(int(value) >> int(bit) - 1 & 1)),
     "gettime": _plain(lambda **_: 0), "ctime": _plain(lambda: "00:00:00"),
     "cdate": _plain(lambda: "2000-01-01"),

@@ -7,7 +7,7 @@ from collections.abc import Callable, Generator, Mapping
 from typing import Any, ClassVar
 
 from mutabot_languages.core.frames import IDENTITY, Frame
-from mutabot_languages.core.machine import ControlFlow, Dialect, ProgramTask, RoutineScope, Steps
+from mutabot_languages.core.machine import ControlFlow, Dialect, ProgramTask, RoutineScope, Steps, Structure
 from mutabot_languages.core.names import name_set
 from mutabot_languages.core.tree import ProgramNode
 from mutabot_languages.errors import ProgramError
@@ -353,6 +353,12 @@ def _wrench(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Any:
     return math.hypot(*forces[:3]) if node.name == "force" else forces
 
 
+def _struct(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    """``struct(a=1)``: its components by name."""
+    _, named = yield from task.arguments(node, scope)
+    return Structure.of("struct", named)
+
+
 def _halt(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Any:
     raise ControlFlow("exit")
 
@@ -422,7 +428,8 @@ _SIGNALS = {
 FUNCTIONS: dict[str, Callable[..., Any]] = {
     "movej": _move, "movel": _move, "movep": _move, "movec": _movec, "sleep": _sleep, "sync": _sync,
     "set_tcp": _set_tcp, "get_inverse_kin": _inverse, "get_forward_kin": _forward, "run": _run, "kill": _kill,
-    "join": _join, "halt": _halt, "get_actual_tcp_pose": _pose_now, "get_target_tcp_pose": _pose_now,
+    "join": _join, "halt": _halt, "struct": _struct, "get_actual_tcp_pose": _pose_now,
+    "get_target_tcp_pose": _pose_now,
     "get_actual_tool_flange_pose": _pose_now, "get_actual_joint_positions": _joints_now,
     "get_target_joint_positions": _joints_now, "get_joint_positions": _joints_now, "force": _wrench,
     "get_tcp_force": _wrench, "get_steptime": lambda task, node, scope: 0.01,
