@@ -11,6 +11,7 @@ import copy
 import math
 from collections.abc import Callable, Iterator
 from fnmatch import fnmatchcase
+from importlib import import_module
 from random import Random
 from typing import Any, TypeAlias
 
@@ -110,13 +111,13 @@ def clock_offset(node: Any, change: Changed, *, names: str, random: Random, acts
 
 def clock_rate(node: Any, change: Changed, *, names: str, random: Random, acts: Acts) -> None:
     """How fast the clocks of nodes run, as a part of other clocks, from when the node is made."""
-    begin = node.get_clock().now().nanoseconds
+    begin = _of_living(node.get_clock().now).nanoseconds
     _run_apart(node, names, acts, lambda nanoseconds: begin + change(1.0) * (nanoseconds - begin))
 
 
 def _listen(subscription: Any, names: str, deliver: _Deliver) -> None:
     """Let something stand before the callback of a subscription. Raises LookupError for other topics."""
-    topic = subscription.topic_name
+    topic = _of_living(lambda: subscription.topic_name)
     if _nodes.is_own() or topic in _OWN or subscription.raw or not fnmatchcase(topic, names):
         raise LookupError(f"nothing listens to a topic {names!r}; the last one is {topic}")
     callback = subscription._callback  # as the program gave it
@@ -125,6 +126,14 @@ def _listen(subscription: Any, names: str, deliver: _Deliver) -> None:
         return deliver(message, lambda one: callback(one, *more))
 
     subscription.callback = as_called(callback, received)
+
+
+def _of_living(ask: Callable[[], Any]) -> Any:
+    """Ask something of an entity. Raises LookupError for one that is destroyed, as of an earlier test."""
+    try:
+        return ask()
+    except import_module("rclpy.exceptions").InvalidHandle as error:
+        raise LookupError("the last one was destroyed") from error
 
 
 def _changing(change: Callable[[Any], bool], acts: Acts) -> _Deliver:
@@ -159,7 +168,7 @@ def _transforms(message: Any, names: str) -> Iterator[Any]:
 
 
 def _run_apart(node: Any, names: str, acts: Acts, read: Callable[[int], float]) -> None:
-    name = node.get_fully_qualified_name()
+    name = _of_living(node.get_fully_qualified_name)
     if not fnmatchcase(name, names):
         raise LookupError(f"no node is named {names!r}; the last one is {name}")
     clock = node.get_clock()

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.packages.world.belts import project, run
+from tests.plugins.test_plugins import python
 
 pytestmark = pytest.mark.skipif(
     find_spec("rclpy") is None or find_spec("greenlet") is None,
@@ -128,3 +129,26 @@ def test_what_a_node_hears_is_disturbed(simulation: str, names: tuple[str, ...],
             assert "nothing came that it disturbs" in found["nothing +"]["sentence"]
         else:
             assert found[f"{name} +"]["noticed_from"] == ROWS[name][2][-1], name
+
+
+GONE = """
+import rclpy
+from geometry_msgs.msg import PoseStamped
+from mutabot_ros.ros2 import disturbances
+
+rclpy.init(args=[])
+node = rclpy.create_node("mission")
+subscription = node.create_subscription(PoseStamped, "/pose", lambda one: None, 10)
+node.destroy_node()
+rclpy.shutdown()
+for function, world in ((disturbances.loss, subscription), (disturbances.clock_offset, node)):
+    try:
+        function(world, float, names="*", random=None, acts=print)
+    except LookupError as error:
+        print(error)
+"""
+
+
+def test_what_was_destroyed_in_an_earlier_test_is_nothing_to_disturb() -> None:
+    done = python(None, "-c", GONE)
+    assert done.stdout.splitlines() == ["the last one was destroyed"] * 2, done.stderr
