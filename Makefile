@@ -107,11 +107,13 @@ bench: $(READY)
 	$(RUN) benchmarks/stories_judged.py --bare --sample 60
 	$(RUN) benchmarks/html_report.py
 
-## slow: kill the controller at 30 random moments and finish by resuming; both engines on every mutant of the
-## examples; both engines against plain pytest; ten thousand mutants; ten thousand tests; 200 campaigns in a row;
-## 20 whose tests start processes, on each example with some; 400 campaigns with a test that fails at random
+## slow: kill the controller at 30 random moments and finish by resuming; stop campaigns on hardware at 1,000 moments;
+## both engines on every mutant of the examples; both engines against plain pytest; ten thousand mutants; ten thousand
+## tests; 200 campaigns in a row; 20 whose tests start processes, on each example with some; 400 campaigns with a test
+## that fails at random
 stress: $(READY) $(ROS1)/.ready $(ROS2)/.ready
 	$(RUN) benchmarks/kill_and_resume.py --kills 30
+	$(RUN) benchmarks/hardware_stops.py --held 1000 --ended 30
 	$(RUN) benchmarks/differential.py
 	$(RUN) benchmarks/judged.py
 	$(ROS1)/bin/python benchmarks/judged.py ros1
@@ -139,9 +141,11 @@ judged: $(READY) $(ROS1)/.ready $(ROS2)/.ready
 shipped: $(VENV)-shipped/.ready
 	$(VENV)-shipped/bin/python tools/check_shipped.py --strict
 
-## slow: the recipes of docs/recipes as projects of their own: init, check, run, and mutants made by hand
+## slow: the recipes of docs/recipes as projects of their own: init, check, run, and mutants made by hand; guards
+## and hardware mode with vendors' client libraries
 foreign: $(VENV)-shipped/.ready
 	$(VENV)-shipped/bin/python benchmarks/foreign_programs.py
+	$(VENV)-shipped/bin/python -m pytest tests/packages/hardware/test_vendors.py -m "whole or not whole"
 
 ## ask the index whether weaknesses are known of what the lock files name
 audit: $(AUDIT)/.ready

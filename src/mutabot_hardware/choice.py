@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Self, cast, get_args
 from mutabot.api.processes import ExecutorChoice, Request, Table
 from mutabot.api.reports import UsageError
 
+from .guard import why_idle
 from .tables import GuardTable, HardwareTable, Unasked
 
 if TYPE_CHECKING:
@@ -54,6 +55,8 @@ class HardwareChoice(ExecutorChoice):
                 "hardware: nothing runs without a guard; write a table guard with limits, boxes, forbidden "
                 "operations or orders"
             )
+        if why := why_idle(guard, request.vocabulary.operations):
+            raise UsageError(f"{why}; a rule that keeps nothing back protects nothing")
         if request.engine == "fork":
             raise UsageError("hardware: copies of a program cannot share a robot; leave out --engine fork")
         return replace(

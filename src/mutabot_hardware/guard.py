@@ -2,14 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from mutabot.api.processes import CallGuard
-from mutabot.api.values import Call
+from mutabot.api.values import Call, Operation
 
-from .rules import BoxRule, LimitRule, OrderRule, RuleFinding, UnreadableTarget, fits
+from .rules import BoxRule, LimitRule, OrderRule, RuleFinding, fits, is_one
 from .tables import GuardTable
+from .targets import UnreadableTarget
+
+
+def rules_of(table: GuardTable) -> list[LimitRule | BoxRule]:
+    """The limits and boxes of a table."""
+    return [*(LimitRule(one) for one in table.limit), *(BoxRule(one) for one in table.box)]
+
+
+def why_idle(table: GuardTable, operations: Iterable[Operation]) -> str | None:
+    """Which part of a table never keeps a command back, since it concerns nothing; None if all parts do."""
+    commands = [one for one in operations if one.command]
+    for rule in rules_of(table):
+        if not any(rule.concerns(one) for one in commands):
+            kind = "limit" if isinstance(rule, LimitRule) else "box"
+            said = rule.table.model_dump(exclude_defaults=True, exclude_none=True)
+            which = ", ".join(f"{key} = {value}" for key, value in said.items())
+            return f"guard.{kind} concerns no quantity that the vocabulary describes: {which}"
+    named = [*table.forbid, *(name for one in table.order for name in (*one.operations, *one.after))]
+    lost = next((name for name in named if not any(is_one(one, [name]) for one in commands)), None)
+    return f"guard: the vocabulary describes no command {lost}" if lost is not None else None
 
 
 class TableGuard(CallGuard):
@@ -22,10 +42,7 @@ class TableGuard(CallGuard):
     def __init__(self, table: Mapping[str, Any]) -> None:
         super().__init__(table)
         read = GuardTable.model_validate(table)
-        self._rules: list[LimitRule | BoxRule] = [
-            *(LimitRule(one) for one in read.limit),
-            *(BoxRule(one) for one in read.box),
-        ]
+        self._rules = rules_of(read)
         self._forbidden, self._tables = read.forbid, read.order
         self._tool_of = read.tool.split() if read.tool is not None else None
         self.start_test()

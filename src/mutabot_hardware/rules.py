@@ -12,16 +12,13 @@ from fnmatch import fnmatchcase
 from math import inf, isfinite, isnan
 from typing import Any
 
-from mutabot.api.values import Call, Mode, Quantity
+from mutabot.api.values import Call, Operation, Quantity
 
 from .tables import BoxTable, LimitTable, OrderTable
+from .targets import UnreadableTarget, target_now, target_of
 
 #: kinds whose axes x, y and z say where a target lies
 _PLACES = ("translation",)
-
-
-class UnreadableTarget(Exception):  # noqa: N818  # a reason
-    """Why it is not known where a command leads to."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +43,19 @@ class RuleFinding:
 
 def fits(call: Call, operations: Iterable[str]) -> bool:
     """Whether a call is of one of these operations."""
-    return any(fnmatchcase(call.operation.target, one) for one in operations)
+    return is_one(call.operation, operations)
+
+
+def is_one(operation: Operation, operations: Iterable[str]) -> bool:
+    """Whether an operation is one of these."""
+    return any(fnmatchcase(operation.target, one) for one in operations)
+
+
+def _described(operation: Operation) -> Iterator[Quantity]:
+    """All that the vocabulary describes of what an operation writes."""
+    yield from operation.arguments
+    for pattern in operation.patterns:
+        yield from pattern.arguments
 
 
 def written(call: Call) -> Iterator[tuple[Quantity, Any]]:
@@ -57,34 +66,15 @@ def written(call: Call) -> Iterator[tuple[Quantity, Any]]:
             yield quantity, call.values[quantity.name]
 
 
-def target_of(call: Call, quantity: Quantity, value: Any) -> float:
-    """Where a commanded amount leads to, in the quantity's unit. Raises UnreadableTarget."""
-    try:
-        number = float(value)
-    except (TypeError, ValueError) as error:
-        raise UnreadableTarget(f"{quantity.name} is {value!r}, not a number") from error
-    return number + _now(call, quantity) if quantity.mode is Mode.BY else number
-
-
-def _now(call: Call, quantity: Quantity) -> float:
-    """Where the robot is. Raises UnreadableTarget."""
-    lacking = f"where {quantity.name} leads to is not known"
-    try:
-        asked = call.current(quantity)
-        asked.send(None)  # type: ignore[attr-defined]  # of a plain reading it never suspends
-    except StopIteration as end:
-        return float(end.value)
-    except Exception as error:
-        raise UnreadableTarget(f"{lacking}: {error}") from error
-    asked.close()  # type: ignore[attr-defined]
-    raise UnreadableTarget(f"{lacking}: its reading has to be awaited")
-
-
 @dataclass(frozen=True, slots=True)
 class LimitRule:
     """Least and greatest value of a quantity."""
 
     table: LimitTable
+
+    def concerns(self, operation: Operation) -> bool:
+        """Whether there is a quantity of an operation that it limits."""
+        return is_one(operation, self.table.operations) and any(map(self._is_meant, _described(operation)))
 
     def of(self, call: Call, tool: str | None) -> Iterator[RuleFinding]:
         """What it says of a call. Raises UnreadableTarget."""
@@ -121,6 +111,10 @@ class BoxRule:
 
     table: BoxTable
 
+    def concerns(self, operation: Operation) -> bool:
+        """Whether there is a target of an operation that it is compared with."""
+        return is_one(operation, self.table.operations) and any(map(self._is_place, _described(operation)))
+
     def of(self, call: Call, tool: str | None) -> Iterator[RuleFinding]:
         """What it says of a call. Raises UnreadableTarget."""
         table = self.table
@@ -139,7 +133,7 @@ class BoxRule:
     def _target(self, call: Call, quantity: Quantity) -> float:
         """Where the call leads to along an axis, m or as the box: where the robot is, if it says nothing."""
         value = call.values.get(quantity.name)
-        target = _now(call, quantity) if value is None else target_of(call, quantity, value)
+        target = target_now(call, quantity) if value is None else target_of(call, quantity, value)
         return quantity.to_unit(target, self.table.unit)
 
     def _is_frame(self, quantity: Quantity) -> bool:

@@ -23,6 +23,8 @@ from mutabot.api.values import Call
 SOCKET_VARIABLE = "MUTABOT_HARDWARE_SOCKET"
 #: the answer that lets a command pass; any other one says why it must not
 PASS = b"pass"
+#: characters of an argument that a message shows
+_SHOWN = 60
 #: seconds that an answer may take
 _PATIENCE = 10
 _MOST = 1 << 16
@@ -47,10 +49,8 @@ class HardwareGuard(CallGuard):
             return None
         if SOCKET_VARIABLE not in os.environ:
             return "in hardware mode commands go out from campaigns with --hardware only"
-        if is_unknown:
-            return "it is none of the commands that the vocabulary describes, so that no guard can read it"
-        if unread:
-            return f"it cannot be read: {'; '.join(unread.values())}"
+        if why := unreadable(call, unread):
+            return why
         return self._asked(
             {"sent": call.operation.target, "values": dict(call.values), "process": os.getpid()}
         )
@@ -70,6 +70,30 @@ class HardwareGuard(CallGuard):
         if answer == PASS:
             return None
         return answer.decode(errors="replace") or "the controller is gone"
+
+
+def unreadable(call: Call, unread: Mapping[str, str]) -> str | None:
+    """Why no guard can read a command, as ``CallGuard.why_not`` has it; None if guards can.
+
+    Of a command of which the vocabulary describes no argument, guards know nothing but its name. Flags such
+    as ``wait=True`` say how a command is made, and not what it does.
+    """
+    if call.pattern is None and call.operation.patterns:
+        return "it is none of the commands that the vocabulary describes, so that no guard can read it"
+    if unread:
+        return f"it cannot be read: {'; '.join(unread.values())}"
+    if call.pattern is not None or call.operation.arguments or call.payload is None:
+        return None
+    given = (*call.payload.args, *call.payload.kwargs.values())
+    told = [_short(one) for one in given if one is not None and not isinstance(one, bool)]
+    if not told:
+        return None
+    return f"it cannot be read: the vocabulary describes none of its arguments, and it gets {', '.join(told)}"
+
+
+def _short(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}…"
 
 
 @dataclass(frozen=True, slots=True)

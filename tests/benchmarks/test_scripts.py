@@ -26,6 +26,7 @@ SHORT: dict[str, list[str]] = {
     "engines": ["--examples", "scales", "--sample", "2"],
     "example_seeds": ["tracking", "1"],
     "flaky_campaigns": ["--count", "1", "--chance", "10"],
+    "hardware_stops": ["--held", "10", "--ended", "1"],
     "html_report": ["--mutants", "20", "--rounds", "1", "--repeats", "1"],
     "instrumentation": [],
     "interception": [],

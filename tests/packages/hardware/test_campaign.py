@@ -185,6 +185,14 @@ def test_a_motion_that_was_stopped_is_not_repeated_unasked(folder: Path, server:
     ("words", "said"),
     [
         (("-o", "guard.box=[]", "-o", "guard.limit=[]", "--hardware", "yes"), "nothing runs without a guard"),
+        (
+            ("-o", 'guard.limit=[{kind="force",max=9}]', "--hardware", "yes"),
+            "guard.limit concerns no quantity that the vocabulary describes: kind = force, max = 9.0",
+        ),
+        (
+            ("-o", 'guard.forbid=["robot:Arm.halt"]', "--hardware", "yes"),
+            "guard: the vocabulary describes no command robot:Arm.halt",
+        ),
         (("--engine", "fork", "--hardware", "yes"), "copies of a program cannot share a robot"),
         (("--hardware", "perhaps"), "--hardware perhaps: ask, yes, repeat"),
         (("-o", "hardware.safe_state='cell_io:nowhere'", "--hardware", "yes"), "has no attribute 'nowhere'"),
@@ -196,6 +204,17 @@ def test_what_is_missing_is_told_before_anything_moves(
 ) -> None:
     assert mutabot(folder, "run", *words) == 2
     assert said in capsys.readouterr().err
+    assert server.received == []
+
+
+@pytest.mark.parametrize("surprises", ["[]", pytest.param('["guard"]', marks=pytest.mark.whole)])
+def test_a_guard_that_the_original_violates_is_told_before_a_mutant_moves(
+    folder: Path, server: RobotServer, surprises: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    narrow = ("-o", "guard.box=[{x=[0.5,0.7]}]", "-o", f"hardware.stop={surprises}")
+    assert mutabot(folder, "run", "--hardware", "yes", *narrow) != 0
+    assert "x leads to 0.4 m, the workspace is 0.5 to 0.7 m" in capsys.readouterr().err
+    assert [one for one in log(folder) if "mutant" in one or "sent" in one] == []
     assert server.received == []
 
 

@@ -200,14 +200,18 @@ def test_what_a_wrong_reading_leads_to_is_stopped_as_well(tmp_path: Path, server
     assert "leads to -0.4 m" in str(wrong.message)
 
 
+@pytest.mark.parametrize(
+    "engine", ["auto", *(pytest.param(one, marks=pytest.mark.whole) for one in ("fork", "replay"))]
+)
 def test_a_guard_that_the_original_violates_is_told_before_anything_is_mutated(
-    tmp_path: Path, server: RobotServer
+    tmp_path: Path, server: RobotServer, engine: str
 ) -> None:
     guard = "[guard]\nbox = [{ x = [0.5, 0.7] }]\n"
     with pytest.raises(
         BaselineError, match=r"move_to: x leads to 0.4 m, the workspace is 0.5 to 0.7 m; widen"
     ):
-        outcomes_of(write_project(tmp_path, SIMPLE, CHECKED, guard), "auto")
+        outcomes_of(write_project(tmp_path, SIMPLE, CHECKED, guard), engine)
+    assert server.received == []
 
 
 @pytest.mark.whole

@@ -9,6 +9,7 @@ import sys
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from textwrap import dedent
+from types import SimpleNamespace
 
 import pytest
 
@@ -116,6 +117,19 @@ def test_what_cannot_be_read_does_not_go_out(leave: Leave) -> None:
         text = Operation("link:send", patterns=(Pattern("height {z:g}"),))
         assert "none of the commands that the vocabulary describes" in str(why(Call(text)))
         assert why(unread={"arguments.x": "it is a box"}) == "it cannot be read: it is a box"
+
+
+def test_a_command_of_which_no_argument_is_described_goes_out_with_flags_alone(leave: Leave) -> None:
+    def given(*args: object, **kwargs: object) -> Call:
+        return Call(MOVE, payload=SimpleNamespace(args=args, kwargs=kwargs))
+
+    with leave.given():
+        assert why(given(wait=True)) is None
+        assert why(given(True, None)) is None
+        assert why(given("movej([0])")) == (
+            "it cannot be read: the vocabulary describes none of its arguments, and it gets 'movej([0])'"
+        )
+        assert len(str(why(given([9.0] * 100, wait=True)))) < 150  # a message is no list
 
 
 def test_a_controller_that_is_gone_lets_nothing_pass(leave: Leave) -> None:

@@ -1,0 +1,1 @@
+"""Controllers that speak the real protocols, for the vendors' own client libraries."""
