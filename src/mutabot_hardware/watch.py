@@ -112,6 +112,7 @@ class _LeaveConnection:
     def open(cls, name: str) -> Self:
         """A new one. Raises OSError."""
         with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as made:
+            made.setblocking(True)  # libraries of robots set a default timeout for all sockets
             for option in (socket.SO_RCVTIMEO, socket.SO_SNDTIMEO):
                 made.setsockopt(socket.SOL_SOCKET, option, struct.pack("@ll", _PATIENCE, 0))
             made.connect(b"\0" + name.encode())

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import socket
 import subprocess
 import sys
 from collections.abc import Iterator, Mapping
@@ -104,6 +105,16 @@ def test_each_command_is_in_the_log_before_it_goes_out(leave: Leave, tmp_path: P
         assert why(Call(MOVE, values={"x": 0.3})) is None
         line = json.loads((tmp_path / "log").read_text(encoding="utf-8"))
         assert (line["sent"], line["values"]) == ("robot:move", {"x": 0.3})
+
+
+def test_a_default_timeout_of_sockets_does_not_keep_a_command_back(leave: Leave) -> None:
+    socket.setdefaulttimeout(1.0)  # as xarm-python-sdk does
+    try:
+        with leave.given():
+            guard = HardwareGuard({"enabled": True})
+            assert [guard.why_not(Call(MOVE), {}) for _ in range(20)] == [None] * 20
+    finally:
+        socket.setdefaulttimeout(None)
 
 
 def test_what_cannot_be_written_to_the_log_does_not_go_out(leave: Leave, tmp_path: Path) -> None:
