@@ -87,10 +87,7 @@ def _parameters(names: dict[str, list[str]]) -> Iterator[str]:
     for table in shipped["parameter"]:
         found = list(filter(None, names.get(table["name"], ())))
         for name in found if len(found) <= _MOST else ["*"]:
-            own = (
-                table
-                if name == "*"
-                else {**table, "name": f"{table['name']} of {name}", "names": escape(name)}
-            )
+            own = {key: value for key, value in table.items() if name == "*" or key not in ("more", "less")}
+            own |= {} if name == "*" else {"name": f"{table['name']} of {name}", "names": escape(name)}
             yield from ("", "[[world.parameter]]")
             yield from (f"{key} = {json.dumps(value, ensure_ascii=False)}" for key, value in own.items())

@@ -37,5 +37,5 @@ class Arm:
     table = tomllib.loads((tmp_path / "mutabot.toml").read_text(encoding="utf-8"))["world"]
     found = {one.name: one for one in parameters_of(WorldTable.model_validate(table), tmp_path)}
     assert [*found] == ["mass of obj", "friction of objGeom", "gain of hinge", "gain of motor", "gravity"]
-    assert found["mass of obj"].names == "obj"
+    assert (found["mass of obj"].names, found["mass of obj"].more) == ("obj", "")
     assert found["mass of obj"].ladder == (100, 300, 700, 1500, 3100)

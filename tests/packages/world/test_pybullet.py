@@ -148,41 +148,57 @@ def test_names_that_match_nothing_are_said(arm: Any) -> None:
         disturb(arm, "gain", "scale", 1.0, "wrist")
 
 
-@pytest.mark.parametrize("engine", ["fork", pytest.param("replay", marks=pytest.mark.whole)])
-def test_a_test_notices_a_cube_that_falls_faster_in_a_second_simulation(engine: str, tmp_path: Path) -> None:
-    files = {
-        "belt.toml": "",
-        "mission.py": """
-            from pybullet import setGravity
-            import pybullet
+MISSION = """
+    from pybullet import setGravity
+    import pybullet
 
-            def fallen(steps):
-                client = pybullet.connect(pybullet.DIRECT)
-                for _ in range(2):
-                    pybullet.resetSimulation(physicsClientId=client)
-                    setGravity(0, 0, -10, physicsClientId=client)
-                    cube = pybullet.createMultiBody(1.0, physicsClientId=client)
-                    for _ in range(steps):
-                        pybullet.stepSimulation(physicsClientId=client)
-                    height = pybullet.getBasePositionAndOrientation(cube, physicsClientId=client)[0][2]
-                pybullet.disconnect(client)
-                return -height
-            """,
-        "tests/test_mission.py": """
-            import mission
+    def fallen(steps):
+        client = pybullet.connect(pybullet.DIRECT)
+        for _ in range(2):
+            pybullet.resetSimulation(physicsClientId=client)
+            setGravity(0, 0, -10, physicsClientId=client)
+            cube = pybullet.createMultiBody(1.0, physicsClientId=client)
+            for _ in range(steps):
+                pybullet.stepSimulation(physicsClientId=client)
+            height = pybullet.getBasePositionAndOrientation(cube, physicsClientId=client)[0][2]
+        pybullet.disconnect(client)
+        return -height
+    """
+BELOW = """
+    import subprocess
+    import sys
 
-            def test_it_falls():
-                assert 1.21 < mission.fallen(120) < 1.27
-            """,
-    }
+    def fallen(steps):
+        code = f"import falling; print(falling.fallen({steps}))"
+        words = [sys.executable, "-c", code]
+        return float(subprocess.run(words, check=True, capture_output=True, text=True).stdout.split()[-1])
+    """
+
+
+@pytest.mark.parametrize(
+    ("engine", "files"),
+    [
+        ("fork", {"mission.py": MISSION}),
+        pytest.param("replay", {"mission.py": MISSION}, marks=pytest.mark.whole),
+        pytest.param("replay", {"mission.py": BELOW, "falling.py": MISSION}, marks=pytest.mark.whole),
+    ],
+)
+def test_a_test_notices_a_cube_that_falls_faster(engine: str, files: dict[str, str], tmp_path: Path) -> None:
+    checks = """
+        import mission
+
+        def test_it_falls():
+            assert 1.21 < mission.fallen(120) < 1.27
+        """
     table = """
         parameters = ["mutabot_world:pybullet.toml"]
         only = ["gravity", "mass"]
         names = { mass = "cup" }
         """
-    folder = project(tmp_path, table, **files)
-    text = (folder / "pyproject.toml").read_text()
-    (folder / "pyproject.toml").write_text(text.replace('of = ["belt:Belt"]\n', ""))
+    folder = project(tmp_path, table, **{"belt.toml": "", "tests/test_mission.py": checks, **files})
+    text = (folder / "pyproject.toml").read_text().replace('of = ["belt:Belt"]\n', "")
+    names = ", ".join(f'"{name}"' for name in files)
+    (folder / "pyproject.toml").write_text(text.replace('"mission.py"', names))
     found = run(folder, "--engine", engine, "-o", "rounds=1")
     assert found["gravity +"]["noticed_from"] == 5
     assert "no body or link is named 'cup'; the last body has: body 0" in found["mass +"]["sentence"]
