@@ -144,7 +144,10 @@ class PatchFaults(FaultProvider):
 def _read_all(project: Project, tests: Iterable[str]) -> Iterator[tuple[str, _PatchLooked | PatchError]]:
     """Yield the patches of a project by their names, or why they make no mutant."""
     suite = FilesOfTests(tests, project.program_files())
-    for path in files_of(project.tables.get(TABLE) or PatchesTable(), project.root):
+    table = project.tables.get(TABLE)
+    # who asks for several families need not have the usual folder
+    is_wanted = table is not None or {*project.families} == {FAMILY} or _has_folder(project)
+    for path in files_of(table or PatchesTable(), project.root) if is_wanted else ():
         name = path.relative_to(project.root).as_posix()
         try:
             patch = read_patch(path.read_bytes(), project.root, suite.has)
@@ -153,6 +156,11 @@ def _read_all(project: Project, tests: Iterable[str]) -> Iterator[tuple[str, _Pa
             yield name, PatchError(f"it cannot be read: {error.strerror or error}")
         except PatchError as error:
             yield name, error
+
+
+def _has_folder(project: Project) -> bool:
+    """Whether the usual folder of patches is there."""
+    return (project.root / PatchesTable().files[0]).exists()
 
 
 def files_of(table: PatchesTable, root: Path) -> list[Path]:
