@@ -6,7 +6,12 @@ import re
 from collections import Counter
 from pathlib import Path
 
+import pytest
+
+from mutabot_patches.changes import read_patch
+from mutabot_patches.suite import looks_like_tests
 from mutabot_source.registry import names, operator
+from real_bugs.coupling import PROGRAMS, spearman
 from real_bugs.shares import by_operator, now, share, silent
 
 PAGE = (Path(__file__).parents[2] / "docs" / "real-bugs.md").read_text(encoding="utf-8")
@@ -37,3 +42,20 @@ def test_the_page_has_the_shares() -> None:
         share(bugs, lambda one: "E" in (now(one), one["conventional"])),
     ):
         assert re.search(rf"\| {re.escape(told)} \|", PAGE)
+
+
+def test_each_bug_of_the_programs_applies_and_says_its_class() -> None:
+    classes = {one["class"] for one in silent()}
+    found = sorted(PROGRAMS.glob("*/patches/*.patch"))
+    assert len(found) == 25
+    for file in found:
+        patch = read_patch(file.read_bytes(), file.parents[1], looks_like_tests)
+        assert not patch.notes
+        assert patch.title.partition(": ")[0] in classes
+
+
+def test_rank_correlation() -> None:
+    assert spearman([1, 2, 3, 4], [10, 20, 25, 90]) == pytest.approx(1.0)
+    assert spearman([1, 2, 3], [3, 2, 1]) == pytest.approx(-1.0)
+    assert spearman([1, 2, 2, 3], [1, 3, 2, 4]) == pytest.approx(0.9486833)
+    assert spearman([1, 1, 1], [1, 2, 3]) == 0.0

@@ -196,6 +196,7 @@ def _plain_fails(project: Path, name: str, folder: Path) -> bool:
     return subprocess.run(words, cwd=copy, capture_output=True, check=False).returncode != 0
 
 
+@pytest.mark.whole
 def test_patches_that_change_functions_alone_are_forked_and_replay_says_the_same(
     project: Path, tmp_path: Path
 ) -> None:
