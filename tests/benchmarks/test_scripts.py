@@ -35,6 +35,7 @@ SHORT: dict[str, list[str]] = {
     "languages_judged": ["--sample", "2", "--only", "pick.src"],
     "paper_scores": ["."],
     "paper_seeds": ["1"],
+    "patches_judged": ["doctest_program", "--patches", "1"],
     "processes_in_a_row": ["--count", "1", "--examples", "scales"],
     "published_campaign": [MUTABOT, "1"],
     "same_results": [str(SCRIPTS / "witness_records")] * 2,
