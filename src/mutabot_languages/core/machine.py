@@ -452,12 +452,7 @@ class ProgramTask:
         if kind in ("number", "text", "constant"):
             return node.value
         if kind == "name":
-            found = self.find(node.name, scope)
-            if found is not None:
-                return found.value
-            if node.name in self.dialect.constants:
-                return copy.deepcopy(self.dialect.constants[node.name])
-            return self.dialect.name(self, node, scope)
+            return self._name(node, scope)
         if kind == "group":
             return (yield from self.value(node.parts[0], scope))
         if kind == "call":
@@ -476,6 +471,16 @@ class ProgramTask:
         if kind in ("list", "pose", "aggregate", "enum", "method", "option"):
             return (yield from self.dialect.literal(self, node, scope))
         raise self.unsupported(node, scope, node.name or kind)
+
+    def _name(self, node: ProgramNode, scope: RoutineScope) -> Any:
+        found = self.find(node.name, scope)
+        if found is not None:
+            return found.value
+        if node.name in self.machine.undeclared:
+            raise self.error(node, scope, f"{node.name}: {self.machine.undeclared[node.name]}")
+        if node.name in self.dialect.constants:
+            return copy.deepcopy(self.dialect.constants[node.name])
+        return self.dialect.name(self, node, scope)
 
     def _binary(self, node: ProgramNode, scope: RoutineScope) -> Steps:
         left = yield from self.value(node.parts[0], scope)
@@ -734,6 +739,7 @@ class Machine:
         self.routines: dict[str, Routine] = {}
         self.tasks: dict[str, Steps] = {}
         self.running: dict[int, Routine] = {}
+        self.undeclared: dict[str, str] = {}
         self._until, self._end = until, station.time + limit
         self._limit = limit
         self._left = MOST_STEPS

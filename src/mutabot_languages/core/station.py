@@ -115,6 +115,7 @@ class Station:
 
     def forward(self, degrees: list[float]) -> Frame:
         """Where the program's tool point is with these joint angles, robot base frame."""
+        degrees = self._all_joints(degrees)
         position, rotation = self.cell.arm.kinematics.tool([math.radians(one) for one in degrees])
         return matrix_frame(position, rotation) * self._mounted.inverse() * self.tool
 
@@ -145,11 +146,12 @@ class Station:
 
     def joint_move(self, angles: list[float], part: float) -> tuple[str, tuple[Any, ...], float]:
         """A motion of all joints to angles in degrees, at a part of their speed."""
-        if len(angles) < self.joints:
-            # the arm may have more joints than the program's robot: these stay
-            now = [math.degrees(one) for one in self.cell.arm.setpoint]
-            angles = [*angles, *now[len(angles) :]]
-        return "move_joints", (tuple(angles[: self.joints]),), _part(part)
+        return "move_joints", (tuple(self._all_joints(angles)),), _part(part)
+
+    def _all_joints(self, angles: list[float]) -> list[float]:
+        """Angles of all joints, degrees: the arm may have more than the program's robot, and these stay."""
+        now = [math.degrees(one) for one in self.cell.arm.setpoint]
+        return [*angles, *now[len(angles) :]][: self.joints]
 
     def arc(
         self, start: Frame, via: Frame, end: Frame, speed: float

@@ -265,7 +265,11 @@ def assign_system(task: ProgramTask, target: ProgramNode, value: Any, scope: Rou
     name = base.name
     machine = task.machine
     assert isinstance(machine, KrlMachine)
-    if task.find(name, scope) is not None:
+    found = task.find(name, scope)
+    if found is not None and isinstance(found.value, str) and target.kind == "index":
+        found.value = value  # texts are kept whole
+        return None
+    if found is not None:
         return NotImplemented
     if name in machine.signals:
         return _write(task, target, scope, machine.signals[name], value)

@@ -16,7 +16,7 @@ from mutabot_languages.core.machine import (
     Variable,
 )
 from mutabot_languages.core.tree import ProgramNode
-from mutabot_languages.errors import LanguageError, UnsupportedError
+from mutabot_languages.errors import LanguageError
 
 from .dialect import KrlDialect, KrlMachine
 from .instructions import FUNCTIONS, IGNORED, spline
@@ -57,16 +57,23 @@ def _prepare(machine: Machine, task: ProgramTask) -> Steps:
     waiting = [(node, RoutineScope(unit, "<module>")) for unit in machine.units for node in _data(unit)]
     while waiting:
         left: list[tuple[ProgramNode, RoutineScope]] = []
-        first: LanguageError | None = None
         for node, scope in waiting:
             try:
                 yield from _declare(task, node, scope)
-            except UnsupportedError as error:
-                first = first or error
+            except LanguageError as error:
                 left.append((node, scope))
-        if first is not None and len(left) == len(waiting):
-            raise first
+                machine.undeclared[_declared(node)] = str(error)
+            else:
+                machine.undeclared.pop(_declared(node), None)
+        if len(left) == len(waiting):  # what nobody uses is no error
+            return
         waiting = left
+
+
+def _declared(node: ProgramNode) -> str:
+    while node.kind in ("assign", "index", "field"):
+        node = node.parts[0]
+    return node.name
 
 
 def _data(unit: ProgramUnit) -> list[ProgramNode]:
@@ -97,6 +104,9 @@ def _element(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps
     target, value = node.parts
     name = target.parts[0].name if target.kind == "index" and target.parts else ""
     found = task.find(name, scope) if name else None
+    if found is not None and isinstance(found.value, str):
+        found.value = yield from task.value(value, scope)
+        return
     if found is not None and isinstance(found.value, list) and len(target.parts) == 2:
         index = int((yield from task.value(target.parts[1], scope)))
         found.value.extend({} for _ in range(index - len(found.value)))

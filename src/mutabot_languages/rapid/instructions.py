@@ -57,7 +57,10 @@ def _base(task: ProgramTask, wobj: Any) -> Frame:
 
 
 def _target(task: ProgramTask, value: Any, type: str) -> Any:
-    return shaped(value, type, structures(task))
+    found = shaped(value, type, structures(task))
+    if not isinstance(found, dict):
+        raise TypeError(f"expected {type}, found {value!r}")
+    return found
 
 
 def _move(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:

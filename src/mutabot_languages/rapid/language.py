@@ -43,18 +43,17 @@ def _data(task: ProgramTask, waiting: list[tuple[ProgramNode, RoutineScope]]) ->
     """Declare data until nothing is left; what names later data is declared after it."""
     while waiting:
         left: list[tuple[ProgramNode, RoutineScope]] = []
-        first: LanguageError | None = None
         for node, scope in waiting:
             try:
                 _watch(node, scope)
                 yield from task.dialect.declare(task, node, scope, is_global=True)
-            except LanguageError as error:
-                first = first or error
+            except (LanguageError, TypeError, ValueError) as error:
                 left.append((node, scope))
-            except (TypeError, ValueError) as error:
-                raise task.error(node, scope, str(error)) from error
-        if first is not None and len(left) == len(waiting):
-            raise first
+                task.machine.undeclared[node.name] = str(error)
+            else:
+                task.machine.undeclared.pop(node.name, None)
+        if len(left) == len(waiting):  # what nobody uses is no error
+            return
         waiting = left
 
 

@@ -75,7 +75,7 @@ class UrDialect(Dialect):
                 return bool(left) or bool(right)
             case "xor":
                 return bool(left) != bool(right)
-            case "+" | "-" | "*" if isinstance(left, list) or isinstance(right, list):
+            case "+" | "-" | "*" | "/" if isinstance(left, list) or isinstance(right, list):
                 return _elementwise(operator, left, right)
             case "+" if isinstance(left, str) or isinstance(right, str):
                 return text_of(left) + text_of(right)
@@ -99,7 +99,7 @@ class UrDialect(Dialect):
 
 def _elementwise(operator: str, left: Any, right: Any) -> Any:
     if isinstance(left, list) and isinstance(right, list):
-        if len(left) != len(right) or operator == "*":
+        if len(left) != len(right) or operator in "*/":
             raise TypeError("lists of different lengths")
         made = [arithmetic(operator, one, other) for one, other in zip(left, right, strict=True)]
     elif isinstance(left, list):

@@ -103,6 +103,15 @@ END
     assert ended.variables["total"] == 10
 
 
+def test_data_that_cannot_be_declared_is_an_error_only_where_it_is_used(tmp_path: Path) -> None:
+    data = 'DEFDAT M\nDECL CHAR T[8]\nT[]="text"\nDECL INT later=missing+1\nDECL INT n=2\nENDDAT\n'
+    (tmp_path / "m.dat").write_text(data)
+    _, ended = run(tmp_path, "m.src", "DEF m()\nn=n+1\nEND\n")
+    assert (ended.variables["n"], ended.variables["t"]) == (3, "text")
+    with pytest.raises(ProgramError, match=r"later: unsupported: missing at line 4 of m\.dat"):
+        run(tmp_path, "m.src", "DEF m()\nn=later\nEND\n")
+
+
 @pytest.mark.parametrize(
     ("name", "text", "what"),
     [
