@@ -78,6 +78,7 @@ if TYPE_CHECKING:
     from .models.kinova import gen3 as gen3
     from .models.limits import Limits as Limits
     from .models.limits import ToolLimits as ToolLimits
+    from .models.nozzle import nozzle as nozzle
     from .models.parts import read_mesh as read_mesh
     from .models.robot import RobotModel as RobotModel
     from .models.tool import Tool as Tool
@@ -99,6 +100,7 @@ _LAZY = {
     "RobotModel": "models.robot",
     "Tool": "models.tool",
     "ToolLimits": "models.limits",
+    "nozzle": "models.nozzle",
     "suction_cup": "models.cup",
 }
 

@@ -18,6 +18,7 @@ from mutabot_cell.motion.kinematics import Kinematics
 from mutabot_cell.motion.line import Line
 from mutabot_cell.motion.online import JointSteps, OnlineMotion
 from mutabot_cell.motion.planning import Planner
+from mutabot_cell.motion.rounded_path import RoundedPath
 from mutabot_cell.motion.tracking import TrackedBelt, Tracking
 from mutabot_cell.motion.trajectory import Motion
 
@@ -30,6 +31,7 @@ from .move import Move
 from .robot import Robot
 from .simulation import STEPS_PER_TICK, TICK, Simulation
 from .stretch import LONGEST
+from .tool_path import ToolPath
 
 MOST_FELT_SPEED = 0.05
 """Limit of motions that the force sensor decides, m/s (our choice): something as stiff as a table resists
@@ -219,6 +221,26 @@ class Arm:
             ),
             speed=speed,
         )
+
+    def new_path(self) -> ToolPath:
+        """A path for the tool, to be described point by point and travelled without a stop."""
+
+        def where() -> Array:
+            return self.kinematics.tool(self._robot.encoders())[0]
+
+        def begin() -> tuple[Array, Array]:
+            return self.kinematics.tool(self._setpoint)
+
+        return ToolPath(begin, where, self._start_path, lambda: self._simulation.time)
+
+    def _start_path(self, path: RoundedPath, speed: float) -> Move:
+        limit = self._model.tool_limits.speed
+        _check_positive("speed", speed)
+        if speed > limit:
+            raise BadArgument(f"Expected 0 < speed <= {limit} m/s but got speed={speed!r}")
+        self._check_ready()
+        self._check_base()
+        return self._start(self._planner.along(self._setpoint, path, speed / limit))
 
     def track(self, belt: TrackedBelt, since: float | None = None) -> None:
         """Let the tool move with a belt; returns when it does, to within 0.2 mm and 5 mm/s.

@@ -53,7 +53,7 @@ def cell_spec(scene: Scene, robots: Mapping[str, RobotModel]) -> mujoco.MjSpec:
     for loose in scene.parts:
         add_part(spec, loose)
         for prefix, robot in robots.items():
-            if robot.tool is not None:
+            if robot.tool is not None and robot.tool.effector is not None:
                 add_grip(spec, loose, prefix, robot.tool.effector)
         add_surfaces(spec, loose, _surfaces(scene, robots))
     if len(scene.parts) >= MANY:

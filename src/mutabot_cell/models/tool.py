@@ -27,7 +27,7 @@ class Tool:
         point: the tool point in the flange's frame, m: where the tool takes hold.
         turn: orientation of the tool's frame in the flange's frame, a unit quaternion (w, x, y, z).
         palm: of a distance sensor on the tool's axis, seen from the tool point, m; negative behind it.
-        effector: what it takes hold with.
+        effector: what it takes hold with; None for a tool that holds nothing, such as a nozzle.
         file: that it was read from, for pictures: it may hold meshes that the simulation leaves out.
     """
 
@@ -35,7 +35,7 @@ class Tool:
     spec: mujoco.MjSpec
     body: str
     point: tuple[float, float, float]
-    effector: Fingers | SuctionCup
+    effector: Fingers | SuctionCup | None
     turn: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0)
     palm: float = 0.0
     file: Path | None = None

@@ -21,6 +21,7 @@ from mutabot_cell.models.robot import RobotModel
 from .joint_step import JointStep
 from .line import Line
 from .reach import WristReach
+from .rounded_path import RoundedPath
 from .trajectory import Spline
 
 LIMIT_MARGIN = 0.005
@@ -34,6 +35,7 @@ TURN_STRAIGHTNESS = 2e-3
 
 _KNOT_DISTANCE = 0.03
 _KNOT_ANGLE = math.radians(5.0)
+_KNOTS_OF_A_BEND = 4
 _MOST_KNOTS = 512
 _RETRIED_KNOTS = 64
 _LARGEST_KNOT_STEP = 0.5
@@ -81,7 +83,7 @@ class Kinematics:
         mujoco.mj_jacSite(self._model, self._data, jacobian[:3], jacobian[3:], self._site)
         return jacobian
 
-    def follow(self, joints: Array, line: Line) -> Array:
+    def follow(self, joints: Array, line: Line | RoundedPath) -> Array:
         """Joint angles at evenly spaced points of `line`, starting at `joints`: shape (knots, joints), rad.
 
         Between the knots a cubic spline (`trajectory.Spline`) keeps the tool on the line, within
@@ -92,6 +94,7 @@ class Kinematics:
         """
         self._reach.check(line)
         count = max(4, math.ceil(line.length / _KNOT_DISTANCE), math.ceil(line.angle / _KNOT_ANGLE))
+        count = max(count, min(_MOST_KNOTS, math.ceil(_KNOTS_OF_A_BEND * line.length / line.finest)))
         while True:
             try:
                 knots = self._knots(joints, line, count)
@@ -140,7 +143,7 @@ class Kinematics:
         mujoco.mj_jacSite(self._model, self._data, self._turns[:3], self._turns[3:], self._site)
         return float(np.linalg.det(self._turns))
 
-    def _is_straight(self, spline: Spline, line: Line, count: int) -> bool:
+    def _is_straight(self, spline: Spline, line: Line | RoundedPath, count: int) -> bool:
         fractions = (np.arange(count) + 0.5) / count
         for fraction, joints in zip(fractions.tolist(), spline.value(fractions), strict=True):
             position, rotation = self.tool(joints)
@@ -151,7 +154,7 @@ class Kinematics:
                 return False
         return True
 
-    def _knots(self, joints: Array, line: Line, count: int) -> Array:
+    def _knots(self, joints: Array, line: Line | RoundedPath, count: int) -> Array:
         if self._solver is None:
             self._solver = _Solver(self._model)
         knots = np.empty((count + 1, len(joints)))

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from mutabot_cell.geometry import Array, rotation_about, rotation_vector
+
+_NO_TURN = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +32,21 @@ class Line:
     def between(cls, start: Array, rotation: Array, end: Array, end_rotation: Array) -> Line:
         """The line from one tool pose to another, turning the shorter way."""
         return cls(start, rotation, end - start, rotation_vector(rotation.T @ end_rotation))
+
+    @property
+    def numbers(self) -> tuple[Array, ...]:
+        """All that it depends on."""
+        return self.start, self.rotation, self.shift, self.turn
+
+    @property
+    def is_straight(self) -> bool:
+        """Whether the tool's place moves along one straight line and does not turn."""
+        return self.angle < _NO_TURN
+
+    @property
+    def finest(self) -> float:
+        """Length of the shortest bend, m: it has none."""
+        return math.inf
 
     @property
     def length(self) -> float:

@@ -15,6 +15,7 @@ from mutabot_cell.originals import MOTIONS, are_original
 
 from .kinematics import Kinematics
 from .line import Line
+from .rounded_path import RoundedPath
 from .trajectory import Motion, joint_motion, line_motion
 
 
@@ -30,8 +31,8 @@ class Planner:
             numbers = robot.limits, robot.tool_limits, robot.reach
             self._robot = kinematics.fingerprint() + repr(numbers).encode()
 
-    def along(self, joints: Array, line: Line, speed: float) -> Motion:
-        """A motion of the tool along a line.
+    def along(self, joints: Array, line: Line | RoundedPath, speed: float) -> Motion:
+        """A motion of the tool along a line or path.
 
         Args:
             joints: where it starts, shape (joints,), rad.
@@ -47,7 +48,7 @@ class Planner:
             limits = self._limits, self._tool_limits
             return line_motion(knots, line.length, line.angle, PHYSICS_STEP, *limits, speed)
 
-        return self._remembered(plan, joints, line.start, line.rotation, line.shift, line.turn, speed)
+        return self._remembered(plan, joints, *line.numbers, speed)
 
     def between(self, start: Array, end: Array, speed: float) -> Motion:
         """The fastest motion from joint angles to others, shape (joints,) each, rad.

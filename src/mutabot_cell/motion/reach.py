@@ -12,9 +12,9 @@ from mutabot_cell.geometry import Array
 from mutabot_cell.models.robot import RobotModel, SphericalWrist
 
 from .line import Line
+from .rounded_path import RoundedPath
 
 _CHECKS = 41
-_NO_TURN = 1e-9
 
 
 class WristReach:
@@ -45,13 +45,13 @@ class WristReach:
         """
         return float(np.linalg.norm(position + rotation @ self._wrist - self._shoulder))
 
-    def check(self, line: Line) -> None:
-        """Refuse a line on which the wrist would be further from the shoulder than the arm is long.
+    def check(self, line: Line | RoundedPath) -> None:
+        """Refuse a line or path on which the wrist would be further from the shoulder than the arm is long.
 
         Raises:
             MotionRefused: the limit is "reach".
         """
-        if line.angle < _NO_TURN:  # the wrist goes straight, so it is farthest at one of the ends
+        if line.is_straight:  # the wrist goes straight, so it is farthest at one of the ends
             ends = (self.distance(line.position_at(part), line.rotation) for part in (0.0, 1.0))
             if max(ends) <= self.length:
                 return
