@@ -113,6 +113,7 @@ def main() -> int:
     parser.add_argument("--ended", type=int, default=30)
     parser.add_argument("--seed", type=int, default=1)
     given = parser.parse_args()
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it
     began = os.times()
     found = stop_at(given.held, given.ended, given.seed)
     times = os.times()
