@@ -87,7 +87,7 @@ HARDWARE = f"""
 #: seconds that a test sends, for moments that are held and for those that end a campaign
 _LONG, _SHORT = "3.0", "0.4"
 #: seconds after a campaign's first command within which it is stopped
-_WITHIN = 1.2
+_WITHIN = 15.0
 #: seconds between two stops, and that one of them lasts, at most
 _BETWEEN, _LASTS = 0.01, 0.006
 #: seconds that a campaign's end is waited for what may still come
