@@ -9,8 +9,8 @@ class LanguageError(MutabotError):
     """A program cannot be read or run."""
 
 
-class ProgramError(LanguageError):
-    """The program itself stops with an error, as a controller would."""
+class ProgramError(RuntimeError):
+    """The program itself stops with an error, as a controller would: a mutant of it is killed."""
 
 
 class UnsupportedError(LanguageError):

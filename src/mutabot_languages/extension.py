@@ -17,7 +17,6 @@ EXTENSION = Extension(
             "Write mutated robot programs for the maker's own simulator.",
         ),
     },
-    failures={"languages": "mutabot_languages.errors:UnsupportedError"},
     languages={
         "urscript": "mutabot_languages.urscript.language:URSCRIPT",
         "rapid": "mutabot_languages.rapid.language:RAPID",

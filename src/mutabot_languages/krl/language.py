@@ -16,7 +16,7 @@ from mutabot_languages.core.machine import (
     Variable,
 )
 from mutabot_languages.core.tree import ProgramNode
-from mutabot_languages.errors import LanguageError
+from mutabot_languages.errors import LanguageError, ProgramError
 
 from .dialect import KrlDialect, KrlMachine
 from .instructions import FUNCTIONS, IGNORED, spline
@@ -60,7 +60,7 @@ def _prepare(machine: Machine, task: ProgramTask) -> Steps:
         for node, scope in waiting:
             try:
                 yield from _declare(task, node, scope)
-            except LanguageError as error:
+            except (LanguageError, ProgramError) as error:
                 left.append((node, scope))
                 machine.undeclared[_declared(node)] = str(error)
             else:

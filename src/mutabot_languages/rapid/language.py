@@ -13,7 +13,7 @@ from mutabot_languages.core.machine import (
     Steps,
 )
 from mutabot_languages.core.tree import ProgramNode
-from mutabot_languages.errors import LanguageError
+from mutabot_languages.errors import LanguageError, ProgramError
 
 from .dialect import RapidDialect, RapidMachine
 from .instructions import FUNCTIONS, IGNORED
@@ -47,7 +47,7 @@ def _data(task: ProgramTask, waiting: list[tuple[ProgramNode, RoutineScope]]) ->
             try:
                 _watch(node, scope)
                 yield from task.dialect.declare(task, node, scope, is_global=True)
-            except (LanguageError, TypeError, ValueError) as error:
+            except (LanguageError, ProgramError, TypeError, ValueError) as error:
                 left.append((node, scope))
                 task.machine.undeclared[node.name] = str(error)
             else:

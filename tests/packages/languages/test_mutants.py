@@ -103,7 +103,7 @@ def test_they_have_verdicts(engine: str, tmp_path: Path) -> None:
     settings = 'program = ["pick.src", "pick.dat"]\nvocabulary = ["cell"]\ntests = ["test_pick.py"]\n'
     settings += 'families = ["program-text"]\n'
     (tmp_path / "pyproject.toml").write_text(f"[tool.mutabot]\n{settings}")
-    only = ["shift-point", "drop-statement", "swap-motion", "forget-wait"]
+    only = ["other-input", "shift-point", "drop-statement", "swap-motion", "forget-wait"]
     options = [word for name in only for word in ("--only", name)]
     command = [sys.executable, "-m", "mutabot", "run", "--json", "--engine", engine, "-o", "repeats=false"]
     done = subprocess.run([*command, *options], cwd=tmp_path, capture_output=True, text=True, check=False)
@@ -112,6 +112,8 @@ def test_they_have_verdicts(engine: str, tmp_path: Path) -> None:
     verdicts = {text: one["verdict"] for text, one in found.items()}
     assert {one["engine"] for one in found.values()} == {engine}
     assert verdicts["LIN XP1 deleted"] == "killed"
+    # nothing says what the other input is: an error of the program, and none of the tools
+    assert verdicts["$IN[25] → $IN[26]"] == "killed"
     assert verdicts["LIN XP1 → PTP XP1"] == "survived"
     assert verdicts["WAIT FOR $IN[25]==TRUE → WAIT SEC 0"] == "survived"
 
