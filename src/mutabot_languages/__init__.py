@@ -8,8 +8,26 @@ def test_pick(cell):
 
 from __future__ import annotations
 
+import importlib
+from typing import TYPE_CHECKING
+
 from .errors import LanguageError as LanguageError
 from .errors import ProgramError as ProgramError
 from .errors import UnsupportedError as UnsupportedError
-from .loader import RobotProgram as RobotProgram
-from .loader import load as load
+
+if TYPE_CHECKING:
+    from .loader import RobotProgram as RobotProgram
+    from .loader import load as load
+
+#: what needs the cell: whoever asks what this package brings does not load that
+_LAZY = ("RobotProgram", "load")
+
+__all__ = ["LanguageError", "ProgramError", "UnsupportedError", *_LAZY]  # noqa: PLE0604
+
+
+def __getattr__(name: str) -> object:
+    if name not in _LAZY:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(importlib.import_module(".loader", __name__), name)
+    globals()[name] = value
+    return value

@@ -10,11 +10,13 @@ EXTENSION = Extension(
     commands={
         "diff": Described(
             "mutabot_languages.mutation.command:diff",
-            "Show mutants of robot programs as differences of their text.",
+            "Show mutants of robot programs as changes of their text.",
+            before="operators",
         ),
         "export": Described(
             "mutabot_languages.mutation.command:export",
-            "Write mutated robot programs for the maker's own simulator.",
+            "Write mutated robot programs for the maker's simulator.",
+            before="operators",
         ),
     },
     languages={

@@ -13,7 +13,7 @@ EXTENSION = Extension(
     commands={
         "patches": Described(
             "mutabot_patches.command:patches",
-            "Write the reverted fixes of the repository's history as patches.",
+            "Write reverted fixes of the history as patches.",
             before="run",
         )
     },

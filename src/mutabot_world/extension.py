@@ -13,7 +13,7 @@ EXTENSION = Extension(
     commands={
         "world": Described(
             "mutabot_world.command:world",
-            "Show how large a disturbance of the world the tests notice, and which ones they miss.",
+            "Show which disturbances of the world the tests notice.",
             before="results",
         )
     },

@@ -81,8 +81,8 @@ def test_help_lists_commands_in_the_order_in_which_they_are_used(capsys: pytest.
     assert main(["--help"]) == 0
     listed = capsys.readouterr().out.partition("Commands:\n")[2].partition("\n\n")[0].splitlines()
     assert [line.split()[0] for line in listed] == [
-        "init", "check", "list", "operators", "patches", "run", "merge", "replay", "suggest", "world",
-        "results", "show", "accept", "thresholds", "report", "live", "motion",
+        "init", "check", "list", "diff", "export", "operators", "patches", "run", "merge", "replay",
+        "suggest", "world", "results", "show", "accept", "thresholds", "report", "live", "motion",
     ]  # fmt: skip
 
 

@@ -15,7 +15,6 @@ wait = 0.8
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -54,6 +53,8 @@ class CellMap:
     @classmethod
     def read(cls, path: Path) -> CellMap:
         """Read a file. Raises LanguageError, naming the file, the name and what would be right."""
+        import tomllib  # noqa: PLC0415  # reports name languages, and read no file
+
         try:
             data = tomllib.loads(path.read_text(encoding="utf-8"))
         except (OSError, ValueError) as error:
