@@ -11,6 +11,7 @@ from types import ModuleType
 import pytest
 
 from mutabot import extensions
+from mutabot.languages.registry import languages_of
 from mutabot.runtime.evidence import failure_in
 
 #: prints what is brought
@@ -114,3 +115,18 @@ def test_exceptions_that_a_package_names_tell_of_the_tools_in_processes_of_the_t
     extensions.use({"failures": {"unsupported": "lab_simulator:UnsupportedError"}})
     assert failure_in(UnsupportedError("no contacts"), ()) == "UnsupportedError: no contacts"
     assert failure_in(RuntimeError("no contacts"), ()) is None
+
+
+@pytest.mark.needs("languages")
+def test_processes_of_the_tests_are_told_of_the_programs_own_languages_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(extensions._Told, "parts", None)
+    (tmp_path / "cell").mkdir()
+    for name in ("cell/pick.mod", "cell/mission.py", "other.src"):
+        (tmp_path / name).write_text("")
+    assert languages_of(tmp_path, ("cell/mission.py",)) == frozenset()
+    assert languages_of(tmp_path, ("cell",)) == {"rapid"}
+    assert languages_of(tmp_path, ("cell", "other.src")) == {"rapid", "krl"}
+    assert extensions.told_to_processes()["languages"] == {}
+    assert [*extensions.told_to_processes({"rapid"})["languages"]] == ["rapid"]

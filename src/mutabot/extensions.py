@@ -262,9 +262,19 @@ def not_installed(name: str, kind: str) -> str | None:
     return f"comes with the package {package}, which is not installed"
 
 
-def told_to_processes() -> dict[str, dict[str, str]]:
-    """The references that processes of the tests need, by kind and name."""
-    return {kind: {name: part.reference for name, part in brought(kind).items()} for kind in _OF_PROCESSES}
+def told_to_processes(languages: Collection[str] = ()) -> dict[str, dict[str, str]]:
+    """The references that processes of the tests need, by kind and name.
+
+    ``languages``: those of the program beside Python. What reads others need not be there, nor be loaded.
+    """
+    return {
+        kind: {
+            name: part.reference
+            for name, part in brought(kind).items()
+            if kind != "languages" or name in languages
+        }
+        for kind in _OF_PROCESSES
+    }
 
 
 def use(parts: Mapping[str, Mapping[str, str]]) -> None:

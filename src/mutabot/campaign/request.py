@@ -19,6 +19,7 @@ from mutabot.families import USUAL
 from mutabot.faults import Project
 from mutabot.frozen import frozen
 from mutabot.journal.files import HOME, JOURNAL
+from mutabot.languages.registry import languages_of
 from mutabot.model import Moment, Probe, Vocabulary
 from mutabot.model.job import Job
 
@@ -261,7 +262,7 @@ class Request:
             private_files=self.configuration.private_files,
             oracle_nodes=self.configuration.oracle_nodes,
             evidence=self.evidence,
-            extensions=told_to_processes(),
+            extensions=told_to_processes(languages_of(self.root, self.configuration.program)),
             guards=self.guards,
             **details,
         )

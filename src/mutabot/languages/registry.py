@@ -39,6 +39,16 @@ def language_of(file: str) -> str | None:
     return next((one for one, found in _by_language().items() if name.endswith(found.suffixes)), None)
 
 
+@cache
+def languages_of(root: Path, program: tuple[str, ...]) -> frozenset[str]:
+    """The names of a program's languages beside Python. ``program``: files and folders, relative to ``root``.
+
+    Raises ExtensionError for a language of a package that cannot be loaded.
+    """
+    found = {language_of(file) for file in program_files(root, program)}
+    return frozenset(name for name in found if name is not None and name != "python")
+
+
 def front_end_of(file: str) -> FrontEnd:
     """The front end for a file, by its suffix; Python's for unknown suffixes."""
     name = file.lower()

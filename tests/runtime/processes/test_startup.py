@@ -99,6 +99,19 @@ def test_a_python_that_cannot_load_us_says_so(python: str, tmp_path: Path) -> No
     assert only_event(folder).unable is not None
 
 
+def test_a_process_that_cannot_join_says_so_and_runs_as_ever(tmp_path: Path) -> None:
+    script, ours = tmp_path / "mission.py", tmp_path / "ours"
+    script.write_text("print('it ran')")
+    ours.mkdir()
+    (ours / "broken_session.py").write_text("def join(folder):\n    raise RuntimeError('no such package')\n")
+    folder = folder_of(
+        tmp_path / "home", "join broken_session", f"path {ours}", "own broken_session", f"file {script}"
+    )
+    done = run(sys.executable, str(script), folder=folder)
+    assert (done.stdout, done.stderr) == ("it ran\n", "")
+    assert "no such package" in (only_event(folder).unable or "")
+
+
 def test_a_sitecustomize_that_is_there_already_is_loaded_as_ever(tmp_path: Path) -> None:
     theirs = tmp_path / "theirs"
     theirs.mkdir()

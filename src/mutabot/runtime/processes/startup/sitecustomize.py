@@ -72,11 +72,9 @@ def _wake(finder: _Finder) -> None:
         _tell_unable(finder, "Python %d.%d is older than 3.11" % sys.version_info[:2])
         return
     try:
-        module = __import__(finder.join, fromlist=["join"])
+        __import__(finder.join, fromlist=["join"]).join(finder.folder)
     except Exception as error:
         _tell_unable(finder, "mutabot cannot be loaded: %r" % (error,))
-    else:
-        module.join(finder.folder)
 
 
 def _tell_unable(finder: _Finder, why: str) -> None:
