@@ -103,6 +103,7 @@ bench: $(READY)
 	$(RUN) benchmarks/example_seeds.py pick_and_place 100
 	$(RUN) benchmarks/example_seeds.py tracking 30
 	$(RUN) benchmarks/example_seeds.py palletising 5
+	$(RUN) benchmarks/example_seeds.py dispensing 100
 	$(RUN) benchmarks/stories_judged.py
 	$(RUN) benchmarks/stories_judged.py --bare --sample 60
 	$(RUN) benchmarks/html_report.py

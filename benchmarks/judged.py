@@ -36,6 +36,7 @@ EXAMPLES = {
     "pick_and_place": {"robot": 40, "graded": 120, "conventional": 40, "catalogue": 60},
     "tracking": {"robot": 40},
     "palletising": {"robot": 40},
+    "dispensing": {"robot": 40},
     "ros1": {"robot": 25, "middleware": 35, "conventional": 10},
     "ros2": {"robot": 25, "middleware": 35, "conventional": 10},
     "ros2_docking": {"robot": 23, "conventional": 10},

@@ -29,7 +29,7 @@ PROJECT = {
     "pyproject.toml": """
         [tool.mutabot]
         program = ["cell"]
-        families = ["bugs"]
+        families = ["edits"]
         """,
     "cell/__init__.py": "",
     "cell/limits.py": """
@@ -74,11 +74,11 @@ PACKAGE = {
         from mutabot.api.faults import Activation, Extension, FaultProvider, Planned, PlannedMutant
         from mutabot.api.faults import Rule, Site
 
-        EXTENSION = Extension(interface=2, faults={"bugs": "patches_of_bugs:Patches"})
+        EXTENSION = Extension(interface=2, faults={"edits": "patches_of_bugs:Patches"})
 
         class Patch(Rule):
             name = "patch"
-            family = "bugs"
+            family = "edits"
             summary = "Files are as they were before a bug was fixed."
 
         def hunks(root, texts):
@@ -90,8 +90,8 @@ PACKAGE = {
                         yield path, (min(first + 1, last), 0, last, len(before[last - 1].encode()))
 
         class Patches(FaultProvider):
-            name = "bugs"
-            families = ("bugs",)
+            name = "edits"
+            families = ("edits",)
             location = "patch"
 
             def rules(self):
