@@ -51,9 +51,13 @@ class ActiveEdits:
     reached: Callable[[], None]
     missed: list[str] = field(default_factory=list)
 
+    def is_of(self, path: Path) -> bool:
+        """Whether a file is meant, by its path."""
+        return f"/{path.as_posix()}".endswith(f"/{self.file}")
+
     def concern(self, path: Path, content: bytes) -> bool:
         """Whether a file that is loaded is meant."""
-        if not f"/{path.as_posix()}".endswith(f"/{self.file}"):
+        if not self.is_of(path):
             return False
         if digest(content) != self.digest:
             self.missed.append(f"{self.file} is not as it was when the mutant was planned")
@@ -62,9 +66,20 @@ class ActiveEdits:
 
 
 class _Active:
-    """The edits of this process; empty for the original."""
+    """The edits of this process, empty for the original, and the files that were read for a run."""
 
     edits: tuple[ActiveEdits, ...] = ()
+    read: set[Path] = set()  # noqa: RUF012  # of the process
+
+
+def note_read(path: Path) -> None:
+    """Note that a file was read for a run of its program."""
+    _Active.read.add(path)
+
+
+def were_read() -> frozenset[Path]:
+    """The files that this process, or the one that it was forked from, has read for runs."""
+    return frozenset(_Active.read)
 
 
 def active() -> tuple[ActiveEdits, ...]:

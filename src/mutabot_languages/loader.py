@@ -15,7 +15,7 @@ from .core.signals import CellMap
 from .core.station import Station
 from .core.text import decode
 from .core.tree import ProgramNode
-from .edits import ActiveEdits, active, applied
+from .edits import ActiveEdits, active, applied, note_read
 from .errors import LanguageError
 from .registry import LANGUAGES, language_for
 
@@ -99,6 +99,7 @@ class RobotProgram:
         except OSError as error:
             raise LanguageError(f"{file}: the program cannot be read: {error.strerror}") from None
         text, _ = decode(content)
+        note_read(file.resolve())
         found = [one for one in active() if one.concern(file.resolve(), content)]
         text = applied(text, [edit for one in found for edit in one.edits])
         parsed = self.language.read(file.name, text)

@@ -11,7 +11,7 @@ from collections.abc import Callable, Generator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
-from mutabot_languages.errors import ProgramError, UnsupportedError
+from mutabot_languages.errors import LanguageError, ProgramError, UnsupportedError
 
 from .station import TICK, ProgramPlace, Station
 from .text import SourceText
@@ -260,18 +260,15 @@ class ProgramTask:
                 yield from handler(self, node, scope)
             else:
                 yield from self.value(node, scope)
-        except (
-            TypeError,
-            ValueError,
-            ZeroDivisionError,
-            IndexError,
-            KeyError,
-            OverflowError,
-            AttributeError,
-        ) as error:
+        except (TypeError, ValueError, ZeroDivisionError, OverflowError) as error:
             if isinstance(error, self.machine.station_errors):
                 raise
             raise self.error(node, scope, f"{type(error).__name__}: {error}") from error
+        except (AttributeError, LookupError) as error:
+            if isinstance(error, self.machine.station_errors):
+                raise
+            # no operation of a program raises these: it is not known what a controller would do
+            raise self.unsupported(node, scope, f"{node.kind} ({type(error).__name__}: {error})") from error
 
     def _assign(self, node: ProgramNode, scope: RoutineScope) -> Steps:
         target, value = node.parts
@@ -437,7 +434,10 @@ class ProgramTask:
 
     def _opaque(self, node: ProgramNode, scope: RoutineScope) -> Steps:
         found = scope.unit.source.text[node.start : node.end].strip().splitlines()
-        raise self.error(node, scope, f"this could not be read: {found[0][:60] if found else ''}")
+        raise LanguageError(
+            f"{self.place(node, scope)}: this could not be read: {found[0][:60] if found else ''} "
+            f"(in {scope.routine})"
+        )
         yield  # pragma: no cover
 
     def _nothing(self, node: ProgramNode, scope: RoutineScope) -> Steps:
@@ -477,7 +477,8 @@ class ProgramTask:
         if found is not None:
             return found.value
         if node.name in self.machine.undeclared:
-            raise self.error(node, scope, f"{node.name}: {self.machine.undeclared[node.name]}")
+            why = self.machine.undeclared[node.name]
+            raise type(why)(f"{self.place(node, scope)}: {node.name}: {why} (in {scope.routine})")
         if node.name in self.dialect.constants:
             return copy.deepcopy(self.dialect.constants[node.name])
         return self.dialect.name(self, node, scope)
@@ -739,7 +740,7 @@ class Machine:
         self.routines: dict[str, Routine] = {}
         self.tasks: dict[str, Steps] = {}
         self.running: dict[int, Routine] = {}
-        self.undeclared: dict[str, str] = {}
+        self.undeclared: dict[str, LanguageError | ProgramError] = {}
         self._until, self._end = until, station.time + limit
         self._limit = limit
         self._left = MOST_STEPS

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
-from mutabot_languages.errors import ProgramError
+from mutabot_languages.errors import ProgramError, UnsupportedError
 
 from .frames import IDENTITY, Frame
 from .inverse import joint_target
@@ -185,14 +185,14 @@ class Station:
             self.call(site, belt.run, float(entry.get("speed", 0.1)) * float(value))
 
     def read(self, site: ProgramPlace, name: str) -> Any:
-        """Read an input. Raises ProgramError if nothing says what it is."""
+        """Read an input. Raises UnsupportedError if nothing says what it is."""
         key = signal_name(name)
         if key in self._inputs:
             found = self._inputs[key]
             return self.call(site, found) if callable(found) else found
         entry = self._map.inputs.get(key)
         if entry is None:
-            raise ProgramError(
+            raise UnsupportedError(
                 f'nothing says what the input {name} is: name it in the cell map ([in."{name}"]) or in '
                 "run(cell, inputs={…})"
             )

@@ -62,7 +62,7 @@ def _prepare(machine: Machine, task: ProgramTask) -> Steps:
                 yield from _declare(task, node, scope)
             except (LanguageError, ProgramError) as error:
                 left.append((node, scope))
-                machine.undeclared[_declared(node)] = str(error)
+                machine.undeclared[_declared(node)] = error
             else:
                 machine.undeclared.pop(_declared(node), None)
         if len(left) == len(waiting):  # what nobody uses is no error

@@ -210,7 +210,13 @@ class KrlRewriter(Rewriter):
             yield TextChange("invert-input", node, self.put(node, f"(NOT {self.written(node)})"))
         number = node.parts[1] if node.kind == "index" else node
         if number.kind == "number":
-            yield TextChange("other-input", node, self.put(number, f"{int(number.value) + 1}"))
+            alike = (
+                one.parts[1]
+                for one, _ in self._nodes()
+                if one.kind == node.kind == "index" and one.parts[0].name == node.parts[0].name
+            )
+            for other in self.next_number(number, alike):
+                yield TextChange("other-input", node, self.put(number, other))
 
     def _form_data(self, node: ProgramNode, value: ProgramNode) -> Iterator[TextChange]:
         """Tool and base of an inline form."""

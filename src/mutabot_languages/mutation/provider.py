@@ -27,6 +27,8 @@ from .rules import BY_NAME, CONVENTIONAL, FAMILY, RULES
 
 PROVIDER = "languages"
 ACTIVE = "mutabot_languages.mutation.active:TextDifference"
+#: what runs programs: a process is the mutant as soon as that is imported
+_AWAITED = "mutabot_languages.loader"
 _ORDER = (FAMILY, CONVENTIONAL)
 
 
@@ -59,19 +61,20 @@ class LanguageFaults(FaultProvider):
         """The mutants of all files of the program that are of these languages."""
         self._root, self._files = project.root, project.program_files()
         planned = Planned()
-        reached = _tests_by_file(original)
+        is_early = _is_run_early(original)
         sites: set[Site] = set()
         for program in read_program(project.root, self._files):
             for one in mutants_of(program):
                 rule = BY_NAME[one.difference.operator]
                 if not project.asks_for(rule):
                     continue
-                planned.mutants.append(self._planned(rule, one))
+                planned.mutants.append(self._planned(rule, one, is_early=is_early))
                 sites.add(one.site)
         for site in sorted(sites):
             for round, tests in enumerate(original.tests):
-                seen = reached.get(round)
-                planned.reach(round, site, tests if not seen else [test for test in tests if test in seen])
+                planned.reach(
+                    round, site, tests
+                )  # which ones run the program, or look at a run, is not known
         return planned
 
     def at_magnitude(self, planned: PlannedMutant, magnitude: float) -> PlannedMutant:
@@ -83,10 +86,11 @@ class LanguageFaults(FaultProvider):
             for one in mutants_of(program, Sizes.only(magnitude)):
                 is_same = one.difference.operator == mutant.operator and one.site == mutant.site
                 if is_same and one.difference.variant == mutant.variant.rstrip("0123456789.medg"):
-                    return self._planned(BY_NAME[mutant.operator], one)
+                    is_early = planned.active is None or not planned.active.keys
+                    return self._planned(BY_NAME[mutant.operator], one, is_early=is_early)
         return super().at_magnitude(planned, magnitude)
 
-    def _planned(self, rule: Rule, one: PlannedText) -> PlannedMutant:
+    def _planned(self, rule: Rule, one: PlannedText, *, is_early: bool) -> PlannedMutant:
         difference = one.difference
         variant = variant_of(difference)
         made = self.mutant(
@@ -104,23 +108,21 @@ class LanguageFaults(FaultProvider):
             "digest": digest(one.program.content),
             "edits": [[edit.start, edit.end, edit.text] for edit in difference.edits],
         }
-        active = Activation(ACTIVE, data, awaits=Activation.FIRST_TEST, is_of_tests=True)
+        # before any test nothing forks: a process of its own is the mutant from its beginning
+        keys = () if is_early else (Activation.EACH_TEST,)
+        active = Activation(ACTIVE, data, keys, awaits=_AWAITED)
         order = (_ORDER.index(rule.family),)
         return PlannedMutant(made, difference.reason, order=order, does=data, active=active)
 
 
-def _tests_by_file(original: Original) -> dict[int, set[str]]:
-    """The tests of each round in which a program of these languages has called the cell."""
+def _is_run_early(original: Original) -> bool:
+    """Whether a program of these languages has called the cell before any test."""
     from mutabot_languages.registry import language_for  # noqa: PLC0415
 
-    found: dict[int, set[str]] = {}
-    for place, hits in original.hits.items():
-        if language_for(place.site.span.file) is None:
-            continue
-        for hit in hits:
-            round, test = hit.where
-            found.setdefault(round, set()).add(test)
-    return found
+    return any(
+        language_for(place.site.span.file) is not None and any(not hit.where[1] for hit in hits)
+        for place, hits in original.hits.items()
+    )
 
 
 def variant_of(difference: TextChange) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -98,6 +98,15 @@ class Rewriter:
     def put(self, node: ProgramNode, text: str) -> tuple[Edit, ...]:
         """The edit that puts a text in the place of a node."""
         return (Edit(node.start, node.end, text),)
+
+    def next_number(self, number: ProgramNode, alike: Iterable[ProgramNode]) -> Iterator[str]:
+        """Yield the next of the numbers that stand in places like this one, if there is another.
+
+        Of what a program nowhere names, nothing says what it would be.
+        """
+        numbers = {int(one.value) for one in alike if one.kind == "number"}
+        others = sorted(numbers - {int(number.value)}, key=lambda one: (one < number.value, one))
+        yield from map(str, others[:1])
 
     def without(self, node: ProgramNode) -> tuple[Edit, ...]:
         """The edit that takes a statement out."""

@@ -105,7 +105,7 @@ class InvertInput(_TextRule):
 class OtherInput(_TextRule):
     """Another input is read.
 
-    Where: inputs that have a number.
+    Where: inputs that have a number, if the program reads another such one.
 
     Stands for: A wrong number, or sensors that were swapped.
     """

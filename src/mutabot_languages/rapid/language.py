@@ -47,9 +47,12 @@ def _data(task: ProgramTask, waiting: list[tuple[ProgramNode, RoutineScope]]) ->
             try:
                 _watch(node, scope)
                 yield from task.dialect.declare(task, node, scope, is_global=True)
-            except (LanguageError, ProgramError, TypeError, ValueError) as error:
+            except (TypeError, ValueError) as error:
                 left.append((node, scope))
-                task.machine.undeclared[node.name] = str(error)
+                task.machine.undeclared[node.name] = ProgramError(str(error))
+            except (LanguageError, ProgramError) as error:
+                left.append((node, scope))
+                task.machine.undeclared[node.name] = error
             else:
                 task.machine.undeclared.pop(node.name, None)
         if len(left) == len(waiting):  # what nobody uses is no error

@@ -152,8 +152,9 @@ class UrRewriter(Rewriter):
         yield TextChange("invert-input", node, self.put(node, f"(not {self.written(node)})"))
         number = node.parts[0]
         if number.kind == "number":
-            other = int(number.value) + 1 if int(number.value) < 7 else 0
-            yield TextChange("other-input", node, self.put(number, str(other)))
+            alike = (one.parts[0] for one, _ in self._nodes() if one.kind == "call" and one.name == node.name)
+            for other in self.next_number(number, alike):
+                yield TextChange("other-input", node, self.put(number, other))
 
     def is_pose(self, target: ProgramNode, depth: int = 0) -> bool:
         """Whether an expression is a pose, by its last assignment."""

@@ -41,7 +41,7 @@ def test_outputs_move_the_gripper_as_the_cell_map_says(tmp_path: Path) -> None:
 
 
 def test_an_input_that_nobody_explains_is_an_error_that_says_how(tmp_path: Path) -> None:
-    with pytest.raises(ProgramError, match=r"\[in\.\"standard_digital_in\[2\]\"\]"):
+    with pytest.raises(UnsupportedError, match=r"\[in\.\"standard_digital_in\[2\]\"\]"):
         run(tmp_path, "a.script", "x = get_standard_digital_in(2)\n")
 
 
@@ -108,7 +108,7 @@ def test_data_that_cannot_be_declared_is_an_error_only_where_it_is_used(tmp_path
     (tmp_path / "m.dat").write_text(data)
     _, ended = run(tmp_path, "m.src", "DEF m()\nn=n+1\nEND\n")
     assert (ended.variables["n"], ended.variables["t"]) == (3, "text")
-    with pytest.raises(ProgramError, match=r"later: unsupported: missing at line 4 of m\.dat"):
+    with pytest.raises(UnsupportedError, match=r"later: unsupported: missing at line 4 of m\.dat"):
         run(tmp_path, "m.src", "DEF m()\nn=later\nEND\n")
 
 

@@ -213,6 +213,16 @@ def test_patches_that_change_functions_alone_are_forked_and_replay_says_the_same
     assert {verdict for verdict, _ in ends[0].values()} == {"killed", "survived", "not covered"}
 
 
+def test_functions_that_the_program_has_frozen_are_patched_in_a_fork(project: Path, tmp_path: Path) -> None:
+    # the collector does not tell of objects that are frozen
+    (project / "conftest.py").write_text("import gc\n\nimport cell.move\n\ngc.freeze()\n")
+    names = [name for name in FUNCTIONS if _plain_fails(project, name, tmp_path)]
+    assert names
+    words = [word for name in names for word in ("--only", f"*{name}.patch*")]
+    done = mutabot(None, project, "run", "--json", "--engine", "fork", "-o", "repeats=false", *words)
+    assert {one["rounds"][0]["verdict"] for one in by_name(done.stdout).values()} == {"killed"}
+
+
 def test_without_a_patch_the_setting_is_named(tmp_path: Path) -> None:
     folder = write(tmp_path, PROJECT)
     done = mutabot(None, folder, "list")

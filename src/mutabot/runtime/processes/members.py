@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from mutabot.extensions import brought
 from mutabot.model import events
+from mutabot.model.activation import Activation
 from mutabot.model.event_file import FOLDER
 from mutabot.model.fold import ChildRecord, Children, Known, calls_of, fold, is_alive
 from mutabot.runtime.processes.environment import Announced, ProcessWatch, carry, write_wake
@@ -130,6 +131,8 @@ def _write_wake(folder: str, job: Job) -> None:
         names.update(nodes if operation.named is not None else [_top(operation.target)])
     if job.vocabulary.clock is not None:
         names.add(_top(job.vocabulary.clock.tick))
+    awaited = {one.awaits for one in job.active.values()}
+    names.update(map(_top, awaited - {Activation.AT_ONCE, Activation.FIRST_TEST, Activation.FIRST_TICK}))
     files = [os.path.realpath(os.path.join(job.root, path)) for path in (*job.program, *job.oracle)]
     for path in (*job.program, *job.oracle):
         names.update(part.removesuffix(".py") for part in path.split("/") if part not in (".", "..", ""))
