@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from .core.language import RobotLanguage
-from .core.machine import ProgramUnit
 from .core.schedule import TaskSchedule
+from .core.scope import ProgramUnit
 from .core.signals import CellMap
 from .core.station import Station
 from .core.text import decode
@@ -83,7 +83,7 @@ class RobotProgram:
         units = [unit for file in self.files for unit in [self._unit(file)]]
         machine = self.language.machine(self.language.dialect(), station, units, until, limit)
         began = station.time
-        task = machine.task(_MAIN)
+        task = self.language.task(machine, _MAIN)
         schedule = TaskSchedule(machine, seed)
         for steps in (self.language.prepare(machine, task), self.language.main(machine, task, routine)):
             machine.start(_MAIN, steps)

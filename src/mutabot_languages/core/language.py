@@ -8,9 +8,11 @@ from pathlib import Path
 from types import FrameType
 from typing import Any
 
-from .machine import Dialect, Machine, ProgramTask, Steps
+from .machine import Dialect, Machine
 from .parser import ParsedFile, StatementParser
+from .scope import Steps
 from .station import Station
+from .task import ProgramTask
 from .text import SourceText, TextSpan, decode
 from .tree import STATEMENTS, ProgramNode
 
@@ -32,6 +34,7 @@ class RobotLanguage:
         prepare: makes a run ready, before its first task starts: generators of operations are not allowed.
         main: the steps of the main task, given the run and the name of a routine, which may be empty.
         machine: what runs it.
+        task: one of its threads.
         beside: other files that belong to a file by their names.
     """
 
@@ -42,6 +45,7 @@ class RobotLanguage:
     prepare: Callable[[Machine, ProgramTask], Steps]
     main: Callable[[Machine, ProgramTask, str], Steps]
     machine: type[Machine] = Machine
+    task: type[ProgramTask] = ProgramTask
     beside: Callable[[Path], list[Path]] = lambda file: []
 
     def text_of(self, content: bytes) -> str:

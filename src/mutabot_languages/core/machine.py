@@ -1,4 +1,4 @@
-"""The machine: it carries out the tree of any language, a generator for each task, in simulated time.
+"""The machine: it works out the expressions of any language, in simulated time.
 
 A task yields a ``TaskOperation`` whenever time has to pass: a motion or a wait. Which task goes on when is
 decided by ``schedule.TaskSchedule``. What a name means says the ``Dialect``.
@@ -7,131 +7,24 @@ decided by ``schedule.TaskSchedule``. What a name means says the ``Dialect``.
 from __future__ import annotations
 
 import copy
+import operator
 from collections.abc import Callable, Generator, Mapping
-from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 from mutabot_languages.errors import LanguageError, ProgramError, UnsupportedError
 
+from .scope import ControlFlow, ProgramUnit, Routine, RoutineScope, Steps, TaskOperation, Variable
 from .station import TICK, ProgramPlace, Station
-from .text import SourceText
 from .tree import ProgramNode
 
-#: statements that a program may carry out in all, and loops without time passing until a tick does
+#: statements that a program may carry out in all
 MOST_STEPS = 2_000_000
-_IDLE_LOOPS = 20
 _DEEPEST_CALLS = 60
-
-
-@dataclass(frozen=True, slots=True)
-class TaskOperation:
-    """What a task waits for.
-
-    Attributes:
-        kind: ``move``, ``wait`` or ``until``.
-        site: the part of the program.
-        motion: of a motion: the arm's method, its arguments and a part of its speed.
-        seconds: of a wait; of ``until``, after which it ends anyway.
-        condition: what is waited for.
-    """
-
-    kind: str
-    site: ProgramPlace
-    motion: tuple[str, tuple[Any, ...], float] | None = None
-    seconds: float = 0.0
-    condition: Callable[[], bool] | None = None
-
-
-Steps = Generator[TaskOperation, Any, Any]
-
-
-class Variable:
-    """A place for a value."""
-
-    __slots__ = ("type", "value")
-
-    def __init__(self, value: Any = None, type: str = "") -> None:
-        self.value, self.type = value, type
-
-
-class Structure(dict[str, Any]):
-    """A structure: its components by name, in the order of its type."""
-
-    type = ""
-
-    @classmethod
-    def of(cls, type: str, components: Mapping[str, Any]) -> Structure:
-        """A structure of a type."""
-        made = cls(components)
-        made.type = type
-        return made
-
-    def __deepcopy__(self, memo: dict[int, Any]) -> Structure:
-        return Structure.of(self.type, {name: copy.deepcopy(one, memo) for name, one in self.items()})
-
-
-@dataclass(slots=True)
-class ProgramUnit:
-    """A file that is being run.
-
-    Attributes:
-        path: where it stands, as front ends say it.
-        source: its text.
-        tree: what stands in it.
-        names: its own variables.
-        watched: nodes by their starts of whose execution somebody is told.
-    """
-
-    path: str
-    source: SourceText
-    tree: ProgramNode
-    names: dict[str, Variable] = field(default_factory=dict)
-    watched: Mapping[int, Callable[[], None]] = field(default_factory=dict)
-
-
-@dataclass(slots=True)
-class Routine:
-    """A routine and the file it stands in."""
-
-    node: ProgramNode
-    unit: ProgramUnit
-
-
-class RoutineScope:
-    """What a running routine knows.
-
-    Attributes:
-        unit: the file it stands in.
-        routine: its name, as sites have it.
-        names: its variables.
-        outer: of the routine around it, if it stands in one.
-        given: names of its optional parameters that got an argument.
-    """
-
-    __slots__ = ("given", "names", "outer", "retry", "routine", "routines", "unit")
-
-    def __init__(self, unit: ProgramUnit, routine: str, outer: RoutineScope | None = None) -> None:
-        self.unit, self.routine, self.outer = unit, routine, outer
-        self.names: dict[str, Variable] = {}
-        self.given: set[str] = set()
-        self.routines: dict[str, Routine] = {}
-        self.retry = 0
-
-
-class ControlFlow(Exception):  # noqa: N818  (never leaves the machine)
-    """Ends a loop, a routine or the program."""
-
-    def __init__(self, kind: str, value: Any = None) -> None:
-        super().__init__(kind)
-        self.kind, self.value = kind, value
-
-
-class ProgramRaised(Exception):  # noqa: N818  (as above)
-    """An error that the program raises itself, by its number."""
-
-    def __init__(self, number: Any, text: str) -> None:
-        super().__init__(text)
-        self.number = number
+#: what operators that all languages have make of two numbers
+OF_NUMBERS: Mapping[str, Callable[[Any, Any], Any]] = {
+    "+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv,
+    "<": operator.lt, ">": operator.gt, "<=": operator.le, ">=": operator.ge,
+}  # fmt: skip
 
 
 class Dialect:
@@ -150,19 +43,19 @@ class Dialect:
     functions: Mapping[str, Callable[..., Any]] = {}
     ignored: frozenset[str] = frozenset()
 
-    def declare(self, task: ProgramTask, node: ProgramNode, scope: RoutineScope, *, is_global: bool) -> Steps:
+    def declare(self, task: Evaluation, node: ProgramNode, scope: RoutineScope, *, is_global: bool) -> Steps:
         """Make the variable of a declaration."""
         raise NotImplementedError
 
-    def name(self, task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Any:
+    def name(self, task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Any:
         """The value of a name that is no variable. Raises UnsupportedError."""
         raise task.unsupported(node, scope)
 
-    def index(self, task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Any:
+    def index(self, task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Any:
         """The value of an index of a name that is no variable; NotImplemented if it is none of these."""
         return NotImplemented
 
-    def assign(self, task: ProgramTask, target: ProgramNode, value: Any, scope: RoutineScope) -> Any:
+    def assign(self, task: Evaluation, target: ProgramNode, value: Any, scope: RoutineScope) -> Any:
         """Set something that is no variable; NotImplemented if it is none of these."""
         return NotImplemented
 
@@ -174,7 +67,7 @@ class Dialect:
         """The value of a unary operation."""
         return -value if operator == "-" else value if operator == "+" else not self.truth(value)
 
-    def literal(self, task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    def literal(self, task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
         """The value of a list, a pose or an aggregate."""
         raise NotImplementedError
 
@@ -195,8 +88,77 @@ class Dialect:
         return False
 
 
-class ProgramTask:
-    """One thread of a program.
+class Machine:
+    """A run of a program.
+
+    Args:
+        dialect: of its language.
+        station: the cell.
+        units: its files.
+        until: ends the run where it holds, between two statements.
+        limit: simulated seconds after which it is an error to be still running.
+    """
+
+    def __init__(
+        self,
+        dialect: Dialect,
+        station: Station,
+        units: list[ProgramUnit],
+        until: Callable[[], bool] | None,
+        limit: float,
+    ) -> None:
+        self.dialect, self.station, self.units = dialect, station, units
+        self.globals: dict[str, Variable] = {}
+        self.routines: dict[str, Routine] = {}
+        self.tasks: dict[str, Steps] = {}
+        self.running: dict[int, Routine] = {}
+        self.undeclared: dict[str, LanguageError | ProgramError] = {}
+        self._until, self._end = until, station.time + limit
+        self._limit = limit
+        self._left = MOST_STEPS
+        self._sites: dict[tuple[int, int], ProgramPlace] = {}
+        errors = type(station.cell).__mro__[0].__module__
+        self.station_errors = _cell_errors(errors)
+
+    def step(self, node: ProgramNode, scope: RoutineScope) -> None:
+        """Count a statement. Raises ProgramError when there were too many, or it takes too long."""
+        self._left -= 1
+        source = scope.unit.source
+        if self._left < 0:
+            raise ProgramError(f"{source.name}: more than {MOST_STEPS} statements: it may never end")
+        if self._until is not None and self._until():
+            raise ControlFlow("exit")
+        if self.station.time > self._end:
+            raise ProgramError(
+                f"{source.name}:{source.line_of(node.start)}: the program is not over after "
+                f"{self._limit:g} s: let it end, or give run() an end: until=…, or limit=…"
+            )
+
+    def site(self, node: ProgramNode, scope: RoutineScope) -> ProgramPlace:
+        """The part of the program that a node is."""
+        key = (id(scope.unit), id(node))
+        found = self._sites.get(key)
+        if found is None:
+            extent = scope.unit.source.extent(node.start, node.end)
+            found = self._sites[key] = ProgramPlace(scope.unit.path, extent, scope.routine)
+        return found
+
+    def start(self, name: str, steps: Steps) -> None:
+        """Start a task."""
+        self.tasks[name] = steps
+
+
+def _cell_errors(module: str) -> tuple[type[BaseException], ...]:
+    """The errors of the cell, which are those of no program: they pass as they are."""
+    import sys  # noqa: PLC0415
+
+    package = sys.modules.get(module.partition(".")[0])
+    found = getattr(package, "CellError", None)
+    return (found,) if isinstance(found, type) else ()
+
+
+class Evaluation:
+    """The values of expressions, for one thread of a program.
 
     Args:
         machine: the run it belongs to.
@@ -208,6 +170,14 @@ class ProgramTask:
         self.name = name
         self.depth = 0
         self.idle_loops = 0
+
+    def run(self, body: list[ProgramNode], scope: RoutineScope) -> Steps:
+        """Carry out statements."""
+        raise NotImplementedError
+
+    def store(self, target: ProgramNode, value: Any, scope: RoutineScope, how: str = "") -> Steps:
+        """Give a variable, a component or an element a value."""
+        raise NotImplementedError
 
     # errors and places
 
@@ -229,220 +199,6 @@ class ProgramTask:
     def error(self, node: ProgramNode, scope: RoutineScope, text: str) -> ProgramError:
         """An error of the program at a node."""
         return ProgramError(f"{self.place(node, scope)}: {text} (in {scope.routine})")
-
-    # statements
-
-    def run(self, body: list[ProgramNode], scope: RoutineScope) -> Steps:
-        """Carry out statements, with the jumps between them."""
-        at = 0
-        while at < len(body):
-            try:
-                yield from self.statement(body[at], scope)
-            except ControlFlow as leave:
-                if leave.kind != "goto":
-                    raise
-                found = [index for index, one in enumerate(body) if _is_label(one, leave.value)]
-                if not found:
-                    raise
-                at = found[0]
-                yield from self.pause(body[at], scope)
-                continue
-            at += 1
-
-    def statement(self, node: ProgramNode, scope: RoutineScope) -> Steps:
-        """Carry out one statement."""
-        self.machine.step(node, scope)
-        if scope.unit.watched and node.start in scope.unit.watched:
-            scope.unit.watched[node.start]()
-        handler = _STATEMENTS.get(node.kind)
-        try:
-            if handler is not None:
-                yield from handler(self, node, scope)
-            else:
-                yield from self.value(node, scope)
-        except (TypeError, ValueError, ZeroDivisionError, OverflowError) as error:
-            if isinstance(error, self.machine.station_errors):
-                raise
-            raise self.error(node, scope, f"{type(error).__name__}: {error}") from error
-        except (AttributeError, LookupError) as error:
-            if isinstance(error, self.machine.station_errors):
-                raise
-            # no operation of a program raises these: it is not known what a controller would do
-            raise self.unsupported(node, scope, f"{node.kind} ({type(error).__name__}: {error})") from error
-
-    def _assign(self, node: ProgramNode, scope: RoutineScope) -> Steps:
-        target, value = node.parts
-        found = yield from self.value(value, scope)
-        yield from self.store(target, found, scope, node.name)
-
-    def store(self, target: ProgramNode, value: Any, scope: RoutineScope, how: str = "") -> Steps:
-        """Give a variable, a component or an element a value."""
-        if target.kind == "group":
-            target = target.parts[0]
-        if target.kind == "name":
-            special = self.dialect.assign(self, target, value, scope)
-            if special is NotImplemented:
-                self._variable_for(target, scope, how, value)
-            elif special is not None:
-                yield from special
-            return
-        if target.kind not in ("index", "field"):
-            raise self.error(target, scope, "only a variable can get a value")
-        special = self.dialect.assign(self, target, value, scope)
-        if special is not NotImplemented:
-            if special is not None:
-                yield from special
-            return
-        owner = yield from self.value(target.parts[0], scope)
-        if target.kind == "field":
-            if not isinstance(owner, dict):
-                raise self.error(target, scope, f"there is no component {target.name}")
-            old = owner.get(target.name)
-            owner[target.name] = self.dialect.assigned(Variable(old, getattr(old, "type", "")), value)
-            return
-        for part in target.parts[1:-1]:
-            owner = owner[self._number(part, (yield from self.value(part, scope)), scope)]
-        index = self._number(target.parts[-1], (yield from self.value(target.parts[-1], scope)), scope)
-        if not isinstance(owner, list) or not 0 <= index < len(owner):
-            raise self.error(target, scope, f"there is no element {index + self.dialect.first}")
-        old = owner[index]
-        owner[index] = self.dialect.assigned(Variable(old, getattr(old, "type", "")), value)
-
-    def _number(self, node: ProgramNode, value: Any, scope: RoutineScope) -> int:
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or value != int(value):
-            raise self.error(node, scope, f"an index must be a whole number, not {value!r}")
-        return int(value) - self.dialect.first
-
-    def _variable_for(self, target: ProgramNode, scope: RoutineScope, how: str, value: Any) -> None:
-        found = None if how == "local" else self.find(target.name, scope, of_globals=how == "global")
-        if found is None:
-            names = self.machine.globals if how == "global" else scope.names
-            found = names[target.name] = Variable()
-        found.value = self.dialect.assigned(found, value)
-
-    def _if(self, node: ProgramNode, scope: RoutineScope) -> Steps:
-        for condition, body in zip(node.parts, node.bodies, strict=False):
-            if self.dialect.truth((yield from self.value(condition, scope))):
-                yield from self.run(body, scope)
-                return
-        if len(node.bodies) > len(node.parts):
-            yield from self.run(node.bodies[-1], scope)
-
-    def _loop(
-        self, node: ProgramNode, scope: RoutineScope, before: ProgramNode | None, after: ProgramNode | None
-    ) -> Steps:
-        while True:
-            if before is not None and not self.dialect.truth((yield from self.value(before, scope))):
-                return
-            if (yield from self.round(node, scope)):
-                return
-            if after is not None and self.dialect.truth((yield from self.value(after, scope))):
-                return
-
-    def round(self, node: ProgramNode, scope: RoutineScope) -> Steps:
-        """Carry out the body of a loop once; returns whether the loop is left."""
-        began = self.station.time
-        try:
-            yield from self.run(node.bodies[0], scope)
-        except ControlFlow as leave:
-            if leave.kind == "break":
-                return True
-            if leave.kind != "continue":
-                raise
-        if self.station.time == began:
-            yield from self.pause(node, scope)
-        else:
-            self.idle_loops = 0
-        return False
-
-    def pause(self, node: ProgramNode, scope: RoutineScope) -> Steps:
-        """Let a tick pass now and then in a loop that lets none pass itself."""
-        self.machine.step(node, scope)
-        self.idle_loops += 1
-        if self.idle_loops >= _IDLE_LOOPS:
-            self.idle_loops = 0
-            yield from self.wait(node, scope, TICK)
-
-    def _while(self, node: ProgramNode, scope: RoutineScope) -> Steps:
-        yield from self._loop(node, scope, node.parts[0], None)
-
-    def _repeat(self, node: ProgramNode, scope: RoutineScope) -> Steps:
-        yield from self._loop(node, scope, None, node.parts[0])
-
-    def _endless(self, node: ProgramNode, scope: RoutineScope) -> Steps:
-        yield from self._loop(node, scope, None, None)
-
-    def _for(self, node: ProgramNode, scope: RoutineScope) -> Steps:
-        values = yield from self.values(node.parts, scope)
-        start, end, step = values[0], values[1], values[2] if len(values) > 2 else None
-        if step is None:
-            step = node.value if node.value is not None else 1 if end >= start else -1
-        if step == 0:
-            raise self.error(node, scope, "a loop with the step 0")
-        counter = self.find(node.name, scope) if self.dialect.first and node.value is not None else None
-        own = counter is None
-        if counter is None:
-            counter = Variable()
-            hidden = scope.names.get(node.name)
-            scope.names[node.name] = counter
-        counter.value = start
-        while (counter.value <= end) if step > 0 else (counter.value >= end):
-            if (yield from self.round(node, scope)):
-                break
-            counter.value += step
-        if own:
-            if hidden is not None:
-                scope.names[node.name] = hidden
-            elif node.value is None:
-                del scope.names[node.name]
-
-    def _switch(self, node: ProgramNode, scope: RoutineScope) -> Steps:
-        subject = yield from self.value(node.parts[0], scope)
-        chosen = None
-        for labels, body in zip(node.value, node.bodies, strict=True):
-            if labels is None:
-                chosen = body if chosen is None else chosen
-                continue
-            for label in labels:
-                if self.dialect.matches(subject, (yield from self.value(label, scope))):
-                    yield from self._case(body, scope)
-                    return
-        if chosen is not None:
-            yield from self._case(chosen, scope)
-
-    def _case(self, body: list[ProgramNode], scope: RoutineScope) -> Steps:
-        try:
-            yield from self.run(body, scope)
-        except ControlFlow as leave:
-            if leave.kind != "break" or self.dialect.first:  # a break of URScript ends the case
-                raise
-
-    def _return(self, node: ProgramNode, scope: RoutineScope) -> Steps:
-        raise ControlFlow("return", (yield from self.value(node.parts[0], scope)) if node.parts else None)
-
-    def _leave(self, node: ProgramNode, scope: RoutineScope) -> Steps:
-        raise ControlFlow(node.kind, node.name)
-        yield  # pragma: no cover  (makes it a generator)
-
-    def _declare(self, node: ProgramNode, scope: RoutineScope) -> Steps:
-        yield from self.dialect.declare(self, node, scope, is_global=False)
-
-    def _routine(self, node: ProgramNode, scope: RoutineScope) -> Steps:
-        scope.routines[node.name] = Routine(node, scope.unit)
-        return
-        yield  # pragma: no cover
-
-    def _opaque(self, node: ProgramNode, scope: RoutineScope) -> Steps:
-        found = scope.unit.source.text[node.start : node.end].strip().splitlines()
-        raise LanguageError(
-            f"{self.place(node, scope)}: this could not be read: {found[0][:60] if found else ''} "
-            f"(in {scope.routine})"
-        )
-        yield  # pragma: no cover
-
-    def _nothing(self, node: ProgramNode, scope: RoutineScope) -> Steps:
-        return
-        yield  # pragma: no cover
 
     # values
 
@@ -503,11 +259,17 @@ class ProgramTask:
                 return (yield from found) if isinstance(found, Generator) else found
         owner = yield from self.value(base, scope)
         for part in node.parts[1:]:
-            index = self._number(part, (yield from self.value(part, scope)), scope)
+            index = self.whole_number(part, (yield from self.value(part, scope)), scope)
             if not isinstance(owner, (list, str)) or not 0 <= index < len(owner):
                 raise self.error(node, scope, f"there is no element {index + self.dialect.first}")
             owner = owner[index]
         return owner
+
+    def whole_number(self, node: ProgramNode, value: Any, scope: RoutineScope) -> int:
+        """The index of an element, from 0. Raises ProgramError if the value is none."""
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or value != int(value):
+            raise self.error(node, scope, f"an index must be a whole number, not {value!r}")
+        return int(value) - self.dialect.first
 
     def values(
         self, nodes: list[ProgramNode], scope: RoutineScope
@@ -686,104 +448,3 @@ class ProgramTask:
             else:
                 values.append((yield from self.value(part, scope)))
         return values, named
-
-
-def _is_label(node: ProgramNode, name: Any) -> bool:
-    return node.kind == "label" and node.name == name
-
-
-_STATEMENTS: dict[str, Callable[[ProgramTask, ProgramNode, RoutineScope], Steps]] = {
-    "assign": ProgramTask._assign,
-    "if": ProgramTask._if,
-    "while": ProgramTask._while,
-    "repeat": ProgramTask._repeat,
-    "loop": ProgramTask._endless,
-    "for": ProgramTask._for,
-    "switch": ProgramTask._switch,
-    "return": ProgramTask._return,
-    "break": ProgramTask._leave,
-    "continue": ProgramTask._leave,
-    "goto": ProgramTask._leave,
-    "exit": ProgramTask._leave,
-    "declare": ProgramTask._declare,
-    "routine": ProgramTask._routine,
-    "record": ProgramTask._nothing,
-    "empty": ProgramTask._nothing,
-    "label": ProgramTask._nothing,
-    "opaque": ProgramTask._opaque,
-}
-
-
-class Machine:
-    """A run of a program.
-
-    Args:
-        dialect: of its language.
-        station: the cell.
-        units: its files.
-        until: ends the run where it holds, between two statements.
-        limit: simulated seconds after which it is an error to be still running.
-    """
-
-    task_class: ClassVar[type[ProgramTask]] = ProgramTask
-
-    def __init__(
-        self,
-        dialect: Dialect,
-        station: Station,
-        units: list[ProgramUnit],
-        until: Callable[[], bool] | None,
-        limit: float,
-    ) -> None:
-        self.dialect, self.station, self.units = dialect, station, units
-        self.globals: dict[str, Variable] = {}
-        self.routines: dict[str, Routine] = {}
-        self.tasks: dict[str, Steps] = {}
-        self.running: dict[int, Routine] = {}
-        self.undeclared: dict[str, LanguageError | ProgramError] = {}
-        self._until, self._end = until, station.time + limit
-        self._limit = limit
-        self._left = MOST_STEPS
-        self._sites: dict[tuple[int, int], ProgramPlace] = {}
-        errors = type(station.cell).__mro__[0].__module__
-        self.station_errors = _cell_errors(errors)
-
-    def step(self, node: ProgramNode, scope: RoutineScope) -> None:
-        """Count a statement. Raises ProgramError when there were too many, or it takes too long."""
-        self._left -= 1
-        source = scope.unit.source
-        if self._left < 0:
-            raise ProgramError(f"{source.name}: more than {MOST_STEPS} statements: it may never end")
-        if self._until is not None and self._until():
-            raise ControlFlow("exit")
-        if self.station.time > self._end:
-            raise ProgramError(
-                f"{source.name}:{source.line_of(node.start)}: the program is not over after "
-                f"{self._limit:g} s: let it end, or give run() an end: until=…, or limit=…"
-            )
-
-    def site(self, node: ProgramNode, scope: RoutineScope) -> ProgramPlace:
-        """The part of the program that a node is."""
-        key = (id(scope.unit), id(node))
-        found = self._sites.get(key)
-        if found is None:
-            extent = scope.unit.source.extent(node.start, node.end)
-            found = self._sites[key] = ProgramPlace(scope.unit.path, extent, scope.routine)
-        return found
-
-    def start(self, name: str, steps: Steps) -> None:
-        """Start a task."""
-        self.tasks[name] = steps
-
-    def task(self, name: str) -> ProgramTask:
-        """A new task of this run."""
-        return self.task_class(self, name)
-
-
-def _cell_errors(module: str) -> tuple[type[BaseException], ...]:
-    """The errors of the cell, which are those of no program: they pass as they are."""
-    import sys  # noqa: PLC0415
-
-    package = sys.modules.get(module.partition(".")[0])
-    found = getattr(package, "CellError", None)
-    return (found,) if isinstance(found, type) else ()

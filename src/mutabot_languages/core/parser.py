@@ -174,6 +174,23 @@ class StatementParser:
 
     # tokens
 
+    def cases(
+        self, until: str, colon: Callable[[], object]
+    ) -> tuple[list[list[ProgramNode] | None], list[list[ProgramNode]]]:
+        """Read the cases of a switch up to a word: their labels, None for the default, and their bodies."""
+        labels: list[list[ProgramNode] | None] = []
+        bodies: list[list[ProgramNode]] = []
+        while self.words[self.at] in ("case", "default"):
+            is_case = self.words[self.at] == "case"
+            self.at += 1
+            found: list[ProgramNode] = []
+            while is_case and (not found or self.accept(",")):
+                found.append(self.expression())
+            colon()
+            labels.append(found if is_case else None)
+            bodies.append(self.block(frozenset({"case", "default", until})))
+        return labels, bodies
+
     def accept(self, word: str) -> bool:
         """Read this word if it is next."""
         if self.words[self.at] == word:

@@ -7,7 +7,8 @@ from typing import Any
 
 from mutabot_languages.errors import ProgramError
 
-from .machine import ControlFlow, Machine, ProgramRaised, Steps, TaskOperation
+from .machine import Machine
+from .scope import ControlFlow, ProgramRaised, Steps, TaskOperation
 from .station import TICK
 
 

@@ -8,16 +8,9 @@ from collections.abc import Callable, Mapping
 from typing import Any, ClassVar
 
 from mutabot_languages.core.frames import Frame
-from mutabot_languages.core.machine import (
-    Dialect,
-    Machine,
-    ProgramTask,
-    RoutineScope,
-    Steps,
-    Structure,
-    Variable,
-)
+from mutabot_languages.core.machine import OF_NUMBERS, Dialect, Evaluation, Machine
 from mutabot_languages.core.names import name_set
+from mutabot_languages.core.scope import RoutineScope, Steps, Structure, Variable
 from mutabot_languages.core.tree import ProgramNode
 
 _CARTESIAN = ("x", "y", "z", "a", "b", "c")
@@ -45,7 +38,7 @@ class KrlDialect(Dialect):
         self.functions = functions
         self.ignored = ignored
 
-    def declare(self, task: ProgramTask, node: ProgramNode, scope: RoutineScope, *, is_global: bool) -> Steps:
+    def declare(self, task: Evaluation, node: ProgramNode, scope: RoutineScope, *, is_global: bool) -> Steps:
         """Make the variable of a declaration; in a data file it keeps its value."""
         type = node.value["type"]
         if not is_global and node.name in scope.names and not node.parts:
@@ -64,7 +57,7 @@ class KrlDialect(Dialect):
         names = scope.names if not is_global else scope.unit.names
         names[node.name] = Variable(value, type)
 
-    def name(self, task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Any:
+    def name(self, task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Any:
         """A system variable, or a signal."""
         machine = task.machine
         assert isinstance(machine, KrlMachine)
@@ -88,11 +81,11 @@ class KrlDialect(Dialect):
             return of_frame(Frame(), "frame")
         raise task.unsupported(node, scope)
 
-    def index(self, task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Any:
+    def index(self, task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Any:
         """An element of a system variable: ``$IN[1]``, ``$OUT[9]``, ``BASE_DATA[1]``."""
         return _element(task, node, scope)
 
-    def assign(self, task: ProgramTask, target: ProgramNode, value: Any, scope: RoutineScope) -> Any:
+    def assign(self, task: Evaluation, target: ProgramNode, value: Any, scope: RoutineScope) -> Any:
         """Set a system variable or an output."""
         return assign_system(task, target, value, scope)
 
@@ -123,7 +116,7 @@ class KrlDialect(Dialect):
         """The value of a unary operation."""
         return ~int(value) if operator == "b_not" else super().unary(operator, value)
 
-    def literal(self, task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    def literal(self, task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
         """The value of an aggregate or of a name of an enumeration."""
         if node.kind == "enum":
             return f"#{node.name}"
@@ -214,26 +207,12 @@ def join(left: Any, right: Any) -> Any:
 def _calculated(operator: str, left: Any, right: Any) -> Any:
     if not all(isinstance(one, (int, float)) for one in (left, right)):
         raise TypeError("only numbers can be calculated with")
+    value = OF_NUMBERS[operator](left, right)
     are_whole = all(isinstance(one, int) for one in (left, right))
-    match operator:
-        case "+":
-            return left + right
-        case "-":
-            return left - right
-        case "*":
-            return left * right
-        case "/":
-            return int(left / right) if are_whole else left / right
-        case "<":
-            return left < right
-        case ">":
-            return left > right
-        case "<=":
-            return left <= right
-    return left >= right
+    return int(value) if operator == "/" and are_whole else value
 
 
-def _element(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+def _element(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
     machine = task.machine
     assert isinstance(machine, KrlMachine)
     name = node.parts[0].name
@@ -257,7 +236,7 @@ def _element(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps
     raise task.unsupported(node, scope, signal)
 
 
-def assign_system(task: ProgramTask, target: ProgramNode, value: Any, scope: RoutineScope) -> Any:
+def assign_system(task: Evaluation, target: ProgramNode, value: Any, scope: RoutineScope) -> Any:
     """Set a system variable or an output; NotImplemented for a variable of the program."""
     base = target
     while base.kind in ("index", "field"):
@@ -300,11 +279,11 @@ def set_frame(machine: KrlMachine, name: str, value: Any) -> None:
         machine.station.tool = frame_of(value)
 
 
-def _write(task: ProgramTask, node: ProgramNode, scope: RoutineScope, signal: str, value: Any) -> None:
+def _write(task: Evaluation, node: ProgramNode, scope: RoutineScope, signal: str, value: Any) -> None:
     task.station.write(task.site(node, scope), signal, value)
 
 
-def _set_element(task: ProgramTask, target: ProgramNode, value: Any, scope: RoutineScope) -> Steps:
+def _set_element(task: Evaluation, target: ProgramNode, value: Any, scope: RoutineScope) -> Steps:
     machine = task.machine
     assert isinstance(machine, KrlMachine)
     name = target.parts[0].name
@@ -321,7 +300,7 @@ def _set_element(task: ProgramTask, target: ProgramNode, value: Any, scope: Rout
         raise task.unsupported(target, scope, signal)
 
 
-def _set_component(task: ProgramTask, target: ProgramNode, value: Any, scope: RoutineScope) -> Steps | None:
+def _set_component(task: Evaluation, target: ProgramNode, value: Any, scope: RoutineScope) -> Steps | None:
     machine = task.machine
     assert isinstance(machine, KrlMachine)
     owner = target.parts[0]
@@ -342,7 +321,7 @@ def _set_component(task: ProgramTask, target: ProgramNode, value: Any, scope: Ro
     return None
 
 
-def _set_indexed_component(task: ProgramTask, target: ProgramNode, value: Any, scope: RoutineScope) -> Steps:
+def _set_indexed_component(task: Evaluation, target: ProgramNode, value: Any, scope: RoutineScope) -> Steps:
     machine = task.machine
     assert isinstance(machine, KrlMachine)
     owner = target.parts[0]

@@ -8,8 +8,9 @@ from collections.abc import Callable
 from typing import Any
 
 from mutabot_languages.core.frames import Frame
-from mutabot_languages.core.machine import ControlFlow, ProgramTask, RoutineScope, Steps, Structure
 from mutabot_languages.core.names import name_set
+from mutabot_languages.core.scope import ControlFlow, RoutineScope, Steps, Structure
+from mutabot_languages.core.task import ProgramTask, of_values
 from mutabot_languages.core.tree import ProgramNode
 
 from .dialect import KrlMachine, frame_of, of_axes, of_frame, set_frame
@@ -200,19 +201,6 @@ def _number_frame(task: ProgramTask, name: str, number: int) -> None:
     set_frame(machine, name, value if value else of_frame(Frame(), "frame"))
 
 
-def _plain(function: Callable[..., Any]) -> Callable[..., Steps]:
-    """A function of values alone."""
-
-    def call(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-        values, _ = yield from task.arguments(node, scope)
-        try:
-            return function(*values)
-        except (TypeError, ValueError, IndexError, ZeroDivisionError, OverflowError) as error:
-            raise task.error(node, scope, f"{node.name}: {error}") from error
-
-    return call
-
-
 def _forward(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
     values, _ = yield from task.arguments(node, scope)
     at = machine_of(task).base.inverse() * task.station.forward(_angles(task, values[0]))
@@ -242,25 +230,27 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
         ("interrupt decl", "interrupt on", "interrupt off", "interrupt enable", "interrupt disable"),
         _interrupt
     ),
-    "forward": _forward, "inverse": _inverse, "inv_pos": _plain(_inverse_position),
-    "abs": _plain(abs), "sqrt": _plain(math.sqrt),
-    "sin": _plain(lambda angle: math.sin(math.radians(angle))),
-    "cos": _plain(lambda angle: math.cos(math.radians(angle))),
-    "tan": _plain(lambda angle: math.tan(math.radians(angle))),
-    "acos": _plain(lambda value: math.degrees(math.acos(value))),
-    "asin": _plain(lambda value: math.degrees(math.asin(value))),
-    "atan2": _plain(lambda y, x: math.degrees(math.atan2(y, x))),
-    "round": _plain(lambda value: math.floor(value + 0.5)), "trunc": _plain(math.trunc),
-    "strlen": _plain(len), "strdecllen": _plain(len), "strcomp": _plain(lambda one, other, *_: one == other),
-    "strclear": _plain(lambda *_: True),
-    "toint": _plain(int), "copy": _plain(copy.deepcopy),
-    "svel_joint": _plain(float),
-    "sacc_cp": _plain(float),
-    "sori_typ": _plain(lambda value: value), "sacc_joint": _plain(float), "svel_cp": _plain(lambda value,
-    *_: float(value)),
-    "stool2": _plain(lambda value: value), "sbase": _plain(lambda value: value),
-    "sload": _plain(lambda value: value), "sipo_mode": _plain(lambda value: value),
-    "sapo": _plain(lambda v: v),
-    "sapo_ptp": _plain(lambda value, *_: value), "sgear_jerk": _plain(float), "sjerk": _plain(lambda *v: 0.0),
-    "tool_adj": _plain(lambda value: value),
+    "forward": _forward, "inverse": _inverse, "inv_pos": of_values(_inverse_position),
+    "abs": of_values(abs), "sqrt": of_values(math.sqrt),
+    "sin": of_values(lambda angle: math.sin(math.radians(angle))),
+    "cos": of_values(lambda angle: math.cos(math.radians(angle))),
+    "tan": of_values(lambda angle: math.tan(math.radians(angle))),
+    "acos": of_values(lambda value: math.degrees(math.acos(value))),
+    "asin": of_values(lambda value: math.degrees(math.asin(value))),
+    "atan2": of_values(lambda y, x: math.degrees(math.atan2(y, x))),
+    "round": of_values(lambda value: math.floor(value + 0.5)), "trunc": of_values(math.trunc),
+    "strlen": of_values(len), "strdecllen": of_values(len),
+    "strcomp": of_values(lambda one, other, *_: one == other),
+    "strclear": of_values(lambda *_: True),
+    "toint": of_values(int), "copy": of_values(copy.deepcopy),
+    "svel_joint": of_values(float),
+    "sacc_cp": of_values(float),
+    "sori_typ": of_values(lambda value: value), "sacc_joint": of_values(float),
+    "svel_cp": of_values(lambda value, *_: float(value)),
+    "stool2": of_values(lambda value: value), "sbase": of_values(lambda value: value),
+    "sload": of_values(lambda value: value), "sipo_mode": of_values(lambda value: value),
+    "sapo": of_values(lambda v: v),
+    "sapo_ptp": of_values(lambda value, *_: value), "sgear_jerk": of_values(float),
+    "sjerk": of_values(lambda *v: 0.0),
+    "tool_adj": of_values(lambda value: value),
 }  # fmt: skip

@@ -6,15 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from mutabot_languages.core.language import RobotLanguage
-from mutabot_languages.core.machine import (
-    Machine,
-    ProgramTask,
-    ProgramUnit,
-    Routine,
-    RoutineScope,
-    Steps,
-    Variable,
-)
+from mutabot_languages.core.machine import Machine
+from mutabot_languages.core.scope import ProgramUnit, Routine, RoutineScope, Steps, Variable
+from mutabot_languages.core.task import ProgramTask
 from mutabot_languages.core.tree import ProgramNode
 from mutabot_languages.errors import LanguageError, ProgramError
 
@@ -36,10 +30,6 @@ class KrlTask(ProgramTask):
             yield from _signal(self, node, scope)
         else:
             yield from super().statement(node, scope)
-
-
-class KrlRun(KrlMachine):
-    task_class = KrlTask
 
 
 def _prepare(machine: Machine, task: ProgramTask) -> Steps:
@@ -157,6 +147,7 @@ KRL = RobotLanguage(
     lambda: KrlDialect(FUNCTIONS, IGNORED),
     _prepare,
     _main,
-    machine=KrlRun,
+    machine=KrlMachine,
+    task=KrlTask,
     beside=_beside,
 )

@@ -242,18 +242,7 @@ class KrlParser(StatementParser):
         parts = [self.expression()]
         while self.kinds[self.at] == "newline":
             self.at += 1
-        labels: list[list[ProgramNode] | None] = []
-        bodies: list[list[ProgramNode]] = []
-        until = frozenset({"case", "default", "endswitch"})
-        while self.words[self.at] in ("case", "default"):
-            is_case = self.words[self.at] == "case"
-            self.at += 1
-            found: list[ProgramNode] = []
-            while is_case and (not found or self.accept(",")):
-                found.append(self.expression())
-            self.accept(":")
-            labels.append(found if is_case else None)
-            bodies.append(self.block(until))
+        labels, bodies = self.cases("endswitch", lambda: self.accept(":"))
         self.close("endswitch", start)
         return self.node("switch", "", start, parts, bodies, labels)
 

@@ -215,8 +215,8 @@ class KrlRewriter(Rewriter):
                 for one, _ in self._nodes()
                 if one.kind == node.kind == "index" and one.parts[0].name == node.parts[0].name
             )
-            for other in self.next_number(number, alike):
-                yield TextChange("other-input", node, self.put(number, other))
+            for text in self.next_number(number, alike):
+                yield TextChange("other-input", node, self.put(number, text))
 
     def _form_data(self, node: ProgramNode, value: ProgramNode) -> Iterator[TextChange]:
         """Tool and base of an inline form."""

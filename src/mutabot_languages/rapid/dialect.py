@@ -7,19 +7,18 @@ import re
 from collections.abc import Callable, Mapping
 from typing import Any, ClassVar
 
-from mutabot_languages.core.machine import (
+from mutabot_languages.core.machine import OF_NUMBERS, Dialect, Evaluation, Machine
+from mutabot_languages.core.names import name_set
+from mutabot_languages.core.scope import (
     ControlFlow,
-    Dialect,
-    Machine,
     ProgramRaised,
-    ProgramTask,
     Routine,
     RoutineScope,
     Steps,
     Structure,
     Variable,
 )
-from mutabot_languages.core.names import name_set
+from mutabot_languages.core.task import ProgramTask
 from mutabot_languages.core.tree import ProgramNode
 from mutabot_languages.errors import ProgramError
 
@@ -50,7 +49,7 @@ class RapidDialect(Dialect):
         """The type that a name stands for."""
         return self.aliases.get(name, name)
 
-    def declare(self, task: ProgramTask, node: ProgramNode, scope: RoutineScope, *, is_global: bool) -> Steps:
+    def declare(self, task: Evaluation, node: ProgramNode, scope: RoutineScope, *, is_global: bool) -> Steps:
         """Make the data of a declaration."""
         type = self.type_of(node.value["type"])
         sizes = []
@@ -64,10 +63,10 @@ class RapidDialect(Dialect):
         names = scope.names if not is_global else self._home(node, task, scope)
         names[node.name] = Variable(value, type)
 
-    def _home(self, node: ProgramNode, task: ProgramTask, scope: RoutineScope) -> dict[str, Variable]:
+    def _home(self, node: ProgramNode, task: Evaluation, scope: RoutineScope) -> dict[str, Variable]:
         return scope.unit.names if node.value["scope"] == "local" else task.machine.globals
 
-    def name(self, task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Any:
+    def name(self, task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Any:
         """Data that every program has, or a signal."""
         found = predefined(node.name, self.structures)
         if found is not None:
@@ -97,7 +96,7 @@ class RapidDialect(Dialect):
             return _of_positions(operator, left, right)
         return _of_numbers(operator, left, right)
 
-    def literal(self, task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    def literal(self, task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
         """The value of an aggregate, which gets its type where it is stored."""
         if node.kind != "list":
             raise task.unsupported(node, scope, node.name or node.kind)
@@ -200,8 +199,6 @@ _RETRIES = 50
 class RapidMachine(Machine):
     """A run of a RAPID program."""
 
-    task_class = RapidTask
-
 
 def predefined(name: str, structures: Mapping[str, Components]) -> Any:
     """Data that every RAPID program has; None if there is none of this name."""
@@ -272,26 +269,11 @@ def _of_numbers(operator: str, left: Any, right: Any) -> Any:
         raise TypeError("only numbers can be calculated with")
     if right == 0 and operator in ("/", "div", "mod"):
         raise ProgramRaised("err_divzero", "a division by zero")
-    match operator:
-        case "+":
-            return left + right
-        case "-":
-            return left - right
-        case "*":
-            return left * right
-        case "/":
-            return left / right
-        case "div":
-            return int(left / right)
-        case "mod":
-            return int(math.fmod(left, right))
-        case "<":
-            return left < right
-        case ">":
-            return left > right
-        case "<=":
-            return left <= right
-    return left >= right
+    if operator == "div":
+        return int(left / right)
+    if operator == "mod":
+        return int(math.fmod(left, right))
+    return OF_NUMBERS[operator](left, right)
 
 
 NO_FRAME = _ID

@@ -8,17 +8,10 @@ from collections.abc import Callable
 from typing import Any
 
 from mutabot_languages.core.frames import IDENTITY, Frame
-from mutabot_languages.core.machine import (
-    ControlFlow,
-    ProgramRaised,
-    ProgramTask,
-    RoutineScope,
-    Steps,
-    Structure,
-    Variable,
-)
 from mutabot_languages.core.names import name_set
+from mutabot_languages.core.scope import ControlFlow, ProgramRaised, RoutineScope, Steps, Structure, Variable
 from mutabot_languages.core.station import TICK
+from mutabot_languages.core.task import ProgramTask
 from mutabot_languages.core.tree import ProgramNode
 
 from .types import STRUCTURES, frame_of, put_frame, shaped

@@ -3,19 +3,13 @@
 from __future__ import annotations
 
 from mutabot_languages.core.language import RobotLanguage
-from mutabot_languages.core.machine import (
-    Dialect,
-    Machine,
-    ProgramTask,
-    ProgramUnit,
-    Routine,
-    RoutineScope,
-    Steps,
-)
+from mutabot_languages.core.machine import Dialect, Machine
+from mutabot_languages.core.scope import ProgramUnit, Routine, RoutineScope, Steps
+from mutabot_languages.core.task import ProgramTask
 from mutabot_languages.core.tree import ProgramNode
 from mutabot_languages.errors import LanguageError, ProgramError
 
-from .dialect import RapidDialect, RapidMachine
+from .dialect import RapidDialect, RapidMachine, RapidTask
 from .instructions import FUNCTIONS, IGNORED
 from .parser import RapidParser
 
@@ -103,4 +97,5 @@ RAPID = RobotLanguage(
     _prepare,
     _main,
     machine=RapidMachine,
+    task=RapidTask,
 )

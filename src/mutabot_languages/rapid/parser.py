@@ -251,19 +251,8 @@ class RapidParser(StatementParser):
     def _test(self, start: int) -> ProgramNode:
         self.at += 1
         parts = [self.expression()]
-        labels: list[list[ProgramNode] | None] = []
-        bodies: list[list[ProgramNode]] = []
-        until = frozenset({"case", "default", "endtest"})
         self.accept(";")
-        while self.words[self.at] in ("case", "default"):
-            is_case = self.words[self.at] == "case"
-            self.at += 1
-            found: list[ProgramNode] = []
-            while is_case and (not found or self.accept(",")):
-                found.append(self.expression())
-            self.expect(":")
-            labels.append(found if is_case else None)
-            bodies.append(self.block(until))
+        labels, bodies = self.cases("endtest", lambda: self.expect(":"))
         self._close_block("endtest", start)
         return self.node("switch", "", start, parts, bodies, labels)
 

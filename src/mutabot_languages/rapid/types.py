@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from mutabot_languages.core.frames import Frame
-from mutabot_languages.core.machine import Structure
+from mutabot_languages.core.scope import Structure
 
 Components = tuple[tuple[str, str], ...]
 

@@ -7,8 +7,10 @@ from collections.abc import Callable, Generator, Mapping
 from typing import Any, ClassVar
 
 from mutabot_languages.core.frames import IDENTITY, Frame
-from mutabot_languages.core.machine import ControlFlow, Dialect, ProgramTask, RoutineScope, Steps, Structure
+from mutabot_languages.core.machine import OF_NUMBERS, Dialect, Evaluation
 from mutabot_languages.core.names import name_set
+from mutabot_languages.core.scope import ControlFlow, RoutineScope, Steps, Structure
+from mutabot_languages.core.task import ProgramTask, of_values
 from mutabot_languages.core.tree import ProgramNode
 from mutabot_languages.errors import ProgramError
 
@@ -81,7 +83,7 @@ class UrDialect(Dialect):
                 return text_of(left) + text_of(right)
         return arithmetic(operator, left, right)
 
-    def literal(self, task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    def literal(self, task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
         """The value of a list, a pose, or a method of something."""
         if node.kind == "method":
             raise task.unsupported(node, scope, f".{node.name}()")
@@ -116,30 +118,10 @@ def arithmetic(operator: str, left: Any, right: Any) -> Any:
             left, right = float(left), float(right)
         else:
             raise TypeError("only numbers can be calculated with")
-    match operator:
-        case "+":
-            return left + right
-        case "-":
-            return left - right
-        case "*":
-            return left * right
-        case "/":
-            return left / right
-        case "%":
-            return (
-                math.fmod(left, right)
-                if isinstance(left, float) or isinstance(right, float)
-                else left % right
-            )
-        case "<":
-            return left < right
-        case ">":
-            return left > right
-        case "<=":
-            return left <= right
-        case ">=":
-            return left >= right
-    raise TypeError(f"no operator {operator}")
+    if operator == "%":
+        are_whole = isinstance(left, int) and isinstance(right, int)
+        return left % right if are_whole else math.fmod(left, right)
+    return OF_NUMBERS[operator](left, right)
 
 
 def _are_numbers(*values: Any) -> bool:
@@ -156,7 +138,7 @@ def text_of(value: Any) -> str:
 
 
 def _given(
-    task: ProgramTask, node: ProgramNode, scope: RoutineScope, names: str
+    task: Evaluation, node: ProgramNode, scope: RoutineScope, names: str
 ) -> Generator[Any, Any, dict[str, Any]]:
     """The arguments of a call by their names; those that are not given are missing."""
     values, named = yield from task.arguments(node, scope)
@@ -166,7 +148,7 @@ def _given(
     return {**dict(zip(order, values, strict=False)), **named}
 
 
-def _move(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+def _move(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
     """movej, movel, movep: to a pose, or to joint angles."""
     given = yield from _given(task, node, scope, "pose a v t r")
     target = next((given.pop(name) for name in ("pose", "q") if name in given), None)
@@ -174,7 +156,7 @@ def _move(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
 
 
 def move_to(
-    task: ProgramTask, node: ProgramNode, scope: RoutineScope, target: Any, given: Mapping[str, Any]
+    task: Evaluation, node: ProgramNode, scope: RoutineScope, target: Any, given: Mapping[str, Any]
 ) -> Steps:
     """Carry out movej, movel or movep."""
     station = task.station
@@ -200,7 +182,7 @@ def move_to(
     yield from task.move(node, scope, station.line(frame, speed))
 
 
-def _check(task: ProgramTask, node: ProgramNode, scope: RoutineScope, speed: float) -> None:
+def _check(task: Evaluation, node: ProgramNode, scope: RoutineScope, speed: float) -> None:
     if not speed > 0:
         raise task.error(node, scope, f"{node.name} with the speed {speed:g}")
 
@@ -210,7 +192,7 @@ def _fastest_joint(station: Any) -> float:
     return float(max(speeds) if isinstance(speeds, (tuple, list)) else speeds)
 
 
-def _movec(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+def _movec(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
     given = yield from _given(task, node, scope, "via to a v r mode")
     via, end = frame_of(given["via"]), frame_of(given["to"])
     start = task.station.commanded(task.site(node, scope))
@@ -218,21 +200,21 @@ def _movec(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
         yield from task.move(node, scope, motion)
 
 
-def _sleep(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+def _sleep(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
     values, _ = yield from task.arguments(node, scope)
     yield from task.wait(node, scope, float(values[0]))
 
 
-def _sync(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+def _sync(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
     yield from task.wait(node, scope, 0.01)
 
 
-def _set_tcp(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+def _set_tcp(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
     values, _ = yield from task.arguments(node, scope)
     task.station.tool = frame_of(values[0])
 
 
-def _inverse(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+def _inverse(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
     given = yield from _given(task, node, scope, "x qnear maxPositionError maxOrientationError tcp")
     near = given.get("qnear")
     degrees = [math.degrees(one) for one in near] if near else None
@@ -242,14 +224,14 @@ def _inverse(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps
     return [math.radians(one) for one in found]
 
 
-def _forward(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+def _forward(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
     values, _ = yield from task.arguments(node, scope)
     if values:
         return pose_of(task.station.forward([math.degrees(one) for one in values[0]]))
     return pose_of(task.station.commanded(task.site(node, scope)))
 
 
-def _run(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+def _run(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
     """``run thread()`` starts a task and gives its number."""
     call = node.parts[0]
     routine = task.find_routine(call.name, scope)
@@ -259,7 +241,7 @@ def _run(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
     number = getattr(machine, "threads", 0) + 1
     machine.threads = number  # type: ignore[attr-defined]
     name = f"{call.name} {number}"
-    machine.start(name, machine.task(name).call_routine(routine, call.parts, node, scope))
+    machine.start(name, ProgramTask(machine, name).call_routine(routine, call.parts, node, scope))
     return UrThread([name])
     yield  # pragma: no cover
 
@@ -270,21 +252,21 @@ class UrThread(tuple[str, ...]):
     __slots__ = ()
 
 
-def _kill(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+def _kill(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
     thread = yield from _thread(task, node, scope)
     steps = task.machine.tasks.pop(thread, None)
     if steps is not None:
         steps.close()
 
 
-def _thread(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+def _thread(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
     value = yield from task.value(node.parts[0], scope)
     if not isinstance(value, tuple):
         raise task.error(node, scope, f"{node.name} of {value!r}, which is no thread")
     return value[0]
 
 
-def _join(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+def _join(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
     thread = yield from _thread(task, node, scope)
     while thread in task.machine.tasks:
         yield from task.wait(node, scope, 0.01)
@@ -293,7 +275,7 @@ def _join(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
 def _reader(name: str) -> Callable[..., Steps]:
     """A function that reads a signal ``name[n]``."""
 
-    def read(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    def read(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
         values, _ = yield from task.arguments(node, scope)
         return task.station.read(task.site(node, scope), f"{name}[{int(values[0])}]")
 
@@ -303,7 +285,7 @@ def _reader(name: str) -> Callable[..., Steps]:
 def _writer(name: str) -> Callable[..., Steps]:
     """A function that sets a signal ``name[n]``."""
 
-    def write(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    def write(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
         values, _ = yield from task.arguments(node, scope)
         number, value = values
         task.station.write(task.site(node, scope), f"{name}[{int(number)}]", value)
@@ -314,52 +296,39 @@ def _writer(name: str) -> Callable[..., Steps]:
 def _output(name: str) -> Callable[..., Steps]:
     """A function that gives the last value of an output."""
 
-    def read(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    def read(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
         values, _ = yield from task.arguments(node, scope)
         return task.station.outputs.get(f"{name}[{int(values[0])}]", False)
 
     return read
 
 
-def _plain(function: Callable[..., Any]) -> Callable[..., Steps]:
-    """A function of values alone."""
-
-    def call(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-        values, _ = yield from task.arguments(node, scope)
-        try:
-            return function(*values)
-        except (TypeError, ValueError, IndexError, ZeroDivisionError, OverflowError) as error:
-            raise task.error(node, scope, f"{node.name}: {error}") from error
-
-    return call
-
-
-def _pose_now(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> UrPose:
+def _pose_now(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> UrPose:
     is_actual = "actual" in node.name
     site = task.site(node, scope)
     return pose_of(task.station.actual(site) if is_actual else task.station.commanded(site))
 
 
-def _joints_now(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> list[float]:
+def _joints_now(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> list[float]:
     site = task.site(node, scope)
     if "target" in node.name:
         return [math.radians(one) for one in task.station.call(site, task.station.cell.arm.commanded_joints)]
     return [math.radians(one) for one in task.station.angles(site)]
 
 
-def _wrench(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Any:
+def _wrench(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Any:
     wrench = task.station.call(task.site(node, scope), task.station.cell.force_sensor.wrench)
     forces = [wrench.fx, wrench.fy, wrench.fz, wrench.tx, wrench.ty, wrench.tz]
     return math.hypot(*forces[:3]) if node.name == "force" else forces
 
 
-def _struct(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+def _struct(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
     """``struct(a=1)``: its components by name."""
     _, named = yield from task.arguments(node, scope)
     return Structure.of("struct", named)
 
 
-def _halt(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Any:
+def _halt(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Any:
     raise ControlFlow("exit")
 
 
@@ -436,15 +405,15 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
     "stopj": lambda task, node, scope: None, "stopl": lambda task, node, scope: None,
     "is_steady": lambda task, node, scope: True,
     "get_tcp_offset": lambda task, node, scope: pose_of(task.station.tool),
-    "is_within_safety_limits": _plain(lambda *given: True),
-    **{name: _plain(function) for name, function in _PLAIN.items()},
+    "is_within_safety_limits": of_values(lambda *given: True),
+    **{name: of_values(function) for name, function in _PLAIN.items()},
     **{f"get_{name}_in": _reader(f"{signal}_in") for name, signal in _SIGNALS.items()},
     **{f"set_{name}_out": _writer(f"{signal}_out") for name, signal in _SIGNALS.items()},
     **{f"get_{name}_out": _output(f"{signal}_out") for name, signal in _SIGNALS.items()},
 }  # fmt: skip
 
 
-def _has_inverse(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+def _has_inverse(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
     try:
         yield from _inverse(task, node, scope)
     except ProgramError:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from mutabot_languages.core.language import RobotLanguage
-from mutabot_languages.core.machine import Machine, ProgramTask, RoutineScope, Steps
+from mutabot_languages.core.machine import Machine
+from mutabot_languages.core.scope import RoutineScope, Steps
+from mutabot_languages.core.task import ProgramTask
 from mutabot_languages.core.tree import ProgramNode
 from mutabot_languages.errors import LanguageError
 
