@@ -8,7 +8,7 @@ from __future__ import annotations
 import sys
 import tomllib
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from math import sqrt
 from pathlib import Path
 from typing import Any
@@ -30,9 +30,9 @@ def now(bug: Bug) -> str:
     return str(bug.get("now", bug["robot"]))
 
 
-def share(bugs: Sequence[Bug], holds: Callable[[Bug], bool]) -> str:
-    """Return how many bugs a condition holds for, as text: number, share and interval."""
-    count, size = sum(map(holds, bugs)), len(bugs)
+def share(hold: Sequence[bool]) -> str:
+    """Return of how many bugs something holds, as text: number, share and interval."""
+    count, size = sum(hold), len(hold)
     part = count / size
     middle = (part + _Z**2 / (2 * size)) / (1 + _Z**2 / size)
     half = _Z * sqrt(part * (1 - part) / size + _Z**2 / (4 * size**2)) / (1 + _Z**2 / size)
@@ -51,23 +51,21 @@ def by_operator(bugs: Sequence[Bug]) -> dict[str, Counter[str]]:
 def main() -> int:
     """The command."""
     bugs = silent()
-    before: Callable[[Bug], str] = lambda one: str(one["robot"])  # noqa: E731
-    conventional: Callable[[Bug], str] = lambda one: str(one["conventional"])  # noqa: E731
-    either: Callable[[Bug], str] = lambda one: min(now(one), conventional(one))  # noqa: E731  # E is before M
     print(f"| {len(bugs)} silent bugs | exact | exact or near |\n|---|---|---|")
-    for name, letter in (
-        ("robot operators", before),
-        ("robot operators and family `bugs`", now),
-        ("conventional operators", conventional),
-        ("all three", either),
-    ):
-        exact = share(bugs, lambda one, letter=letter: letter(one) == "E")  # type: ignore[misc]
-        near = share(bugs, lambda one, letter=letter: letter(one) in "EM")  # type: ignore[misc]
-        print(f"| {name} | {exact} | {near} |")
+    letters = {
+        "robot operators": [str(one["robot"]) for one in bugs],
+        "robot operators and family `bugs`": [now(one) for one in bugs],
+        "conventional operators": [str(one["conventional"]) for one in bugs],
+        "all three": [min(now(one), str(one["conventional"])) for one in bugs],  # E is before M
+    }
+    for name, found in letters.items():
+        print(
+            f"| {name} | {share([one == 'E' for one in found])} | {share([one in 'EM' for one in found])} |"
+        )
     print("\n| operator | exact | near | exact, and by no conventional operator |\n|---|---|---|---|")
     for name, counts in sorted(by_operator(bugs).items(), key=lambda one: -one[1]["E"]):
         alone = [one for one in bugs if one.get("now_by") == name and one["now"] == "E"]
-        own = sum(conventional(one) != "E" for one in alone)
+        own = sum(one["conventional"] != "E" for one in alone)
         print(f"| {name} | {counts['E']} | {counts['M']} | {own} |")
     return 0
 

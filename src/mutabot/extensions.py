@@ -29,14 +29,23 @@ GROUP = "mutabot"
 #: what comes with mutabot's own packages: who asks for it is told which one is not installed
 _OF_OWN_PACKAGES = {
     "commands": {
+        "diff": "mutabot_languages",
+        "export": "mutabot_languages",
         "init": "mutabot_init",
         "live": "mutabot_live",
         "motion": "mutabot_motion",
+        "patches": "mutabot_patches",
         "suggest": "mutabot_suggest",
         "world": "mutabot_world",
     },
     "executors": {"cluster": "mutabot_dask"},
-    "tables": {"cluster": "mutabot_dask", "world": "mutabot_world"},
+    "tables": {
+        "cluster": "mutabot_dask",
+        "guard": "mutabot_hardware",
+        "hardware": "mutabot_hardware",
+        "patches": "mutabot_patches",
+        "world": "mutabot_world",
+    },
     "operators": dict.fromkeys(("catalogue", "middleware"), "mutabot_catalogue"),
 }
 #: kinds of parts that processes of the tests need

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 from sealing import NOMINAL_X, NOMINAL_Y, NOMINAL_Z, SEAM
@@ -16,8 +17,8 @@ from mutabot_cell.fixtures import *  # noqa: F403  (new_cell; fails a test whose
 def station_with(new_cell: Callable[..., Cell], mutabot_seed: int) -> Callable[..., Station]:
     """Makes the test's station; arguments as for `station.build`."""
 
-    def make(**options: object) -> Station:
+    def make(**options: Any) -> Station:
         nominal = Housing(NOMINAL_X, NOMINAL_Y, NOMINAL_Z, 0.0)
-        return build(new_cell, mutabot_seed, nominal, list(SEAM), **options)  # type: ignore[arg-type]
+        return build(new_cell, mutabot_seed, nominal, list(SEAM), **options)
 
     return make
