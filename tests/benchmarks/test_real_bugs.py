@@ -36,10 +36,10 @@ def test_a_later_class_is_a_better_one_and_crashes_have_none() -> None:
 def test_the_page_has_the_shares() -> None:
     bugs = silent()
     for told in (
-        share(bugs, lambda one: one["robot"] == "E"),
-        share(bugs, lambda one: now(one) == "E"),
-        share(bugs, lambda one: now(one) in "EM"),
-        share(bugs, lambda one: "E" in (now(one), one["conventional"])),
+        share([one["robot"] == "E" for one in bugs]),
+        share([now(one) == "E" for one in bugs]),
+        share([now(one) in "EM" for one in bugs]),
+        share(["E" in (now(one), one["conventional"]) for one in bugs]),
     ):
         assert re.search(rf"\| {re.escape(told)} \|", PAGE)
 
