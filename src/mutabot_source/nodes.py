@@ -10,7 +10,8 @@ from collections.abc import Callable
 
 from mutabot.api.faults import Alternative
 
-from .index import TextExtent, extent_of
+from .index import Scope, TextExtent, extent_of
+from .neighbours import Neighbours
 from .operator import Surroundings, SyntaxNode, TextParts
 
 _DefinitionNode = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
@@ -26,6 +27,7 @@ class ModuleTree:
 
     def __init__(self, text: str, tree: ast.Module) -> None:
         self._lines = [line.encode() for line in text.split("\n")]
+        self._neighbours = Neighbours(tree)
         self._parents: dict[ast.AST, ast.AST] = {}
         self._formatted: set[ast.AST] = set()
         for node in ast.walk(tree):  # from the outside in
@@ -57,8 +59,8 @@ class ModuleTree:
         """Whether a statement begins with ``elif``."""
         return isinstance(node, ast.If) and self._lines[node.lineno - 1][node.col_offset :].startswith(b"el")
 
-    def surroundings(self, node: SyntaxNode) -> Surroundings:
-        """Where a node stands."""
+    def surroundings(self, node: SyntaxNode, scope: Scope) -> Surroundings:
+        """Where a node of this scope stands."""
         parent = self._parents[node]
         is_callee = _is_decorator(node, parent) or (isinstance(parent, ast.Call) and node is parent.func)
         return Surroundings(
@@ -68,6 +70,8 @@ class ModuleTree:
             is_callee=is_callee,
             is_argument=self._is_argument(node),
             is_loop=self._is_loop(node),
+            function=scope.name.rpartition(".")[2],
+            neighbour=self._neighbours.next_of(node),
         )
 
     def _is_argument(self, node: ast.AST) -> bool:

@@ -60,6 +60,9 @@ class Surroundings:
         is_argument: whether it is an argument of a call.
         is_callee: whether it is what a call calls.
         is_loop: whether it decides if a loop goes on.
+        function: name of the function that it belongs to; ``<module>`` at the top level.
+        neighbour: for a fixed value that a call gets, that which the next call of the same function in the
+            file gets at the same place; None if there is none.
     """
 
     is_value: bool = True
@@ -68,6 +71,8 @@ class Surroundings:
     is_argument: bool = False
     is_callee: bool = False
     is_loop: bool = False
+    function: str = "<module>"
+    neighbour: ast.expr | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -110,7 +110,7 @@ class _TextFinder:
 
     def _seed(self, found: ScopedNode) -> _Seed | None:
         node = found.node
-        around = self.tree.surroundings(node)
+        around = self.tree.surroundings(node, found.scope)
         drafts = [(rule, draft) for rule in self._rules for draft in rule.drafts(node, around)]
         variable = self._variables and is_variable(node, around)
         if (not drafts and not variable) or self.tree.is_elif(node) or not self.tree.stands_there(node):

@@ -77,6 +77,52 @@ PROJECT = {
             while n < 3:
                 n += 1
             return (x - y) * speed + n
+
+        def waits(seconds):
+            return seconds * 1000
+
+        def slow(degrees):
+            return degrees * math.pi / 180
+
+        POSES = {"home": 0, "bin": 5}
+
+        def tour():
+            return [POSES["home"], POSES["bin"]]
+
+        def quaternion(q):
+            return rotated((q.w, q.x, q.y, q.z), from_euler("xyz", 1, degrees=True))
+
+        def rotated(q, other):
+            return q[0], other
+
+        def from_euler(axes, angle, degrees=False):
+            return axes if degrees else angle
+
+        class Counter:
+            def __init__(self):
+                self.seen = []
+                self.count = 0
+                self.handlers = []
+
+            def subscribe(self, handler):
+                self.handlers.append(handler)
+
+            def unsubscribe(self, handler):
+                self.handlers.remove(handler)
+
+            def note(self, value):
+                self.count += value
+
+            def run(self, values):
+                self.count = 0
+                self.seen.clear()
+                self.subscribe(self.note)
+                for value in values:
+                    self.seen.append(value)
+                    for handler in self.handlers:
+                        handler(value)
+                self.unsubscribe(self.note)
+                return self.count, list(self.seen)
         """,
     "test_prog.py": """
         import math
@@ -111,6 +157,31 @@ PROJECT = {
 
         def test_inverse():
             assert prog.inverse(ONE).rows == [[1, 3], [2, 4]]
+
+        def test_waits():
+            assert prog.waits(2) == 2000
+
+        def test_slow():
+            assert prog.slow(180) == math.pi
+
+        def test_tour():
+            assert prog.tour() == [0, 5]
+
+        def test_quaternion():
+            q = type("Q", (), {"w": 1, "x": 2, "y": 3, "z": 4})
+            assert prog.quaternion(q) == (1, "xyz")
+
+        def test_runs():
+            counter = prog.Counter()
+            assert counter.run([1, 2]) == (3, [1, 2])
+            assert counter.run([4]) == (4, [4])
+
+        def test_a_run_leaves_nothing():
+            counter = prog.Counter()
+            _, first = counter.run([1])
+            counter.run([2])
+            assert first == [1]
+            assert counter.handlers == []
 
         def test_pick():
             assert prog.pick(1, 2) == 1

@@ -1,0 +1,92 @@
+"""The values that stand at one and the same place of several calls: waypoints, names of poses, settings.
+
+What one call of a function gets, another call of it could get as well. So no types need to be known.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+
+_WITHOUT_NEIGHBOURS = {
+    "print", "debug", "info", "warning", "error", "critical", "exception", "log", "isinstance", "issubclass",
+    "getattr", "setattr", "hasattr", "range", "round", "min", "max", "pow", "len", "int", "float", "str",
+    "format", "open", "encode", "decode", "split", "join", "strip", "TypeVar",
+}  # fmt: skip
+#: longer texts are messages for people
+_LONGEST = 40
+
+
+class Neighbours:
+    """What the calls and subscripts of a module have at the same place.
+
+    Args:
+        tree: the tree of the module.
+    """
+
+    def __init__(self, tree: ast.Module) -> None:
+        self._places: dict[ast.expr, str] = {}
+        self._values: dict[str, list[ast.expr]] = {}
+        for node in ast.walk(tree):
+            for place, value in _given(node):
+                if _is_fixed(value):
+                    self._places[value] = place
+                    self._values.setdefault(place, []).append(value)
+        for found in self._values.values():
+            found.sort(key=lambda one: (one.lineno, one.col_offset))
+
+    def next_of(self, node: ast.AST) -> ast.expr | None:
+        """The next other value at this place in the text, for the last one the first; None if none."""
+        if not isinstance(node, ast.expr) or node not in self._places:
+            return None
+        place = self._places[node]
+        values = self._values[place]
+        start = values.index(node)
+        for other in [*values[start + 1 :], *values[:start]]:
+            if ast.dump(other) != ast.dump(node) and _kind(other) == _kind(node):
+                return other
+        return None
+
+
+def _given(node: ast.AST) -> Iterator[tuple[str, ast.expr]]:
+    """The values that a call or subscript gets, each with what tells its place from others."""
+    if isinstance(node, ast.Subscript) and isinstance(node.value, ast.Name | ast.Attribute):
+        yield f"{ast.unparse(node.value)}[]", node.slice
+    elif isinstance(node, ast.Call):
+        name = getattr(node.func, "attr", getattr(node.func, "id", ""))
+        if not name or name in _WITHOUT_NEIGHBOURS or name.endswith(("Error", "Exception", "Warning")):
+            return
+        for number, value in enumerate(node.args):
+            is_row = isinstance(value, ast.Starred)
+            yield f"{name} {'*' * is_row}{number}", value.value if isinstance(value, ast.Starred) else value
+        yield from ((f"{name} {one.arg}", one.value) for one in node.keywords if one.arg is not None)
+
+
+def _is_fixed(node: ast.expr) -> bool:
+    """Whether an expression means the same all over the module, and is no truth value and no message."""
+    match node:
+        case ast.Constant(value=str() as text):
+            return 0 < len(text) <= _LONGEST and " " not in text
+        case ast.Constant(value=value):
+            return isinstance(value, int | float) and not isinstance(value, bool)
+        case ast.UnaryOp(op=ast.USub()):
+            return isinstance(node.operand, ast.Constant) and _is_fixed(node.operand)
+        case ast.Tuple() | ast.List():
+            return bool(node.elts) and all(_is_fixed(one) for one in node.elts)
+        case ast.Name(id=name):
+            return name.isupper()
+        case ast.Attribute(attr=name):
+            return name.isupper() and isinstance(node.value, ast.Name)
+    return False
+
+
+def _kind(node: ast.expr) -> str:
+    """What kind of value an expression is, as far as the text says."""
+    match node:
+        case ast.Constant(value=str()):
+            return "text"
+        case ast.Constant() | ast.UnaryOp():
+            return "number"
+        case ast.Tuple() | ast.List():
+            return f"row of {len(node.elts)}"
+    return "name"
