@@ -23,4 +23,4 @@ _HOMES = {
     "mutabot.results.stored": ("StoredCampaign", "open"),
     "mutabot.errors": ("MutabotError",),
 }
-__getattr__, __dir__ = lazily(__name__, _HOMES)
+__getattr__ = lazily(__name__, _HOMES)

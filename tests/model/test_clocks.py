@@ -33,6 +33,19 @@ assert 0.0 <= mutabot.runtime.test_hooks.process_time() - before[1] < 600.0
 clocks.sleep(0.0)
 """
 
+#: what the same libraries do first: they ask every module for every attribute that it lists
+EVERY_ATTRIBUTE = """
+import sys
+import mutabot.api.faults, mutabot.api.processes, mutabot.api.reports, mutabot.api.values
+import mutabot.runtime.session_hooks
+before = set(sys.modules)
+for module in list(sys.modules.values()):
+    if module.__name__.startswith("mutabot"):
+        for name in dir(module):
+            getattr(module, name)
+assert set(sys.modules) == before, sorted(set(sys.modules) - before)
+"""
+
 
 def test_clocks_go_on_while_a_test_replaces_those_of_the_modules(monkeypatch: pytest.MonkeyPatch) -> None:
     class Never(datetime.datetime):
@@ -51,6 +64,10 @@ def test_clocks_go_on_while_a_test_replaces_those_of_the_modules(monkeypatch: py
 
 def test_no_module_of_ours_loses_its_clock_to_who_replaces_them_everywhere() -> None:
     subprocess.run([sys.executable, "-c", EVERYWHERE], check=True, timeout=300)
+
+
+def test_to_ask_our_modules_for_their_attributes_loads_no_other_module() -> None:
+    subprocess.run([sys.executable, "-c", EVERY_ATTRIBUTE], check=True, timeout=300)
 
 
 def test_the_clock_is_that_of_the_system() -> None:

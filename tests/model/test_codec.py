@@ -27,7 +27,7 @@ plain: st.SearchStrategy[Any] = (
 few = settings(max_examples=25, deadline=None)
 #: these hold callables and never leave the process
 STAY_INSIDE = {Call, Reply}
-NAMED = [getattr(model, name) for name in dir(model)]
+NAMED = [getattr(model, name) for name in model.__all__]
 KINDS = list(
     dict.fromkeys(
         kind

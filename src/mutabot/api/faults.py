@@ -43,4 +43,4 @@ _HOMES = {
     "mutabot.original": ("Original",),
     "mutabot.runtime.active_fault": ("ActiveFault",),
 }
-__getattr__, __dir__ = lazily(__name__, _HOMES)
+__getattr__ = lazily(__name__, _HOMES)

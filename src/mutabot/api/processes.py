@@ -43,4 +43,4 @@ _HOMES = {
     "mutabot.runtime.pytest_plugin": ("seed_of",),
     "mutabot.shared_memory": ("SharedMemory",),
 }
-__getattr__, __dir__ = lazily(__name__, _HOMES)
+__getattr__ = lazily(__name__, _HOMES)

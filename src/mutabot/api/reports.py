@@ -28,4 +28,4 @@ _HOMES = {
     "mutabot.report.html.pages": ("ReportPages",),
     "mutabot.results.results": ("MutantResult", "Results"),
 }
-__getattr__, __dir__ = lazily(__name__, _HOMES)
+__getattr__ = lazily(__name__, _HOMES)

@@ -36,4 +36,4 @@ _HOMES = {
     "mutabot.model.signature": ("parse_signature",),
     "mutabot.runtime.targets.target": ("Finding", "MiddlewareControls", "Names", "Where", "resolve"),
 }
-__getattr__, __dir__ = lazily(__name__, _HOMES)
+__getattr__ = lazily(__name__, _HOMES)

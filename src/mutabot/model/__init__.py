@@ -52,4 +52,4 @@ _HOMES = {
         "By", "Check", "Compared", "Diverged", "Kill", "LeftOut", "Looked", "Outcome", "Verdict",
     ),
 }  # fmt: skip
-__getattr__, __dir__ = lazily(__name__, _HOMES)
+__getattr__ = lazily(__name__, _HOMES)
