@@ -90,7 +90,8 @@ class SessionHooks:
             from mutabot.runtime.isolation.fork_server import ForkServer  # noqa: PLC0415
 
             collector.watch()
-            preload()
+            if job.vocabulary.operations:  # else no operator of calls will act
+                preload()
             hooks = cls(
                 job, pipe, ForkServer(job.serving, pipe, LOG, home, job.private_files, not _tests_us(job))
             )
