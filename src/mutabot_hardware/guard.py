@@ -8,7 +8,7 @@ from typing import Any
 from mutabot.api.processes import CallGuard
 from mutabot.api.values import Call, Operation
 
-from .rules import BoxRule, LimitRule, OrderRule, RuleFinding, fits, is_one
+from .rules import BoxRule, LimitRule, OrderRule, RuleFinding, described, fits, is_one
 from .tables import GuardTable
 from .targets import UnreadableTarget
 
@@ -29,7 +29,20 @@ def why_idle(table: GuardTable, operations: Iterable[Operation]) -> str | None:
             return f"guard.{kind} concerns no quantity that the vocabulary describes: {which}"
     named = [*table.forbid, *(name for one in table.order for name in (*one.operations, *one.after))]
     lost = next((name for name in named if not any(is_one(one, [name]) for one in commands)), None)
-    return f"guard: the vocabulary describes no command {lost}" if lost is not None else None
+    if lost is not None:
+        return f"guard: the vocabulary describes no command {lost}"
+    if table.tool is not None and not any(_says_tool(one, table.tool) for one in commands):
+        return (
+            f"guard.tool: the vocabulary describes no command with a quantity as in {table.tool!r}; "
+            "it needs the target of an operation, a space, and the name of a quantity"
+        )
+    return None
+
+
+def _says_tool(operation: Operation, tool: str) -> bool:
+    """Whether an operation has a quantity that says which tool is mounted."""
+    target, *names = tool.split()
+    return operation.target == target and any(one.name in names for one in described(operation))
 
 
 class TableGuard(CallGuard):

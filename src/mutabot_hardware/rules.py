@@ -51,7 +51,7 @@ def is_one(operation: Operation, operations: Iterable[str]) -> bool:
     return any(fnmatchcase(operation.target, one) for one in operations)
 
 
-def _described(operation: Operation) -> Iterator[Quantity]:
+def described(operation: Operation) -> Iterator[Quantity]:
     """All that the vocabulary describes of what an operation writes."""
     yield from operation.arguments
     for pattern in operation.patterns:
@@ -74,7 +74,7 @@ class LimitRule:
 
     def concerns(self, operation: Operation) -> bool:
         """Whether there is a quantity of an operation that it limits."""
-        return is_one(operation, self.table.operations) and any(map(self._is_meant, _described(operation)))
+        return is_one(operation, self.table.operations) and any(map(self._is_meant, described(operation)))
 
     def of(self, call: Call, tool: str | None) -> Iterator[RuleFinding]:
         """What it says of a call. Raises UnreadableTarget."""
@@ -113,7 +113,7 @@ class BoxRule:
 
     def concerns(self, operation: Operation) -> bool:
         """Whether there is a target of an operation that it is compared with."""
-        return is_one(operation, self.table.operations) and any(map(self._is_place, _described(operation)))
+        return is_one(operation, self.table.operations) and any(map(self._is_place, described(operation)))
 
     def of(self, call: Call, tool: str | None) -> Iterator[RuleFinding]:
         """What it says of a call. Raises UnreadableTarget."""
@@ -185,7 +185,8 @@ class OrderRule:
 
 
 def _holds(wanted: str | None, tool: str | None) -> bool:
-    return wanted is None or wanted == tool
+    """Whether a rule for one tool holds: also while nothing has said which one is mounted."""
+    return wanted is None or tool is None or wanted == tool
 
 
 def _least(above: float, below: float) -> float:

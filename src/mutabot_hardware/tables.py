@@ -35,7 +35,7 @@ class LimitTable(Table):
     unit: str | None = None
     """Unit of these numbers; unless given, that of the quantity."""
     tool: str | None = None
-    """The limit holds while the tool of this name is mounted, see `tool`."""
+    """The limit holds while the tool of this name is mounted, or none is known yet, see `tool`."""
 
     @model_validator(mode="after")
     def _has_an_end(self) -> Self:
@@ -68,7 +68,7 @@ class BoxTable(Table):
     frame: str | None = None
     """Frame of the box: targets in another frame are not compared with it. Unless given, it holds for all."""
     tool: str | None = None
-    """The box holds while the tool of this name is mounted, see `tool`."""
+    """The box holds while the tool of this name is mounted, or none is known yet, see `tool`."""
 
     @model_validator(mode="after")
     def _has_sides(self) -> Self:
@@ -121,10 +121,18 @@ class GuardTable(Table):
         order = [{ operations = ["robot:drill"], after = ["robot:clamp"], until = ["robot:release"] }]
     """
     tool: str | None = None
-    """Which quantity of which operation says which tool is mounted from then on.
+    """Which quantity of which operation says which tool is mounted from then on. In each test and process the
+    rules of all tools hold until it has said so for the first time.
 
         tool = "robot:Arm.set_tool name"
     """
+
+    @model_validator(mode="after")
+    def _knows_tools(self) -> Self:
+        named = next((one.tool for one in (*self.limit, *self.box) if one.tool is not None), None)
+        if self.tool is None and named is not None:
+            raise ValueError(f"a rule holds for the tool {named!r}, but tool does not say what mounts it")
+        return self
 
     @property
     def is_empty(self) -> bool:

@@ -15,8 +15,8 @@ from mutabot.errors import UsageError
 from mutabot.model import Call, Kind, Operation, Path, Quantity
 from mutabot.model.quantity import Mode
 from mutabot_hardware.choice import HardwareChoice
-from mutabot_hardware.guard import TableGuard
-from mutabot_hardware.tables import HardwareTable
+from mutabot_hardware.guard import TableGuard, why_idle
+from mutabot_hardware.tables import GuardTable, HardwareTable
 
 
 def quantity(
@@ -31,6 +31,7 @@ MOVE = Operation(
     arguments=(quantity("x", "x"), quantity("z", "z"), quantity("speed", None, Kind.SPEED, "m/s")),
 )
 CLAMP, DRILL, RELEASE, TOOL = (Operation(f"robot:{name}") for name in ("clamp", "drill", "release", "tool"))
+CHANGE = Operation("robot:tool", arguments=(quantity("name", None, Kind.LABEL, None),))  # type: ignore[arg-type]
 NUMBERS = st.floats(allow_nan=True, allow_infinity=True)
 
 
@@ -116,18 +117,48 @@ def test_a_command_passes_only_after_the_one_that_has_to_come_before() -> None:
 
 
 def test_a_limit_of_a_tool_holds_while_that_is_mounted() -> None:
-    change = Operation("robot:tool", arguments=(quantity("name", None, Kind.LABEL, None),))  # type: ignore[arg-type]
     guard = TableGuard({"tool": "robot:tool name", "box": [{"z": [0.5, 0.9], "tool": "drill"}]})
+    assert why(guard, {"name": "gripper"}, CHANGE) is None
     assert why(guard, {"z": 0.2}) is None
-    assert why(guard, {"name": "drill"}, change) is None
+    assert why(guard, {"name": "drill"}, CHANGE) is None
     assert why(guard, {"z": 0.2}) == "z leads to 0.2 m, the workspace is 0.5 to 0.9 m"
-    assert why(guard, {"name": "gripper"}, change) is None
+    assert why(guard, {"name": "gripper"}, CHANGE) is None
     assert why(guard, {"z": 0.2}) is None
+
+
+def test_the_rules_of_all_tools_hold_until_a_tool_is_known() -> None:
+    guard = TableGuard(
+        {
+            "tool": "robot:tool name",
+            "box": [{"z": [0.5, 0.9], "tool": "drill"}],
+            "limit": [{"kind": "translation", "max": 0.8, "tool": "gripper"}],
+        }
+    )
+    for _ in range(2):
+        assert why(guard, {"z": 0.2}) is not None
+        assert why(guard, {"z": 0.85}) is not None
+        assert why(guard, {"z": 0.6}) is None
+        assert why(guard, {"name": "drill"}, CHANGE) is None
+        assert why(guard, {"z": 0.85}) is None
+        guard.start_test()
+
+
+def test_who_says_which_tool_is_mounted_is_an_operation_of_the_vocabulary() -> None:
+    table = {"tool": "robot:tool name", "box": [{"z": [0.5, 0.9]}]}
+    assert why_idle(GuardTable.model_validate(table), [MOVE, CHANGE]) is None
+    for lost in ("robot:tool title", "robot:tools name", "robot:tool"):
+        said = why_idle(GuardTable.model_validate({**table, "tool": lost}), [MOVE, CHANGE])
+        assert said is not None
+        assert repr(lost) in said
 
 
 @pytest.mark.parametrize(
     ("table", "said"),
     [
+        (
+            {"box": [{"z": [0.0, 1.0], "tool": "drill"}]},
+            "the tool 'drill', but tool does not say what mounts",
+        ),
         ({"limit": [{"kind": "speed"}]}, "needs min, max or both"),
         ({"limit": [{"min": 1.0, "max": 0.0}]}, "leaves no value: min 1 and max 0, margin 0"),
         ({"box": [{}]}, "needs x, y or z"),
