@@ -49,7 +49,7 @@ def node(tmp_path: Path) -> Path:
 def run(node: Path, operator: str) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, str(node), str(node.parent), operator]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    return subprocess.run(command, capture_output=True, text=True, check=False, env=environment, timeout=60)
+    return subprocess.run(command, capture_output=True, text=True, check=False, env=environment, timeout=600)
 
 
 def test_a_node_that_is_killed_tells_so_and_is_gone(node: Path) -> None:

@@ -11,4 +11,4 @@ from .both import needs_ros1, run_cases
 
 @needs_ros1
 def test_every_case_holds_with_a_real_master() -> None:
-    run_cases("ros1_cases.py", 100.0, {"ROS_NAMESPACE": "/cell"})
+    run_cases("ros1_cases.py", {"ROS_NAMESPACE": "/cell"})

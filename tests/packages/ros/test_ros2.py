@@ -24,7 +24,7 @@ def test_every_case_holds_over_a_real_middleware() -> None:
             "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
             "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4",
         }
-        run_cases("ros2_cases.py", 200.0, environment)
+        run_cases("ros2_cases.py", environment)
 
 
 _NODE = """

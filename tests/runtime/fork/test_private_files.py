@@ -23,7 +23,7 @@ def overlays(tmp_path_factory: pytest.TempPathFactory) -> None:
     folder = tmp_path_factory.mktemp("overlay")
     options, how = (_LAYERS, "-m") if os.geteuid() == 0 else (f"{_LAYERS},userxattr", "-rm")
     command = ["unshare", how, "sh", "-c", _OVERLAY.format(folder=folder, options=options)]
-    done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=60)
+    done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=600)
     if done.returncode:
         pytest.skip(f"no private mounts here: {done.stderr}")
 
@@ -59,7 +59,7 @@ assert not (why_not := files.make()), why_not
 def said_by(code: str, *arguments: object) -> str:
     """What a process prints that has private files, and does this with them."""
     command = [sys.executable, "-c", BEGINNING + code, *map(str, arguments)]
-    done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=60)
+    done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=600)
     assert done.stderr == ""
     return done.stdout.strip()
 
