@@ -55,13 +55,8 @@ def _take_on(path: str, content: bytes, functions: list[list[Any]]) -> None:
 
 
 def _functions_of(path: str) -> Iterator[FunctionType]:
-    are_frozen = gc.get_freeze_count() > 0  # by the program: the collector does not tell of these
-    if are_frozen:
-        gc.unfreeze()
-    objects = gc.get_objects()
-    if are_frozen:
-        gc.freeze()
-    for one in objects:
+    gc.unfreeze()  # what the program has frozen is in no list; to freeze more than it did would keep garbage
+    for one in gc.get_objects():
         if type(one) is FunctionType and one.__code__.co_filename.endswith(path):
             yield one
 

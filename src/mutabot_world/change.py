@@ -61,9 +61,21 @@ def change_at(world: Any, path: str, change: NumberChange) -> tuple[Any, Any, Un
         owner = _get(owner, name, item, path)
     before = _get(owner, *last, path)
     before = before.copy() if hasattr(before, "copy") else before
-    after = change(before)
-    _set(owner, *last, after)
+    try:
+        _set(owner, *last, change(before))
+    except (AttributeError, LookupError, TypeError, ValueError) as error:
+        raise NothingThereError(f"{path} cannot be changed: {error}") from error
+    after = _get(
+        owner, *last, path
+    )  # an array of whole numbers or a setter may have made another number of it
+    if _is_same(before, after):
+        raise NothingThereError(f"{path} is {before} with the change as well")
     return before, after, lambda: _set(owner, *last, before)
+
+
+def _is_same(before: Any, after: Any) -> bool:
+    same = before == after
+    return bool(same.all() if hasattr(same, "all") else same)
 
 
 def _steps(path: str) -> list[tuple[str, Any]]:

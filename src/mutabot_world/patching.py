@@ -7,6 +7,8 @@ import inspect
 import sys
 from collections.abc import Callable, Iterator
 from importlib import import_module
+from threading import get_ident
+from types import ModuleType
 from typing import Any
 
 from .change import Undo
@@ -58,43 +60,72 @@ def rebind(old: Any, new: Any) -> None:
 def wrap(reference: str, *, before: Before | None = None, after: After | None = None) -> Undo:
     """Let something be called before or after a function, a method, or the making of a class's objects.
 
+    Of an object it is called after all that makes it, also where a subclass does more than the class.
     Returns what takes it away again. Raises LookupError.
     """
     owner, last, found = resolve(reference)
-    is_class = isinstance(found, type)
-    if is_class:
-        owner, last, found = found, "__init__", found.__init__
-    kept = inspect.getattr_static(owner, last)
+    if not isinstance(found, type):
+        return _put_around(owner, last, before, after, set())
+    below = [one for one in dict.fromkeys(_below(found)) if after and "__init__" in vars(one)]
+    running: set[Any] = set()
+    undoes = [_put_around(found, "__init__", before, after, running)]
+    undoes += [_put_around(one, "__init__", None, after, running) for one in below]
+
+    def undo() -> None:
+        for each in undoes:
+            each()
+
+    return undo
+
+
+def _below(kind: type) -> Iterator[type]:
+    """Yield all subclasses of a class."""
+    below: list[type] = kind.__subclasses__()
+    for one in below:
+        yield one
+        yield from _below(one)
+
+
+def _put_around(owner: Any, last: str, before: Before | None, after: After | None, running: set[Any]) -> Undo:
+    """Let something be called before or after ``owner.last``; not below itself, which ``running`` shows."""
+    found, kept = getattr(owner, last), inspect.getattr_static(owner, last)
+    is_maker = isinstance(owner, type) and last == "__init__"
     is_inherited = isinstance(owner, type) and last not in vars(owner)
-    depth = 0
 
     def around(*arguments: Any, **named: Any) -> Any:
-        nonlocal depth
-        replaced = before(*arguments, **named) if before is not None and not depth else None
+        key = id(arguments[0]) if is_maker else get_ident()
+        is_first = key not in running
+        replaced = before(*arguments, **named) if before is not None and is_first else None
         if replaced is not None:
             arguments, named = replaced
-        depth += 1
+        running.add(key)
         try:
             result = found(*arguments, **named)
         except BaseException as error:
             marked(error)
             raise
         finally:
-            depth -= 1
-        if after is not None and not depth:
-            after(arguments[0] if arguments else None, arguments[0] if is_class else result)
+            if is_first:
+                running.discard(key)
+        if after is not None and is_first:
+            after(arguments[0] if arguments else None, arguments[0] if is_maker else result)
         return result
 
     around.__wrapped__ = found  # type: ignore[attr-defined]  # as functools.wraps does
     around.__name__ = getattr(found, "__name__", last)
     is_static = isinstance(kept, staticmethod) or (isinstance(owner, type) and not inspect.isroutine(kept))
-    setattr(owner, last, staticmethod(around) if is_static and not is_class else around)
+    setattr(owner, last, staticmethod(around) if is_static and not is_maker else around)
+    is_of_module = isinstance(owner, ModuleType)
+    if is_of_module:  # others may have imported it by its name
+        rebind(found, around)
 
     def undo() -> None:
         if is_inherited:
             delattr(owner, last)
         else:
             setattr(owner, last, kept)
+        if is_of_module:
+            rebind(around, found)
 
     return undo
 
@@ -105,6 +136,7 @@ def live(references: list[str]) -> Iterator[Any]:
     if not kinds:
         return
     seen: set[int] = set()
+    gc.unfreeze()  # what the program has frozen is in no list; to freeze more than it did would keep garbage
     for holder in gc.get_objects():
         # those that Python's collector does not know are held by others
         held = [holder] if isinstance(holder, kinds) else gc.get_referents(holder)

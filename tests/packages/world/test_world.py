@@ -8,7 +8,7 @@ import pytest
 
 from tests.plugins.test_plugins import USAGE, mutabot
 
-from .belts import LONG, SHORT, project, run, told
+from .belts import FILES, LONG, SHORT, project, run, told
 
 SPEED = """
     [[tool.mutabot.world.parameter]]
@@ -79,6 +79,77 @@ def test_moments(engine: str, when: str, least: bool, tmp_path: Path) -> None:
     half = SPEED.replace("[0.01, 10, 50]", "[50]").replace("    more =", f'    when = "{when}"\n    more =')
     found = run(project(tmp_path, half), "--engine", engine)
     assert (found["speed -"]["noticed_from"] == 50) == least
+
+
+@pytest.mark.parametrize("engine", ["fork", pytest.param("replay", marks=pytest.mark.whole)])
+@pytest.mark.parametrize(
+    ("of", "when"), [("belt:make_belt", "made"), ("belt:Belt", "call 16 of belt:advance")]
+)
+def test_functions_are_found_that_the_program_has_imported_by_their_names(
+    engine: str, of: str, when: str, tmp_path: Path
+) -> None:
+    functions = """
+        def make_belt():
+            return Belt()
+
+
+        def advance(belt):
+            return belt.advance()
+        """
+    mission = """
+        from belt import advance, make_belt
+
+
+        def drive(seconds, on=None):
+            here = on or make_belt()
+            while here.time < seconds - 0.05:
+                advance(here)
+            return here.position
+        """
+    half = SPEED.replace("[0.01, 10, 50]", "[50]").replace("    more =", f'    when = "{when}"\n    more =')
+    folder = project(tmp_path, half, **{"belt.py": FILES["belt.py"] + functions, "mission.py": mission})
+    settings = folder / "pyproject.toml"
+    settings.write_text(settings.read_text().replace('of = ["belt:Belt"]', f'of = ["{of}"]'))
+    assert run(folder, "--engine", engine)["speed -"]["noticed_from"] == 50
+
+
+@pytest.mark.parametrize("begins", ["super().__init__()", "vars(self).update(vars(Belt()))"])
+def test_a_subclass_makes_the_world_to_its_end_before_that_is_disturbed(begins: str, tmp_path: Path) -> None:
+    quick = f"""
+        class Quick(Belt):
+            def __init__(self):
+                {begins}
+                self.speed = 1.0
+        """
+    mission = FILES["mission.py"].replace("belt.Belt()", "belt.Quick()")
+    half = SPEED.replace("[0.01, 10, 50]", "[50]")
+    folder = project(tmp_path, half, **{"belt.py": FILES["belt.py"] + quick, "mission.py": mission})
+    assert run(folder)["speed -"]["noticed_from"] == 50
+
+
+@pytest.mark.parametrize("engine", ["fork", pytest.param("replay", marks=pytest.mark.whole)])
+@pytest.mark.parametrize("when", ["made", "1.5 s"])
+def test_worlds_are_found_that_the_program_has_frozen(engine: str, when: str, tmp_path: Path) -> None:
+    frozen = """
+        import functools
+        import gc
+
+        import belt
+        import mission
+        import pytest
+
+        made = belt.Belt()
+        gc.freeze()
+
+
+        @pytest.fixture(autouse=True)
+        def always_the_same(monkeypatch):
+            made.time, made.position = 0.0, 0.0
+            monkeypatch.setattr(mission, "drive", functools.partial(mission.drive, on=made))
+        """
+    half = SPEED.replace("[0.01, 10, 50]", "[50]").replace("    more =", f'    when = "{when}"\n    more =')
+    found = run(project(tmp_path, half, **{"conftest.py": frozen}), "--engine", engine)
+    assert found["speed -"]["noticed_from"] == 50
 
 
 def test_a_function_gets_names_and_options_and_says_what_is_not_there(tmp_path: Path) -> None:
