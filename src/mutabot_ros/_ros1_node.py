@@ -41,6 +41,13 @@ def message_of(kind: Any, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
     return sys.modules[_MODULE].msg.args_kwds_to_message(kind, args, kwargs)
 
 
+def with_sender(copied: Any, message: Any) -> Any:
+    """A copy of a message that says who sent it, which rospy does not copy, and tf2 asks for."""
+    if (header := getattr(message, "_connection_header", None)) is not None:
+        copied._connection_header = header
+    return copied
+
+
 class Given:
     """The arguments of a call of rospy, by name.
 
@@ -92,14 +99,16 @@ def where(
     cancel: Callable[[Any], Awaitable[None]] | None = None,
 ) -> Where:
     """Return the site of a call and the faults that can act on it."""
-    return Where(code, name(), MiddlewareControls(_sleep, _later, lost, cancel, clock.jump, _later))
+    return Where(code, name(), MiddlewareControls(_sleep, later, lost, cancel, clock.jump, later))
 
 
 async def _sleep(seconds: float) -> None:
     sys.modules[_MODULE].sleep(seconds)
 
 
-def _later(seconds: float, action: Callable[[], object]) -> None:
+def later(seconds: float, action: Callable[[], object]) -> None:
+    """Have something done later, in ROS's time; not at all once the node is shut down."""
+
     def wait() -> None:
         rospy: Any = sys.modules[_MODULE]
         try:

@@ -22,7 +22,7 @@ from ._ros1_types import Ros1Types
 MODULE = "rospy"
 
 #: what rospy itself publishes and subscribes to
-_OWN = frozenset({"/rosout", "/clock", "/statistics"})
+OWN_TOPICS = frozenset({"/rosout", "/clock", "/statistics"})
 _types = Ros1Types()
 
 
@@ -96,7 +96,7 @@ class _PublishersAndSubscribers:
 
     def _set_up(self, form: Form, given: node.Given) -> Any:
         name = node.resolved(given.get("name"))
-        if name is None or name in _OWN:
+        if name is None or name in OWN_TOPICS:
             return None
         message = Form.PUBLISH if form is Form.ADVERTISE else Form.RECEIVE
         _types.note(message, name, given.get("data_class"))
@@ -105,7 +105,7 @@ class _PublishersAndSubscribers:
     def _publish(self, original: Any, publisher: Any, *args: Any, **kwargs: Any) -> Any:
         name = publisher.resolved_name
         handler = None
-        if name is not None and name not in _OWN:
+        if name is not None and name not in OWN_TOPICS:
             handler = self._messages.find(Form.PUBLISH, name, node.name())
         if handler is None:
             return original(publisher, *args, **kwargs)
@@ -121,14 +121,14 @@ class _PublishersAndSubscribers:
         self._messages.heard(topic.resolved_name, message)
         is_ours = isinstance(getattr(callback, "__self__", None), _waiter())
         handler = None
-        if not is_ours and topic.resolved_name not in _OWN:
+        if not is_ours and topic.resolved_name not in OWN_TOPICS:
             handler = self._messages.find(Form.RECEIVE, topic.resolved_name, node.name())
         if handler is None:
             original(topic, message, callback, more)
             return
 
         def call_back(received: Any) -> None:
-            original(topic, received, callback, more)
+            original(topic, node.with_sender(received, message), callback, more)
 
         node.where(code_of(callback)).deliver(handler, message, call_back)
 

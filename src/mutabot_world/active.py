@@ -48,7 +48,8 @@ class WorldFault(ActiveFault):
                 for reference in self.data["of"]:
                     self._wrap(reference, before=partial(self._make_otherwise, reference))
             case "call":
-                self._wrap(moment["call"], before=_Nth(int(moment["number"]), self._disturb_all))
+                self._calls_left = int(moment["number"])
+                self._wrap(moment["call"], before=self._count)
             case "while":
                 holds = resolve(moment["condition"])[2]
                 self._wrap(moment["call"], before=lambda *_, **__: self._follow(holds))
@@ -77,10 +78,15 @@ class WorldFault(ActiveFault):
         except LookupError as error:
             self._missing = str(error)
 
-    def _disturb_all(self, *_: object, **__: object) -> None:
+    def _disturb_all(self) -> None:
         with suppress(LookupError):  # what makes worlds is not there: the one who waits for it says so
             for world in live(self.data["of"]):
                 self._disturb(world)
+
+    def _count(self, *_: object, **__: object) -> None:
+        self._calls_left -= 1
+        if not self._calls_left:
+            self._disturb_all()
 
     def _follow(self, holds: Any) -> None:
         """Disturb each world while the condition holds, and no longer."""
@@ -157,18 +163,6 @@ def _reference(world: Any) -> Callable[[], Any]:
         return weakref.ref(world)
     except TypeError:  # objects of C code mostly allow none
         return lambda: world
-
-
-class _Nth:
-    """Calls a function before the n-th call of another one."""
-
-    def __init__(self, number: int, then: Any) -> None:
-        self._left, self._then = number, then
-
-    def __call__(self, *_: object, **__: object) -> None:
-        self._left -= 1
-        if not self._left:
-            self._then()
 
 
 def _plain(value: Any) -> Any:

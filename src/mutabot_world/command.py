@@ -12,13 +12,14 @@ import typer
 
 from mutabot.api.reports import CommandContext, Results, UsageError
 
+from .files import NO_PARAMETER
 from .judged import Tolerances, WorldLadder, ladders, suites
 from .sizes import amount
 
 _AMOUNT = re.compile(r"(\d+(?:\.\d+)?) ?(m|mm|deg|rad)")
 #: what a recording measures in
 _OWN = {"mm": ("m", 0.001), "rad": ("deg", 57.29577951308232)}
-_LEGEND = "· lived with   ! suffered unseen   ▒ some rounds notice   █ all notice   ? passed, end not known"
+_LEGEND = "· lived with   ! suffered unseen   ▒ some rounds notice   █ all notice   ? passed, needs a probe"
 
 _Tolerance = Annotated[
     list[str] | None,
@@ -40,7 +41,7 @@ def world(
     results = context.results()
     found = ladders(results, limits)
     if not found:
-        raise UsageError("the last campaign disturbed no world: `mutabot run --family world` does")
+        raise UsageError(f"no world was disturbed: `mutabot run --family world` does; {NO_PARAMETER}")
     if html is not None:
         _write(context, results, found, html)
     if json:

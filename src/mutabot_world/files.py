@@ -14,6 +14,9 @@ from mutabot.api.reports import UsageError
 
 from .tables import ParameterFile, ParameterTable, WorldTable
 
+#: what to do where a project has no parameters
+NO_PARAMETER = '`mutabot init` proposes some, and files have some: parameters = ["mutabot_world:mujoco.toml"]'
+
 
 def parameters_of(table: WorldTable, root: Path) -> list[ParameterTable]:
     """The parameters of a configuration, those of files first.

@@ -16,9 +16,6 @@ from mutabot.api.reports import MutantResult, Results, Verdict
 from .extension import PROVIDER
 from .sizes import amount
 
-#: of a test whose recordings say nothing, how many times its tolerance a probe may be off
-_ONE = 1.0
-
 
 class WorldEnd(StrEnum):
     """How a disturbance ended. Of several tests or rounds the first says how they ended together."""
@@ -67,7 +64,7 @@ def judged(outcome: Any, tolerances: Tolerances) -> Judged:
     if apart:
         is_off = any(one.final > _tolerance(one, tolerances) for one in apart)
         return Judged(WorldEnd.UNSEEN if is_off else WorldEnd.LIVED, told)
-    if outcome.indistinguishable or (outcome.distance is not None and outcome.distance <= _ONE):
+    if outcome.indistinguishable or (outcome.distance is not None and outcome.distance <= 1.0):
         return Judged(WorldEnd.LIVED, told)
     if outcome.distance is None:
         return Judged(WorldEnd.PASSED, next(iter(outcome.gaps), "no probe tells how the world ended"))
@@ -161,13 +158,7 @@ class WorldLadder:
     @property
     def bar(self) -> str:
         """One sign per magnitude."""
-        signs = {
-            WorldEnd.NOTICED: "█",
-            WorldEnd.UNSEEN: "!",
-            WorldEnd.PASSED: "?",
-            WorldEnd.LIVED: "·",
-            WorldEnd.UNKNOWN: " ",
-        }
+        signs = dict(zip(WorldEnd, "█!?· ", strict=True))
         ends = ((size, self.end(size)) for size in sorted(self.found))
         return "".join("▒" if self.is_sometimes_noticed(size) else signs[end] for size, end in ends)
 

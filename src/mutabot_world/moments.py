@@ -54,11 +54,9 @@ class Beginning:
     @property
     def text(self) -> str:
         """How it stands behind a description; empty for a world that is disturbed from the beginning."""
-        match self.kind:
-            case "time":
-                return f", from {self.number:g} s on"
-            case "call":
-                return f", from call {self.number:g} of {self.call.rpartition(':')[2]} on"
-            case "while":
-                return f", while {self.condition.rpartition(':')[2]}"
-        return ""
+        texts = {
+            "time": f", from {self.number:g} s on",
+            "call": f", from call {self.number:g} of {self.call.rpartition(':')[2]} on",
+            "while": f", while {self.condition.rpartition(':')[2]}",
+        }
+        return texts.get(self.kind, "")

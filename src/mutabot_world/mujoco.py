@@ -6,10 +6,12 @@ Each is a function of a model as it was made, of the change in SI units and, by 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from fnmatch import fnmatchcase
 from random import Random
 from typing import Any
+
+import wrapt
 
 from .change import NothingThereError, NumberChange
 from .patching import marked, rebind
@@ -67,7 +69,7 @@ def position(model: Any, change: NumberChange, *, names: str, random: Random, ax
                 model.body_pos[body][number] = written[body] = float(change(now))
 
     move()
-    _before_steps(model, move)
+    _around_steps(model, _STEPS, before=move)
 
 
 def gain(model: Any, change: NumberChange, *, names: str, random: Random) -> None:
@@ -113,7 +115,7 @@ def sensor(model: Any, change: NumberChange, *, names: str, random: Random) -> N
         for part in parts:
             data.sensordata[part] = change(data.sensordata[part])
 
-    _after_steps(model, read)
+    _around_steps(model, ("mj_step", "mj_forward"), after=read)
 
 
 def names_of(model: Any, kind: str) -> dict[int, str]:
@@ -131,12 +133,22 @@ def names_of(model: Any, kind: str) -> dict[int, str]:
     return known
 
 
+def things(model: Any) -> Iterator[tuple[str, list[str]]]:
+    """Yield the parameters that a model offers, and the names of what has them."""
+    bodies, geoms, joints = names_of(model, "body"), names_of(model, "geom"), names_of(model, "joint")
+    free = [int(model.jnt_bodyid[n]) for n in range(model.njnt) if int(model.jnt_type[n]) == 0]
+    yield "mass", [bodies[n] for n in free]
+    yield "friction", [geoms[n] for n in range(model.ngeom) if int(model.geom_bodyid[n]) in free]
+    yield "gain", [*names_of(model, "actuator").values()]
+    damped = [n for n in range(model.njnt) if float(model.dof_damping[model.jnt_dofadr[n]]) > 0.0]
+    yield "damping", [joints[n] for n in damped if int(model.jnt_type[n]) in (2, 3)]
+    yield "gravity", ["*"] if float(model.opt.gravity[2]) else []
+
+
 def _of_joints(model: Any, change: NumberChange, names: str, values: Any) -> None:
-    dofs = {0: 6, 1: 3, 2: 1, 3: 1}
     for joint in _named(model, "joint", names, lambda one: int(model.jnt_type[one]) in (2, 3)):
-        first = int(model.jnt_dofadr[joint])
-        for dof in range(first, first + dofs[int(model.jnt_type[joint])]):
-            values[dof] = max(float(change(float(values[dof]))), 0.0)
+        dof = int(model.jnt_dofadr[joint])  # the one of a slide or a hinge
+        values[dof] = max(float(change(float(values[dof]))), 0.0)
     _settle(model)
 
 
@@ -159,43 +171,23 @@ def _settle(model: Any) -> None:
     mujoco.mj_setConst(model, mujoco.MjData(model))
 
 
-def _before_steps(model: Any, then: Callable[[], None]) -> None:
-    import mujoco  # noqa: PLC0415
+def _around_steps(model: Any, names: Iterable[str], *, before: Any = None, after: Any = None) -> None:
+    """Do something before functions of MuJoCo that are called for a model, or with its data after them."""
+    import mujoco  # noqa: PLC0415  # the program's, which a project may not have
 
-    for name in _STEPS:
-        function = getattr(mujoco, name)
-        rebind(function, _Around(function, model, lambda data: then(), None))
-
-
-def _after_steps(model: Any, then: Callable[[Any], None]) -> None:
-    import mujoco  # noqa: PLC0415
-
-    for name in ("mj_step", "mj_forward"):
-        function = getattr(mujoco, name)
-        rebind(function, _Around(function, model, None, then))
-
-
-class _Around:
-    """A function of MuJoCo, with something before and after it if it is called for one model."""
-
-    def __init__(
-        self,
-        function: Any,
-        model: Any,
-        before: Callable[[Any], None] | None,
-        after: Callable[[Any], None] | None,
-    ) -> None:
-        self.__wrapped__ = function
-        self._model, self._before, self._after = model, before, after
-
-    def __call__(self, model: Any, data: Any, *arguments: Any, **named: Any) -> Any:
-        if model is self._model and self._before is not None:
-            self._before(data)
+    def around(wrapped: Any, _: Any, arguments: tuple[Any, ...], named: dict[str, Any]) -> Any:
+        is_meant = (arguments[0] if arguments else named.get("m")) is model
+        if is_meant and before is not None:
+            before()
         try:
-            result = self.__wrapped__(model, data, *arguments, **named)
+            result = wrapped(*arguments, **named)
         except Exception as error:
             marked(error)
             raise
-        if model is self._model and self._after is not None:
-            self._after(data)
+        if is_meant and after is not None:
+            after(arguments[1] if len(arguments) > 1 else named["d"])
         return result
+
+    for name in names:
+        function = getattr(mujoco, name)
+        rebind(function, wrapt.FunctionWrapper(function, around))

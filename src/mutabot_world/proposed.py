@@ -1,4 +1,4 @@
-"""The parameters that ``mutabot init`` proposes: by name, those of the models that the tests have made."""
+"""The parameters that ``mutabot init`` proposes: by name, those of the worlds that the tests have made."""
 
 from __future__ import annotations
 
@@ -7,9 +7,11 @@ import sys
 import tomllib
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
+from functools import partial
 from glob import escape
+from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import wrapt
 
@@ -17,37 +19,41 @@ from .patching import wrap
 
 #: parameters of each kind that are proposed by the names of things; of more things, all together
 _MOST = 4
-_SHIPPED = Path(__file__).with_name("mujoco.toml")
+#: libraries of simulation; of each this package has a file and a module of its name
+_LIBRARIES = ("mujoco", "pybullet")
+#: names of things, by library and parameter
+_Names: TypeAlias = dict[str, dict[str, list[str]]]
 
 
 class WorldProposer:
     """Parameters of the simulated world."""
 
     def watch(self) -> Callable[[], Any]:
-        """Note the names of things in each MuJoCo model that this process makes."""
-        names: dict[str, list[str]] = {}
+        """Note the names of things in each world of these libraries that this process makes."""
+        names: _Names = {}
 
-        def note(_: Any, model: Any) -> None:
-            with suppress(Exception):  # looking at a model must not disturb the program
-                for kind, found in _things(model):
-                    known = names.setdefault(kind, [])
-                    known += [name for name in found if name not in known]
+        def note(library: str, _: Any, world: Any) -> None:
+            with suppress(Exception):  # looking at a world must not disturb the program
+                _add(names, library, import_module(f"{__package__}.{library}").things(world))
 
-        def begin(_: Any) -> None:
-            for reference in tomllib.loads(_SHIPPED.read_text(encoding="utf-8"))["of"]:
+        def begin(library: str, _: Any) -> None:
+            shipped = _shipped(library)
+            makers = (one for table in (shipped, *shipped["parameter"]) for one in table.get("of", ()))
+            for reference in dict.fromkeys(makers):
                 with suppress(LookupError):
-                    wrap(reference, after=note)
+                    wrap(reference, after=partial(note, library))
 
-        wrapt.register_post_import_hook(begin, "mujoco")
+        for library in _LIBRARIES:
+            wrapt.register_post_import_hook(partial(begin, library), library)
         return lambda: {"names": names, "files": [*_files_of_packages()] if names else []}
 
     def lines(self, seen: Sequence[Any]) -> list[str]:
         """The table ``world``: a file that a package ships for its world, or a parameter for each thing."""
         files = list(dict.fromkeys(name for one in seen for name in one["files"]))
-        names: dict[str, list[str]] = {}
+        names: _Names = {}
         for one in seen:
-            for kind, found in one["names"].items():
-                names.setdefault(kind, []).extend(name for name in found if name not in names.get(kind, ()))
+            for library, found in one["names"].items():
+                _add(names, library, found.items())
         if not names:
             return []
         head = ["", "[world]  # `mutabot run --family world` disturbs the simulated world"]
@@ -57,18 +63,14 @@ class WorldProposer:
 PROPOSER = WorldProposer()
 
 
-def _things(model: Any) -> Iterator[tuple[str, list[str]]]:
-    """Yield kinds of parameters, and the names of what has them in a model."""
-    from .mujoco import names_of  # noqa: PLC0415  # of no use where there is no MuJoCo
+def _shipped(library: str) -> dict[str, Any]:
+    return tomllib.loads(Path(__file__).with_name(f"{library}.toml").read_text(encoding="utf-8"))
 
-    bodies, geoms, joints = names_of(model, "body"), names_of(model, "geom"), names_of(model, "joint")
-    free = [int(model.jnt_bodyid[n]) for n in range(model.njnt) if int(model.jnt_type[n]) == 0]
-    yield "mass", [bodies[n] for n in free]
-    yield "friction", [geoms[n] for n in range(model.ngeom) if int(model.geom_bodyid[n]) in free]
-    yield "gain", [*names_of(model, "actuator").values()]
-    damped = [n for n in range(model.njnt) if float(model.dof_damping[model.jnt_dofadr[n]]) > 0.0]
-    yield "damping", [joints[n] for n in damped if int(model.jnt_type[n]) in (2, 3)]
-    yield "gravity", ["*"] if float(model.opt.gravity[2]) else []
+
+def _add(names: _Names, library: str, things: Any) -> None:
+    for kind, found in things:
+        known = names.setdefault(library, {}).setdefault(kind, [])
+        known += [name for name in found if name and name not in known]
 
 
 def _files_of_packages() -> Iterator[str]:
@@ -81,13 +83,21 @@ def _files_of_packages() -> Iterator[str]:
                 yield f"{name}:world.toml"
 
 
-def _parameters(names: dict[str, list[str]]) -> Iterator[str]:
-    shipped = tomllib.loads(_SHIPPED.read_text(encoding="utf-8"))
-    yield f"of = {json.dumps(shipped['of'])}"
-    for table in shipped["parameter"]:
-        found = list(filter(None, names.get(table["name"], ())))
-        for name in found if len(found) <= _MOST else ["*"]:
-            own = {key: value for key, value in table.items() if name == "*" or key not in ("more", "less")}
-            own |= {} if name == "*" else {"name": f"{table['name']} of {name}", "names": escape(name)}
-            yield from ("", "[[world.parameter]]")
-            yield from (f"{key} = {json.dumps(value, ensure_ascii=False)}" for key, value in own.items())
+def _parameters(seen: _Names) -> Iterator[str]:
+    first = next(iter(seen))
+    makers = _shipped(first)["of"]
+    yield f"of = {json.dumps(makers)}"
+    for library, names in seen.items():
+        shipped = _shipped(library)
+        for table in shipped["parameter"]:
+            found = names.get(table["name"], [])
+            for name in found if len(found) <= _MOST else ["*"]:
+                own = {"of": shipped["of"], **table}
+                if name != "*":
+                    own = {key: value for key, value in own.items() if key not in ("more", "less")}
+                    own |= {"name": f"{table['name']} of {name}", "names": escape(name)}
+                own["name"] += "" if library == first else f" in {library}"
+                yield from ("", "[[world.parameter]]")
+                for key, value in own.items():
+                    if (key, value) != ("of", makers):
+                        yield f"{key} = {json.dumps(value, ensure_ascii=False)}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, replace
 from fnmatch import fnmatchcase
 
@@ -12,13 +12,15 @@ from mutabot.api.faults import (
     Original,
     Planned,
     PlannedMutant,
+    ProgramText,
     Project,
     Rule,
     Site,
-)
+)  # fmt: skip
+from mutabot.api.reports import UsageError
 
 from .extension import FAMILY, PROVIDER
-from .files import parameters_of
+from .files import NO_PARAMETER, parameters_of
 from .sizes import amount, in_si
 from .tables import ParameterTable, WorldTable
 
@@ -49,6 +51,14 @@ class WorldFaults(FaultProvider):
     def rules(self) -> Sequence[Rule]:
         """The one operator, whatever the parameter."""
         return [Disturb()]
+
+    def texts(self, project: Project, first: int, tell: Callable[[str], None]) -> Sequence[ProgramText]:
+        """None, but what shows how disturbances end is told. Raises UsageError for wrong parameters."""
+        if parameters_of(project.tables.get("world") or WorldTable(), project.root):
+            tell("`mutabot world` shows which disturbances the tests notice, and which are suffered unseen")
+        elif {*project.families} == {FAMILY}:
+            raise UsageError(f"the table `world` has no parameter; {NO_PARAMETER}")
+        return ()
 
     def is_monotone(self, operator: str) -> bool:
         """False: less friction may let a box slip into place where a little less lets it fall."""
@@ -86,14 +96,13 @@ class WorldFaults(FaultProvider):
     def _ladder(self, parameter: ParameterTable, site: Site, reason: str | None) -> Iterator[PlannedMutant]:
         moment, unit = parameter.moment, parameter.measure
         key = Activation.at_time(moment.number) if moment.kind == "time" else Activation.EACH_TEST
-        awaited = parameter.of[0].partition(":")[0]
         for way in parameter.ways:
             for size in parameter.ladder:
                 text = f"{_words(parameter, way).format(amount(size, unit))}{moment.text}"
                 variant = f"{way}{size:g}{'%' if unit == 'percent' else unit or ''}"
                 made = self.mutant(Disturb(), site, text, variant=variant, magnitude=size, unit=unit)
                 data = _data(parameter, -size if way == "-" else size)
-                active = Activation(ACTIVE, data, (key,), awaited, is_of_tests=True)
+                active = Activation(ACTIVE, data, (key,), parameter.of[0].partition(":")[0], is_of_tests=True)
                 yield PlannedMutant(replace(made, direction=way), reason, does=data, active=active)
 
 

@@ -8,7 +8,8 @@ disturbance is a function of a body or of what gravity was set to, of the change
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from random import Random
 from typing import Any
@@ -68,8 +69,12 @@ class Body:
 
     def joints(self, names: str) -> list[int]:
         """Its joints that are meant, of those that move. Raises NothingThereError."""
+        return self._named(names, "joint", self.moving())
+
+    def moving(self) -> dict[int, str]:
+        """The names of its joints that move, by their numbers."""
         fixed = [number for number, kind in self._joints(2).items() if kind == pybullet.JOINT_FIXED]
-        return self._named(names, "joint", {n: name for n, name in self._joints(1).items() if n not in fixed})
+        return {n: name for n, name in self._joints(1).items() if n not in fixed}
 
     def is_of(self, named: dict[str, Any]) -> bool:
         """Whether a call of one of PyBullet's functions is about it."""
@@ -103,16 +108,12 @@ class Body:
         return found
 
 
+@dataclass(eq=False)
 class Pull:
-    """Gravity that a program has set.
+    """Gravity that a program has set in the simulation of a client: along x, y and z, m/s²."""
 
-    Attributes:
-        client: of the simulation.
-        gravity: along x, y and z, m/s².
-    """
-
-    def __init__(self, client: int, gravity: Sequence[float]) -> None:
-        self.client, self.gravity = client, tuple(gravity)
+    client: int
+    gravity: tuple[float, ...]
 
 
 def mass(world: Any, change: NumberChange, *, names: str, random: Random) -> None:
@@ -171,6 +172,17 @@ def gravity(world: Any, change: NumberChange, *, names: str, random: Random) -> 
         raise NothingThereError("the program sets no gravity")
     x, y, z = world.gravity
     _own["setGravity"](x, y, -float(change(-z)), physicsClientId=world.client)
+
+
+def things(world: Any) -> Iterator[tuple[str, list[str]]]:
+    """Yield the parameters that a body, or gravity, offers, and the names of what has them."""
+    if isinstance(world, Pull):
+        yield "gravity", ["*"]
+    elif isinstance(world, Body):
+        free = [world.name] if world.own("getDynamicsInfo", _BASE)[0] > 0.0 else []
+        joints = world.moving()
+        yield from (("mass", free), ("friction", free), ("gain", [*joints.values()]))
+        yield "damping", [name for n, name in joints.items() if world.own("getJointInfo", n)[6] > 0.0]
 
 
 def _body(world: Any) -> Body:
@@ -248,7 +260,7 @@ def _note(name: str, named: dict[str, Any]) -> None:
             if name != "removeBody" or key[1] == named.get("bodyUniqueId"):
                 del _worlds[key]
     elif name == "setGravity":
-        _worlds[client, "gravity"] = Pull(client, [named[axis] for axis in _ORDER[name]])
+        _worlds[client, "gravity"] = Pull(client, tuple(named[axis] for axis in _ORDER[name]))
     elif name in _LOADING:
         _find_bodies(client)
 
@@ -269,7 +281,7 @@ def _begin() -> None:
         if pybullet.isConnected(client):
             _find_bodies(client)
             found = pybullet.getPhysicsEngineParameters(client)
-            pull = [found[f"gravityAcceleration{axis}"] for axis in "XYZ"]
+            pull = tuple(found[f"gravityAcceleration{axis}"] for axis in "XYZ")
             if any(pull):
                 _worlds[client, "gravity"] = Pull(client, pull)
 

@@ -8,12 +8,6 @@ from mutabot.api.values import Kind, Path, Quantity
 _SI = ("m", "rad", "s", "fraction", "m/s", "rad/s", "N", "Nm", "kg", "K", "Pa", "Hz", "V", "A")
 
 
-def check_unit(unit: str | None) -> None:
-    """Raises ValueError for a unit that does not exist."""
-    if unit is not None:
-        in_si(1.0, unit)
-
-
 def in_si(size: float, unit: str | None) -> float:
     """Return a magnitude in m, rad, s, kg, N and so on; a part of the whole for percent.
 

@@ -11,7 +11,7 @@ from pydantic import Field, field_validator, model_validator
 from mutabot.api.processes import Table
 
 from .moments import Beginning
-from .sizes import check_unit
+from .sizes import in_si
 
 _TextList = Annotated[tuple[str, ...], Field(strict=False)]
 _Size = Annotated[float, Field(gt=0)]
@@ -84,7 +84,7 @@ class ParameterTable(Table):
             raise ValueError(f"{self.name}: what is set has no directions")
         if self.change == "scale" and self.unit not in (None, "percent"):
             raise ValueError(f"{self.name}: magnitudes of scale are in percent, not in {self.unit!r}")
-        check_unit(self.unit)
+        in_si(1.0, self.unit)  # raises for one that does not exist
         return self
 
     @property

@@ -46,6 +46,7 @@ SHORT: dict[str, list[str]] = {
     "suite_length": ["--lengths", "50"],
     "ten_thousand": ["--mutants", "4000"],
     "witness": ["witness", "fluent_api"],
+    "world_ladders": ["paper", "--only", "centre of mass"],
     "world_judged": ["paper", "--engines", "fork", "--only", "payload"],
 }
 #: scripts that measure speed or count draws: a short form says that they run, and its figures nothing
@@ -95,7 +96,10 @@ def _environment() -> dict[str, str]:
 @pytest.mark.whole
 @pytest.mark.parametrize("name", SHORT)
 def test_a_script_runs_in_a_short_form(name: str, folder: Path) -> None:
-    if name in ("cell_physics", "cell_speed", "world_judged") and find_spec("mujoco") is None:
+    if (
+        name in ("cell_physics", "cell_speed", "world_judged", "world_ladders")
+        and find_spec("mujoco") is None
+    ):
         pytest.skip("needs MuJoCo")
     done = subprocess.run(
         [sys.executable, str(SCRIPTS / f"{name}.py"), *SHORT[name]],

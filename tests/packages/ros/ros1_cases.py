@@ -188,6 +188,27 @@ def test_a_call_back_has_its_definition_as_site_and_its_remapped_topic(make: Mak
     assert ("receive /line/level", "def on_level(self, message, more=None):") in places(stage)
 
 
+def test_a_mutated_message_says_who_sent_it(make: Making) -> None:
+    program = """
+    seen = []
+
+    def on_level(message):
+        seen.append((message.data, message._connection_header["callerid"]))
+
+    def run():
+        seen.clear()
+        level = rospy.Publisher("/line/level", Float64, queue_size=10, latch=True)
+        level.publish(0.5)
+        listener = rospy.Subscriber("level", Float64, on_level)
+        until(lambda: seen)
+        for one in (listener, level):
+            one.unregister()
+        return seen
+    """
+    seen, _ = make(program, LEVEL).mutated("negate", "data", index=1)
+    assert seen == [(-0.5, "/cell/mission")]
+
+
 def test_a_message_that_was_kept_for_who_comes_later_is_received(make: Making) -> None:
     program = """
     seen = []

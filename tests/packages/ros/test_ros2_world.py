@@ -84,6 +84,7 @@ FILES = {
                 executor.shutdown()
             assert len(program.x) >= 3
             assert max(abs(x - 1.0) for x in program.x) < 0.03
+            assert program.camera, "no camera"
             assert max(abs(x - 0.5) for x in program.camera) < 0.03
             assert max(program.late) < 0.8
         """,
@@ -94,6 +95,8 @@ ROWS = {
     "frame": ("frame_position", "camera", [0.01, 0.05], 'options = { axis = "x" }'),
     "delay": ("delay", "/pose", [0.2, 1.5], ""),
     "loss": ("loss", "/pose", [1.0], ""),
+    "late frame": ("frame_delay", "camera", [60.0], ""),
+    "lost frame": ("frame_loss", "camera", [1.0], ""),
     "clock": ("clock_offset", "/mission", [0.2, 1.5], 'of = ["rclpy.node:Node"]'),
     "nothing": ("frame_position", "wrist", [1.0], 'options = { axis = "x" }'),
 }
@@ -104,7 +107,7 @@ def parameters(*names: str) -> str:
     for name in names:
         function, meant, ladder, more = ROWS[name]
         found += ["[[tool.mutabot.world.parameter]]", f'name = "{name}"', f'names = "{meant}"', more]
-        found += [f'apply = "mutabot_ros.ros2.disturbances:{function}"', f"ladder = {ladder}"]
+        found += [f'apply = "mutabot_ros.disturbances:{function}"', f"ladder = {ladder}"]
         found += ['directions = ["+"]']
     return "\n".join(found)
 
@@ -113,7 +116,11 @@ def parameters(*names: str) -> str:
     ("simulation", "names"),
     [
         ("auto", ("pose", "loss")),
-        pytest.param("auto", ("frame", "delay", "clock", "nothing"), marks=pytest.mark.whole),
+        pytest.param(
+            "auto",
+            ("frame", "delay", "late frame", "lost frame", "clock", "nothing"),
+            marks=pytest.mark.whole,
+        ),
         pytest.param("never", tuple(ROWS), marks=pytest.mark.whole),
     ],
 )
@@ -134,7 +141,7 @@ def test_what_a_node_hears_is_disturbed(simulation: str, names: tuple[str, ...],
 GONE = """
 import rclpy
 from geometry_msgs.msg import PoseStamped
-from mutabot_ros.ros2 import disturbances
+from mutabot_ros import disturbances
 
 rclpy.init(args=[])
 node = rclpy.create_node("mission")

@@ -21,7 +21,7 @@ SHIPPED = {
     "What the paper names, in the simulated cell": Path(mutabot_cell.__file__).with_name("world.toml"),
     "Any program on MuJoCo": Path(mutabot_world.__file__).with_name("mujoco.toml"),
     "Any program on PyBullet": Path(mutabot_world.__file__).with_name("pybullet.toml"),
-    "Nodes of ROS 2": Path(mutabot_ros.__file__).with_name("ros2.toml"),
+    "Nodes of ROS": Path(mutabot_ros.__file__).with_name("ros2.toml"),
 }
 
 

@@ -1,4 +1,4 @@
-"""Disturbances of what nodes of ROS 2 hear, and of their clocks: what `ros2.toml` of this package names.
+"""Disturbances of what nodes of ROS hear, and of their clocks: what `ros1.toml` and `ros2.toml` name.
 
 Each is a function of a subscription, or of a node, as it was made, and of the change, which says what becomes
 of a number in SI units; and, by name, of `names` (topics, frames or nodes), `random`, `acts`, which is to be
@@ -15,15 +15,14 @@ from importlib import import_module
 from random import Random
 from typing import Any, TypeAlias
 
-from . import _clock, _nodes
-from ._topics import as_called
+from ._ros1_node import with_sender
 
 Changed: TypeAlias = Callable[[float], float]
 Acts: TypeAlias = Callable[[], None]
 #: what a callback gets of a message: what it is called with, now or later; or nothing
 _Deliver: TypeAlias = Callable[[Any, Callable[[Any], Any]], Any]
-#: topics of rclpy itself
-_OWN = ("/clock", "/parameter_events", "/rosout")
+#: what stands before callbacks and clocks, by the client library that a world is of
+_LISTENING = {"rclpy": "mutabot_ros.ros2.listening", "rospy": "mutabot_ros.ros1_listening"}
 _NANO = 1e9
 
 
@@ -45,7 +44,7 @@ def frame_position(
     """Where frames are along an axis of their parents, m: in messages with transforms to them."""
 
     def moved(message: Any) -> bool:
-        found = list(_transforms(message, names))
+        found = [one.transform for one in _stamped(message) if _is_to(one, names)]
         for one in found:
             setattr(one.translation, axis, float(change(getattr(one.translation, axis))))
         return bool(found)
@@ -58,7 +57,7 @@ def frame_angle(subscription: Any, change: Changed, *, names: str, random: Rando
     half = change(0.0) / 2
 
     def turned(message: Any) -> bool:
-        found = list(_transforms(message, names))
+        found = [one.transform for one in _stamped(message) if _is_to(one, names)]
         for one in found:
             q, cos, sin = one.rotation, math.cos(half), math.sin(half)
             q.w, q.x, q.y, q.z = (
@@ -67,6 +66,32 @@ def frame_angle(subscription: Any, change: Changed, *, names: str, random: Rando
         return bool(found)
 
     _listen(subscription, "*", _changing(turned, acts))
+
+
+def frame_delay(subscription: Any, change: Changed, *, names: str, random: Random, acts: Acts) -> None:
+    """By how much later transforms to frames come, s, in the node's time; others of a message do not."""
+
+    def late(message: Any, deliver: Callable[[Any], Any]) -> Any:
+        meant, others = _parted(message, names)
+        if meant is not None:
+            acts()
+            _library(subscription).later(subscription, change(0.0), lambda: deliver(meant))
+        return deliver(others) if others is not None else None
+
+    _listen(subscription, "*", late)
+
+
+def frame_loss(subscription: Any, change: Changed, *, names: str, random: Random, acts: Acts) -> None:
+    """Share of the messages whose transforms to frames never come; others of a message do."""
+
+    def lost(message: Any, deliver: Callable[[Any], Any]) -> Any:
+        meant, others = _parted(message, names)
+        if meant is None or random.random() >= change(0.0):
+            return deliver(message)
+        acts()
+        return deliver(others) if others is not None else None
+
+    _listen(subscription, "*", lost)
 
 
 def distance(subscription: Any, change: Changed, *, names: str, random: Random, acts: Acts) -> None:
@@ -87,7 +112,7 @@ def delay(subscription: Any, change: Changed, *, names: str, random: Random, act
 
     def late(message: Any, deliver: Callable[[Any], Any]) -> None:
         acts()
-        _clock.later(_nodes.node_of(subscription))(change(0.0), lambda: deliver(message))
+        _library(subscription).later(subscription, change(0.0), lambda: deliver(message))
 
     _listen(subscription, names, late)
 
@@ -110,37 +135,49 @@ def clock_offset(node: Any, change: Changed, *, names: str, random: Random, acts
 
 
 def clock_rate(node: Any, change: Changed, *, names: str, random: Random, acts: Acts) -> None:
-    """How fast the clocks of nodes run, as a part of other clocks, from when the node is made."""
-    begin = _of_living(node.get_clock().now).nanoseconds
-    _run_apart(node, names, acts, lambda nanoseconds: begin + change(1.0) * (nanoseconds - begin))
+    """How fast the clocks of nodes run, as a part of other clocks, from when they are first read."""
+    begin = list[int]()
+
+    def read(nanoseconds: int) -> float:
+        begin.append(nanoseconds)
+        del begin[1:]
+        return begin[0] + change(1.0) * (nanoseconds - begin[0])
+
+    _run_apart(node, names, acts, read)
+
+
+def _library(world: Any) -> Any:
+    """What stands before the callbacks and clocks of the client library that a world is of."""
+    return import_module(_LISTENING[type(world).__module__.partition(".")[0]])
 
 
 def _listen(subscription: Any, names: str, deliver: _Deliver) -> None:
-    """Let something stand before the callback of a subscription. Raises LookupError for other topics."""
-    topic = _of_living(lambda: subscription.topic_name)
-    if _nodes.is_own() or topic in _OWN or subscription.raw or not fnmatchcase(topic, names):
-        raise LookupError(f"nothing listens to a topic {names!r}; the last one is {topic}")
-    callback = subscription._callback  # as the program gave it
-
-    def received(message: Any, *more: Any) -> Any:
-        return deliver(message, lambda one: callback(one, *more))
-
-    subscription.callback = as_called(callback, received)
+    """Let something stand before the callbacks of a subscription. Raises LookupError for other topics."""
+    library = _library(subscription)
+    topic = library.topic_of(subscription)
+    if topic is None or not fnmatchcase(topic, names):
+        raise LookupError(f"nothing listens to a topic {names!r}; the last one is {topic or 'of ROS itself'}")
+    library.listen(subscription, deliver)
 
 
-def _of_living(ask: Callable[[], Any]) -> Any:
-    """Ask something of an entity. Raises LookupError for one that is destroyed, as of an earlier test."""
-    try:
-        return ask()
-    except import_module("rclpy.exceptions").InvalidHandle as error:
-        raise LookupError("the last one was destroyed") from error
+def _run_apart(node: Any, names: str, acts: Acts, read: Callable[[int], float]) -> None:
+    library = _library(node)
+    name = library.name_of(node)
+    if not fnmatchcase(name, names):
+        raise LookupError(f"no node is named {names!r}; the last one is {name}")
+
+    def told(nanoseconds: int) -> int:
+        acts()
+        return max(0, round(read(nanoseconds)))
+
+    library.run_apart(node, told)
 
 
 def _changing(change: Callable[[Any], bool], acts: Acts) -> _Deliver:
     """Deliver a changed copy; `change` says whether it has changed anything."""
 
     def deliver(message: Any, callback: Callable[[Any], Any]) -> Any:
-        copied = copy.deepcopy(message)
+        copied = with_sender(copy.deepcopy(message), message)
         if not change(copied):
             return callback(message)
         acts()
@@ -160,23 +197,23 @@ def _places(message: Any) -> Iterator[Any]:
         yield message
 
 
-def _transforms(message: Any, names: str) -> Iterator[Any]:
-    """Yield the transforms of a message to frames of these names."""
-    for one in getattr(message, "transforms", (message,)):
-        if hasattr(one, "transform") and fnmatchcase(getattr(one, "child_frame_id", ""), names):
-            yield one.transform
+def _stamped(message: Any) -> list[Any]:
+    """The transforms with frames that a message has, or is."""
+    found = getattr(message, "transforms", (message,))
+    return [one for one in found if hasattr(one, "transform") and hasattr(one, "child_frame_id")]
 
 
-def _run_apart(node: Any, names: str, acts: Acts, read: Callable[[int], float]) -> None:
-    name = _of_living(node.get_fully_qualified_name)
-    if not fnmatchcase(name, names):
-        raise LookupError(f"no node is named {names!r}; the last one is {name}")
-    clock = node.get_clock()
-    now = clock.now
+def _is_to(transform: Any, names: str) -> bool:
+    return fnmatchcase(transform.child_frame_id.removeprefix("/"), names)
 
-    def told() -> Any:
-        found = now()
-        acts()
-        return type(found)(nanoseconds=max(0, round(read(found.nanoseconds))), clock_type=found.clock_type)
 
-    clock.now = told
+def _parted(message: Any, names: str) -> tuple[Any, Any]:
+    """A message in two: with the transforms to frames of these names, and with the others; None for none."""
+    meant = [one for one in _stamped(message) if _is_to(one, names)]
+    others = [one for one in _stamped(message) if not _is_to(one, names)]
+    if not meant or not others:
+        return (message, None) if meant else (None, message)
+    parts = [with_sender(copy.copy(message), message) for _ in range(2)]
+    for part, transforms in zip(parts, (meant, others), strict=True):
+        part.transforms = transforms
+    return parts[0], parts[1]

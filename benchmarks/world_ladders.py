@@ -1,0 +1,174 @@
+"""How large a disturbance of its world does a test of each cell example notice, and what happens then?
+
+What the paper names, and what else an example has, disturbs one test of it, by all magnitudes of the ladders
+of ``mutabot_cell:world.toml``, in one round. The tables are those of ``docs/world.md``.
+
+Use: ``python benchmarks/world_ladders.py [EXAMPLE …] [--only PARAMETER …] [--jobs N] [--folder FOLDER]``. In
+the folder the campaigns stay, so that one that was interrupted goes on.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "tests"))
+
+from mutabot.journal.journal import Journal  # noqa: E402
+from mutabot.results.results import read_results  # noqa: E402
+from mutabot_world.judged import WorldEnd, WorldLadder, ladders, suites  # noqa: E402
+from mutabot_world.sizes import amount  # noqa: E402
+from suites.corpus import copied  # noqa: E402
+
+#: what the paper names
+PAPER = (
+    "payload", "centre of mass", "table height", "belt speed", "belt jitter", "belt encoder", "camera bias",
+    "camera scale", "camera drift", "camera dropout", "occlusion", "actuation delay",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Laddered:
+    """What is disturbed of an example.
+
+    Attributes:
+        test: node id.
+        parameters: those beside what the paper names.
+        tolerances: what the test allows at the end, by unit; without them 1 mm and 0.5 degrees.
+        names: which things a parameter means, where they have other names than in most cells.
+    """
+
+    test: str
+    parameters: tuple[str, ...]
+    tolerances: Mapping[str, float] = field(default_factory=dict)
+    names: Mapping[str, str] = field(default_factory=dict)
+
+
+EXAMPLES = {
+    "paper": Laddered("tests/test_mission.py", ("conveyor height", "part x", "grip force", "grip friction")),
+    "pick_and_place": Laddered(
+        "tests/test_sorting.py::test_a_box_is_set_down_at_the_place_of_its_colour[red]",
+        ("distance bias", "part x", "grip force"),
+        {"m": 0.0035, "deg": 3.0},
+    ),
+    "tracking": Laddered(
+        "tests/test_picking.py::test_a_box_is_picked_from_the_moving_belt_and_set_down_in_time",
+        ("grip force",),
+        {"m": 0.0035, "deg": 3.0},
+    ),
+    "palletising": Laddered(
+        "tests/test_palletising.py::test_a_box_further_away_on_the_belt_is_waited_for",
+        ("distance bias", "vacuum leak"),
+        {"m": 0.0045, "deg": 1.0},
+        {"table height": "pallet"},
+    ),
+}
+HEAD = ("parameter", "tried", "lived with up to", "suffered unseen at", "noticed from", "what happened there")
+
+
+def main() -> int:
+    """The command."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("examples", nargs="*", choices=[*EXAMPLES, []])
+    parser.add_argument("--only", nargs="+", default=[])
+    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--folder", type=Path)
+    given = parser.parse_args()
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = (given.folder or Path(temporary)).resolve()
+        for name in given.examples or EXAMPLES:
+            only = given.only or [*PAPER, *EXAMPLES[name].parameters]
+            found = measured(name, folder / name, only, given.jobs)
+            print("\n".join([f"## {name}", "", *table(found), "", *without(found)]), flush=True)
+    return 0
+
+
+def measured(name: str, copy: Path, only: Sequence[str], jobs: int) -> list[WorldLadder]:
+    """Run the campaign in a copy of an example, or go on with it; return a ladder for each parameter."""
+    what = EXAMPLES[name]
+    if not copy.is_dir():
+        copied(ROOT / "examples" / name, copy)
+        names = ", ".join(f'"{key}" = "{one}"' for key, one in what.names.items())
+        lines = (
+            f'tests = ["{what.test}"]',
+            "[tool.mutabot.world]",
+            'parameters = ["mutabot_cell:world.toml"]',
+            f"only = {[*only]}",
+            f"names = {{ {names} }}",
+        )
+        # the table of mutabot is the last one of these files
+        with (copy / "pyproject.toml").open("a", encoding="utf-8") as file:
+            file.write("\n".join([*lines, ""]))
+    words = [
+        sys.executable,
+        "-m",
+        "mutabot.cli.app",
+        "run",
+        "--family",
+        "world",
+        "--rounds",
+        "1",
+        "-j",
+        str(jobs),
+    ]
+    done = subprocess.run(words, cwd=copy, stdout=subprocess.PIPE, text=True, check=False)
+    if done.returncode:
+        raise SystemExit(f"{name}: exit code {done.returncode}: {done.stdout[-1000:]}")
+    with Journal.open(copy / ".mutabot" / "journal.sqlite") as journal:
+        return suites(ladders(read_results(journal), what.tolerances))
+
+
+def table(found: Sequence[WorldLadder]) -> Iterator[str]:
+    """Yield the lines of a table: what is suffered unseen, noticed and lived with, and what happened."""
+    yield f"| {' | '.join(HEAD)} |"
+    yield f"|{'---|' * len(HEAD)}"
+    for one in found:
+        if one.ends:
+            yield f"| {' | '.join(_row(one))} |"
+
+
+def without(found: Sequence[WorldLadder]) -> Iterator[str]:
+    """Yield what the example has nothing of."""
+    names = list(dict.fromkeys(f"`{one.parameter}`" for one in found if not one.ends))
+    if names:
+        yield f"The test has nothing of what these disturb: {', '.join(names)}."
+        yield ""
+
+
+def _row(one: WorldLadder) -> Iterator[str]:
+    sizes = sorted(one.found)
+    yield f"{one.parameter} {one.direction.replace('-', '−')}".strip()
+    yield f"{sizes[0]:g} to {amount(sizes[-1], one.unit)}"
+    yield "none" if one.robust_to is None else amount(one.robust_to, one.unit)
+    least, most = (one.unseen[0], one.unseen[-1]) if one.unseen else (0.0, 0.0)
+    span = amount(most, one.unit) if least == most else f"{least:g} to {amount(most, one.unit)}"
+    yield span if one.unseen else ""
+    some = [amount(size, one.unit) for size, end in one.ends.items() if end is WorldEnd.NOTICED]
+    never = f"never, but {' and '.join(some)} is" if some else "never"
+    yield never if one.noticed_from is None else amount(one.noticed_from, one.unit)
+    yield _happened(one)
+
+
+def _happened(one: WorldLadder) -> str:
+    """What happened at the largest magnitude that is suffered unseen, or at the threshold."""
+    if one.unseen:
+        story = one.story(one.unseen[-1], WorldEnd.UNSEEN)[0]
+    elif one.noticed_from is not None:
+        story = one.story(one.noticed_from, WorldEnd.NOTICED)[0]
+    else:
+        story = one.story(max(one.ends), WorldEnd.LIVED)[0]
+    # what a monitor read when its condition broke is of no use in a table
+    return re.sub(r"(t=[\d.]+ s): time=.*", r"\1", story).replace("|", "\\|") or "nothing differs"
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,54 @@
+"""What stands before the callbacks and clocks of nodes of ROS 1 that are disturbed.
+
+A subscription is what rospy shares among all subscribers of a topic in a process. A node is its process.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from typing import Any
+
+from . import _ros1_node as node
+from .ros1 import MODULE, OWN_TOPICS
+
+
+def topic_of(subscription: Any) -> str | None:
+    """The topic of a subscription; None for one of rospy's own. Raises LookupError for one that is closed."""
+    if subscription.closed:
+        raise LookupError("the last one was closed")
+    topic: str = subscription.resolved_name
+    return None if topic in OWN_TOPICS else topic
+
+
+def listen(subscription: Any, deliver: Callable[[Any, Callable[[Any], Any]], Any]) -> None:
+    """Let something stand before the callbacks of a subscription."""
+
+    def invoked(message: Any, callback: Any, more: Any) -> None:
+        deliver(message, lambda one: type(subscription)._invoke_callback(subscription, one, callback, more))
+
+    subscription._invoke_callback = invoked
+
+
+def later(subscription: Any, seconds: float, action: Callable[[], object]) -> None:
+    """Have something done later, in the time of the node."""
+    node.later(seconds, action)
+
+
+def name_of(handler: Any) -> str:
+    """The resolved name of a node."""
+    name: str = handler.name
+    return name
+
+
+def run_apart(handler: Any, read: Callable[[int], int]) -> None:
+    """Let the clock of a node say another time, in nanoseconds."""
+    rospy: Any = sys.modules[MODULE]
+    now = rospy.rostime.get_rostime
+
+    def told() -> Any:
+        found = now()
+        return type(found)(nsecs=read(found.to_nsec()))
+
+    for module in (rospy.rostime, rospy):
+        module.get_rostime = told

@@ -1,0 +1,60 @@
+"""What stands before the callbacks and clocks of nodes of ROS 2 that are disturbed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib import import_module
+from typing import Any
+
+from . import _clock, _nodes
+from ._topics import as_called
+
+#: topics of rclpy itself
+_OWN = ("/clock", "/parameter_events", "/rosout")
+
+
+def topic_of(subscription: Any) -> str | None:
+    """The topic of a subscription; None for one of rclpy's own. Raises LookupError for what is destroyed."""
+    topic: str = _of_living(lambda: subscription.topic_name)
+    return None if _nodes.is_own() or topic in _OWN or subscription.raw else topic
+
+
+def listen(subscription: Any, deliver: Callable[[Any, Callable[[Any], Any]], Any]) -> None:
+    """Let something stand before the callback of a subscription."""
+    callback = subscription._callback  # as the program gave it
+
+    def received(message: Any, *more: Any) -> Any:
+        return deliver(message, lambda one: callback(one, *more))
+
+    subscription.callback = as_called(callback, received)
+
+
+def later(subscription: Any, seconds: float, action: Callable[[], object]) -> None:
+    """Have something done later, in the time of the subscription's node, by its executor."""
+    _clock.later(_nodes.node_of(subscription))(seconds, action)
+
+
+def name_of(node: Any) -> str:
+    """The resolved name of a node. Raises LookupError for one that is destroyed."""
+    name: str = _of_living(node.get_fully_qualified_name)
+    return name
+
+
+def run_apart(node: Any, read: Callable[[int], int]) -> None:
+    """Let the clock of a node say another time, in nanoseconds."""
+    clock = node.get_clock()
+    now = clock.now
+
+    def told() -> Any:
+        found = now()
+        return type(found)(nanoseconds=read(found.nanoseconds), clock_type=found.clock_type)
+
+    clock.now = told
+
+
+def _of_living(ask: Callable[[], Any]) -> Any:
+    """Ask something of an entity. Raises LookupError for one that is destroyed, as of an earlier test."""
+    try:
+        return ask()
+    except import_module("rclpy.exceptions").InvalidHandle as error:
+        raise LookupError("the last one was destroyed") from error
