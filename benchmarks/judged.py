@@ -37,6 +37,7 @@ EXAMPLES = {
     "tracking": {"robot": 40},
     "palletising": {"robot": 40},
     "dispensing": {"robot": 40},
+    "handover": {"robot": 40},
     "ros1": {"robot": 25, "middleware": 35, "conventional": 10},
     "ros2": {"robot": 25, "middleware": 35, "conventional": 10},
     "ros2_docking": {"robot": 23, "conventional": 10},

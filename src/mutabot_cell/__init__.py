@@ -30,6 +30,9 @@ from .errors import (
     PathLost as PathLost,
 )
 from .errors import (
+    ProgramsStuck as ProgramsStuck,
+)
+from .errors import (
     ProtectiveStop as ProtectiveStop,
 )
 from .errors import (
@@ -82,6 +85,8 @@ if TYPE_CHECKING:
     from .models.parts import read_mesh as read_mesh
     from .models.robot import RobotModel as RobotModel
     from .models.tool import Tool as Tool
+    from .programs import run_together as run_together
+    from .programs import until as until
     from .rendering import render as render
 
 _LIBRARIES = ("mujoco", "numpy", "mink", "ruckig")
@@ -95,6 +100,8 @@ _LAZY = {
     "gen3": "models.kinova",
     "read_mesh": "models.parts",
     "render": "rendering",
+    "run_together": "programs",
+    "until": "programs",
     "robots": "robots",
     "Limits": "models.limits",
     "RobotModel": "models.robot",
@@ -119,6 +126,7 @@ __all__ = [  # noqa: PLE0604  (the lazy names come from the table above)
     "Mesh",
     "MotionRefused",
     "PathLost",
+    "ProgramsStuck",
     "ProtectiveStop",
     "Scene",
     "SensorError",

@@ -8,6 +8,7 @@
     │   ├── MotionRefused                  target out of reach or limits; nothing has moved
     │   └── PathLost                       the tool could not follow what it tracked; it has braked to rest
     ├── ProtectiveStop                     the arm hit something hard; the motion has ended
+    ├── ProgramsStuck                      programs that run together had not ended in time
     ├── SensorError                        nothing to read (no box in the cell)
     ├── ConditionBroken (AssertionError)   an `always` condition was false at some tick
     └── SimulationDiverged                 the physics gave NaN or nonsense: the tool failed, not the robot
@@ -18,7 +19,7 @@ Each error carries its data as attributes too, so that reports need not parse me
 # ruff: noqa: N818  (the names say what happened, as robot controllers do: "motion refused", "protective stop")
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 
 class CellError(Exception):
@@ -128,6 +129,20 @@ class ProtectiveStop(CellError):
         self.torque = torque
         self.following_error = following_error
         self.overload = overload
+
+
+class ProgramsStuck(CellError):
+    """Programs that run together had not ended in time, as when they wait for each other.
+
+    Attributes:
+        time: simulated time at which this was noticed, s.
+        names: of the programs that had not ended.
+    """
+
+    def __init__(self, *, time: float, names: Sequence[str]) -> None:
+        super().__init__(f"programs still wait at t={time:.2f} s: {', '.join(names)}")
+        self.time = time
+        self.names = tuple(names)
 
 
 class SensorError(CellError):

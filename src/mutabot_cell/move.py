@@ -50,6 +50,10 @@ class Move:
         Raises:
             ProtectiveStop: something was in the way.
         """
+        self.brake()
+        self.wait()
+
+    def brake(self) -> None:
+        """Begin to brake on the path, and return at once. Does nothing if the motion has ended."""
         if not self.done:
             self._arm.brake(self)
-        self.wait()

