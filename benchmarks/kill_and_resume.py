@@ -106,7 +106,7 @@ FILES = {
 #: what differs between equal runs: times, also of recordings, and how often probes were read
 _ACCIDENTAL = {"wall", "cpu", "diverged", "compared"}
 #: seconds that what is left of a killed campaign may take to end
-_DYING = 5.0
+_DYING = 60.0
 
 Pair = tuple[str, int]
 
