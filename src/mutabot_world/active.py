@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 from mutabot.api.faults import ActiveFault
 
-from .change import NumberChange, Undo, change_at
+from .change import NothingThereError, NumberChange, Undo, change_at
 from .patching import live, mark_by, resolve, wrap
 
 _NEVER = "the test made no world, its moment did not come, or nothing came that it disturbs"
@@ -143,6 +143,8 @@ class WorldFault(ActiveFault):
         self._says_itself = "acts" in signature(function).parameters
         more = {**self.data["options"], **({"acts": self.acts} if self._says_itself else {})}
         result = function(world, change, names=self.data["names"], random=random, **more)
+        if change.effects == {False}:
+            raise NothingThereError(f"what {self.data['apply']} changes is the same with the change")
         return None, None, result if callable(result) else None
 
     def _let_go(self, world: int) -> None:

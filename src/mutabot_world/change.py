@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 _STEP = re.compile(r"\.?([A-Za-z_]\w*)|\[(-?\d+)\]|\[[\"']([^\"']+)[\"']\]")
@@ -24,16 +24,21 @@ class NumberChange:
     Attributes:
         kind: ``offset``, ``scale`` or ``set``.
         amount: with its sign: what is added; what part of it is added; or what it becomes.
+        effects: whether numbers became others, as far as any were changed.
     """
 
     kind: str
     amount: float
+    effects: set[bool] = field(default_factory=set, compare=False)
 
     def __call__(self, value: Any) -> Any:
         """Return the changed number, or array."""
         if self.kind == "scale":
-            return value * (1.0 + self.amount)
-        return value + self.amount if self.kind == "offset" else value * 0 + self.amount
+            changed = value * (1.0 + self.amount)
+        else:
+            changed = value + self.amount if self.kind == "offset" else value * 0 + self.amount
+        self.effects.add(not _is_same(value, changed))
+        return changed
 
     @property
     def factor(self) -> float:

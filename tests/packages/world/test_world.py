@@ -169,6 +169,24 @@ def test_a_function_gets_names_and_options_and_says_what_is_not_there(tmp_path: 
     assert missing["sentence"] == "nothing is known of load: nothing is named 'cart'; there is: sledge"
 
 
+def test_a_share_of_nothing_is_no_disturbance(tmp_path: Path) -> None:
+    parameters = """
+        [[tool.mutabot.world.parameter]]
+        name = "slope"
+        apply = "belt:steeper"
+        change = "scale"
+        directions = ["+"]
+        ladder = [50]
+        """
+    steeper = """
+        def steeper(belt, change, *, names, random):
+            belt.slope = max(0.0, change(0.0))
+        """
+    folder = project(tmp_path, parameters, **{"belt.py": FILES["belt.py"] + steeper})
+    said = "nothing is known of slope: what belt:steeper changes is the same with the change"
+    assert run(folder, code=3)["slope +"]["sentence"] == said
+
+
 @pytest.mark.parametrize(
     ("wrong", "said"),
     [
