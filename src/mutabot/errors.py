@@ -1,4 +1,4 @@
-"""The errors mutabot raises on purpose.
+"""The errors that mutabot raises on purpose.
 
     MutabotError
     ├── UsageError                  wrong command line, nothing to do with the user's files    (exit 2)
@@ -34,7 +34,7 @@ class ExitCode(IntEnum):
     meaning: str
 
     def __new__(cls, code: int, meaning: str) -> ExitCode:
-        """A number with what it means."""
+        """Make an exit code with its meaning."""
         member = int.__new__(cls, code)
         member._value_, member.meaning = code, meaning
         return member
@@ -68,7 +68,7 @@ class MutabotError(Exception):
 
 
 class UsageError(MutabotError):
-    """The command line asks for something that cannot be done."""
+    """The command line asks for something impossible."""
 
     exit_code = ExitCode.USAGE
 
@@ -78,7 +78,7 @@ class SelectionError(UsageError):
 
 
 class MergeError(UsageError):
-    """Journals cannot be put together: they are not the shards of one campaign."""
+    """Journals cannot be merged: they are not the shards of one campaign."""
 
 
 class ConfigurationError(MutabotError):
@@ -102,7 +102,7 @@ class ConfigurationError(MutabotError):
 
 
 class VocabularyError(ConfigurationError):
-    """A vocabulary says something that cannot be."""
+    """A vocabulary contains a contradiction or an invalid value."""
 
 
 class UnknownNameError(VocabularyError):
@@ -122,7 +122,7 @@ class NothingToDoError(MutabotError):
 
 
 class ControlError(MutabotError):
-    """A control mutant ended wrongly: verdicts of this campaign could not be believed."""
+    """A control mutant ended wrongly, so that the verdicts of this campaign cannot be trusted."""
 
     exit_code = ExitCode.UNRELIABLE
 
@@ -160,28 +160,28 @@ class PathError(MutabotError):
 
 
 class StrangeValueError(PathError):
-    """A value of the user's program is no plain data, so it is neither read nor changed."""
+    """A value of the user's program is no plain data, so that mutabot neither reads nor changes it."""
 
 
 class ExtensionError(MutabotError):
-    """A package beside the core cannot be loaded, or what it brings is not what it should be."""
+    """A package beside the core cannot be loaded, or brings something invalid."""
 
     exit_code = ExitCode.USAGE
 
 
 class OperatorError(MutabotError):
-    """An operator of a package does not keep the operator contract."""
+    """An operator of a package violates the operator contract."""
 
     exit_code = ExitCode.USAGE
 
 
 def text_of(error: BaseException) -> str:
-    """The text of an exception; the name of its class if the user's code fails to give one."""
+    """Return the text of an exception; the name of its class if the user's code fails to give one."""
     return str(error) if has_text(error) else type(error).__name__
 
 
 def has_text(error: BaseException) -> bool:
-    """Whether the code of an exception's class gives its text."""
+    """Return whether the code of an exception's class gives it a text."""
     try:
         str(error)
     except Exception:
@@ -190,28 +190,28 @@ def has_text(error: BaseException) -> bool:
 
 
 def in_words(error: BaseException) -> str:
-    """An exception's class and text."""
+    """Return an exception's class and text."""
     return f"{type(error).__name__}: {text_of(error)}"
 
 
 def in_short(names: Sequence[str], most: int = 3) -> str:
-    """The first of these, and how many more there are."""
+    """Return the first of these names, and how many more there are."""
     more = f" and {len(names) - most} more" if len(names) > most else ""
     return ", ".join(names[:most]) + more
 
 
 def plural(count: int, singular: str, several: str | None = None) -> str:
-    """Return ``1 mutant``, ``2 mutants``."""
+    """Return a count with its noun: ``1 mutant``, ``2 mutants``."""
     return f"{count} {singular if count == 1 else several or singular + 's'}"
 
 
 def shortened(text: str, most: int = _SHOWN) -> str:
-    """A text as a message shows it."""
+    """Return a text, shortened for a message."""
     return text if len(text) <= most else f"{text[:most]}…"
 
 
 def nearest_name(name: str, known: Iterable[str]) -> str | None:
-    """The known name most like ``name``, or None if none is near."""
+    """Return the known name most like ``name``, or None if none is near."""
     by_folded = {candidate.casefold(): candidate for candidate in known}
     from difflib import get_close_matches  # noqa: PLC0415  # slow, and most processes make no mistake
 
@@ -220,7 +220,7 @@ def nearest_name(name: str, known: Iterable[str]) -> str | None:
 
 
 def unknown_name_text(kind: str, name: str, known: Iterable[str], nearest: str | None = None) -> str:
-    """A message for a name that does not exist: it suggests the nearest name, or lists all."""
+    """Return a message for a name that does not exist: it suggests the nearest name, or lists all."""
     known = sorted(set(known))
     shown = shortened(name, _LONGEST_NAME)
     nearest = nearest or nearest_name(name, known)

@@ -1,4 +1,4 @@
-"""Packages beside the core: what they bring, and how it is found.
+"""Packages beside the core: what they bring, and how they are found.
 
 A package declares an ``Extension`` under the entry point group ``mutabot``. Every part of it is named by a
 reference, ``module:attribute`` or ``module``, and imported only when it is used. Entry points are read once,
@@ -81,7 +81,7 @@ class Described:
 
 @frozen
 class Extension:
-    """What a package brings.
+    """The description of all that a package brings.
 
     Attributes:
         interface: the version of this interface that the package was written for.
@@ -141,7 +141,7 @@ class Extension:
 
 @frozen
 class ExtensionPart:
-    """One thing that a package brings.
+    """A part that a package brings.
 
     Attributes:
         name: its name among those of its kind.
@@ -195,7 +195,7 @@ class ExtensionPart:
         return found
 
     def make(self, base: type[T]) -> T:
-        """An object of that class. Raises ExtensionError also if its ``name`` is another one."""
+        """Return an object of that class. Raises ExtensionError also if its ``name`` is another one."""
         kind = self.load_class(base)
         try:
             made = kind()
@@ -208,18 +208,18 @@ class ExtensionPart:
 
     @property
     def words(self) -> str:
-        """Name the part as messages do."""
+        """The part's name in messages."""
         return f"{self.name!r} of package {self.owner!r} ({self.reference})"
 
 
 class _Told:
-    """Settings that the controller has sent to this process; None in the controller itself."""
+    """The parts of packages that the controller has sent to this process; None in the controller itself."""
 
     parts: Mapping[str, Mapping[str, ExtensionPart]] | None = None
 
 
 def brought(kind: str, own: Collection[str] = ()) -> Mapping[str, ExtensionPart]:
-    """All parts of a kind, by name; those of mutabot's own packages first, then by package and name.
+    """Return all parts of a kind, by name; those of mutabot's own packages first, then by package and name.
 
     ``own``: the names of what the core itself has of this kind.
 
@@ -240,12 +240,12 @@ def brought(kind: str, own: Collection[str] = ()) -> Mapping[str, ExtensionPart]
 
 
 def versions() -> tuple[str, ...]:
-    """Distributions that packages declare as deciding how tests end."""
+    """Return the distributions that packages declare as deciding how tests end."""
     return tuple(dict.fromkeys(name for _, extension in _declared() for name in extension.versions))
 
 
 def references(owner: str) -> tuple[str, ...]:
-    """All references of a distribution's extensions, by its name; available only in the controller."""
+    """Return all references of a distribution's extensions; available only in the controller."""
     found = (extension for name, extension in _declared() if name.lower() == owner)
     return tuple(
         part if isinstance(part, str) else part.reference
@@ -262,7 +262,7 @@ def _part(name: str, declared: str | Described, owner: str) -> ExtensionPart:
 
 
 def not_installed(name: str, kind: str) -> str | None:
-    """The message for a missing part of one of mutabot's own packages; None for any other part."""
+    """Return the message for a missing part of one of mutabot's own packages; None for any other part."""
     package = _OF_OWN_PACKAGES.get(kind, {}).get(name)
     if package is None or name in (found := brought(kind)):
         return None
@@ -272,7 +272,7 @@ def not_installed(name: str, kind: str) -> str | None:
 
 
 def told_to_processes(languages: Collection[str] = ()) -> dict[str, dict[str, str]]:
-    """The references that processes of the tests need, by kind and name.
+    """Return the references that processes of the tests need, by kind and name.
 
     ``languages``: those of the program beside Python. What reads others need not be there, nor be loaded.
     """
@@ -295,7 +295,7 @@ def use(parts: Mapping[str, Mapping[str, str]]) -> None:
 
 
 def libraries() -> dict[str, tuple[str, ...]]:
-    """The client libraries of middlewares, with the functions of them that are operations.
+    """Return the client libraries of middlewares, with their functions that are operations.
 
     Only the controller can tell.
     """
@@ -307,7 +307,7 @@ def libraries() -> dict[str, tuple[str, ...]]:
 
 
 def packages() -> frozenset[str]:
-    """Top-level packages of mutabot and of what it was brought: what they do is not the program's doing."""
+    """Return the top-level packages of mutabot and its parts, whose own calls are not the program's."""
     return frozenset({GROUP, *(_package(part.reference) for kind in _OWN for part in brought(kind).values())})
 
 
@@ -317,7 +317,7 @@ def _package(reference: str) -> str:
 
 @cache
 def _declared() -> tuple[tuple[str, Extension], ...]:
-    """Every extension, with the distribution that it comes from; mutabot's own first."""
+    """Return every extension, with the distribution that it comes from; mutabot's own first."""
     from importlib import metadata  # noqa: PLC0415  # slow, and most commands do not need it
 
     found = [(_owner(entry), entry) for entry in metadata.entry_points(group=GROUP)]

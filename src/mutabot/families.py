@@ -1,4 +1,4 @@
-"""Families of mutabot's own mutants of calls, and the providers that make them: their names, said once.
+"""Names of the families of mutabot's own mutants of calls, and of the providers that make them.
 
 A family is what a user asks for by ``--family`` or ``families``, and what has a score of its own. Operators
 name the one they belong to. Families of packages are those of their providers (``mutabot.faults``), and an

@@ -1,4 +1,4 @@
-"""Providers of faults: where they can act, what they would do, and how they become active in a process.
+"""Providers of faults: where they can act, and how they become active in a process.
 
 A provider has two halves. The one here works in the controller: it says what it needs of the baseline, and
 makes the mutants of it. The other lives in the processes of the tests: a
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 @frozen
 class Project:
-    """The project, and what is asked of providers.
+    """The project, and the mutants that providers are asked for.
 
     Attributes:
         root: its folder.
@@ -61,16 +61,16 @@ class Project:
     tables: Mapping[str, Any] = field(default_factory=dict)
 
     def asks_for(self, rule: Rule) -> bool:
-        """Whether mutants of an operator are asked for: its family, or a magnitude of its faults."""
+        """Return whether mutants of an operator are asked for, by its family or by a demanded magnitude."""
         is_demanded = rule.has_sizes and any(demand.operator == rule.name for demand in self.demands)
         return rule.family in self.families or is_demanded
 
     def program_files(self) -> list[str]:
-        """The files of the program, in all its languages, relative to ``root``, each once."""
+        """Return the files of the program, in all its languages, relative to ``root``, each once."""
         return program_files(self.root, self.program)
 
     def is_python(self, file: str) -> bool:
-        """Whether a file of the program is Python: it does not end as one of another language does."""
+        """Return whether a file of the program is Python, as it has no suffix of another language."""
         return front_end_of(file) is PYTHON
 
 
@@ -97,7 +97,7 @@ class PlannedMutant:
     def of_text(
         cls, provider: str, place: TextPlace, index: int, description: str, reason: str | None = None
     ) -> PlannedMutant:
-        """A mutant of the program text: the alternative with this index at a place.
+        """Return a mutant of the program text: the alternative with this index at a place.
 
         Args:
             provider: name of the provider that makes it.
@@ -121,7 +121,7 @@ class PlannedMutant:
 
 @dataclass(slots=True)
 class Planned:
-    """What a provider makes of a baseline.
+    """What a provider has planned for a baseline.
 
     Attributes:
         mutants: those it plants, and those it leaves out with the reason.
@@ -177,7 +177,7 @@ class Planned:
 
 
 class FaultProvider(ABC):
-    """Makes mutants.
+    """The base class of providers of faults, which make mutants.
 
     Class attributes:
         name: how its mutants name it.
@@ -197,12 +197,12 @@ class FaultProvider(ABC):
     numbered_with: ClassVar[str] = ""
 
     def is_asked_for(self, project: Project) -> bool:
-        """Whether any of its mutants are asked for."""
+        """Return whether any of its mutants are asked for."""
         is_of_family = not set(self.families).isdisjoint(project.families)
         return is_of_family or any(project.asks_for(rule) for rule in self.rules())
 
     def rules(self) -> Sequence[Rule]:
-        """Its operators, for lists, documentation and reports."""
+        """Return its operators, for lists, documentation and reports."""
         return ()
 
     def mutant(
@@ -215,7 +215,7 @@ class FaultProvider(ABC):
         magnitude: float | None = None,
         unit: str | None = None,
     ) -> Mutant:
-        """A mutant of this provider, whose site is no call of an operation.
+        """Return a mutant of this provider, whose site is no call of an operation.
 
         Args:
             rule: the operator that makes it.
@@ -231,7 +231,7 @@ class FaultProvider(ABC):
         )  # fmt: skip
 
     def texts(self, project: Project, first: int, tell: Callable[[str], None]) -> Sequence[ProgramText]:
-        """The program text that the baseline's first run of each round is to look at; most need none.
+        """Return the program text that the baseline's first run of each round has to instrument.
 
         Args:
             project: the project.
@@ -242,7 +242,7 @@ class FaultProvider(ABC):
 
     @abstractmethod
     def plan(self, project: Project, original: Original) -> Planned:
-        """All its mutants of the families that are asked for.
+        """Return all its mutants of the families that are asked for.
 
         Each once, and of a fault with sizes its usual ones: the plan adds moments and magnitudes that users
         ask for, where ``Rule.has_moments`` and ``Rule.has_sizes`` of the operator say so.
@@ -253,7 +253,7 @@ class FaultProvider(ABC):
         """
 
     def at_magnitude(self, planned: PlannedMutant, magnitude: float) -> PlannedMutant:
-        """The same fault at another magnitude, which users demand.
+        """Return the same fault at another magnitude, which users demand.
 
         Unless a provider says otherwise, the fault takes its size from ``Mutant.magnitude``: else nothing
         differs but the mutant's variant and description, which have it as ``f"{magnitude:g}"``.
@@ -261,26 +261,26 @@ class FaultProvider(ABC):
         return replace(planned, mutant=at_magnitude(planned.mutant, magnitude))
 
     def draws(self, operator: str) -> bool:
-        """Whether one of its operators draws new random numbers in each round."""
+        """Return whether one of its operators draws new random numbers in each round."""
         return False
 
     def is_raced(self, operator: str) -> bool:
-        """Whether equal runs with a fault of this operator may end differently."""
+        """Return whether equal runs with a fault of this operator may end differently."""
         return False
 
     def is_monotone(self, operator: str) -> bool:
-        """Whether tests that notice a fault of this operator notice all larger ones; if not, each is run."""
+        """Return whether tests that notice a fault also notice all larger ones; if not, each one is run."""
         return True
 
 
 @cache
 def brought_providers() -> tuple[FaultProvider, ...]:
-    """The fault providers of packages. Raises ExtensionError if a provider cannot be loaded."""
+    """Return the fault providers of packages. Raises ExtensionError if a provider cannot be loaded."""
     return tuple(part.make(FaultProvider) for part in brought("faults").values())  # type: ignore[type-abstract]
 
 
 def families_brought(*, without_vocabulary: bool = False) -> tuple[str, ...]:
-    """The families of the packages' providers; of all, or of those that need no vocabulary."""
+    """Return the families of the packages' providers, or of those that need no vocabulary."""
     return tuple(
         dict.fromkeys(
             family
@@ -292,13 +292,13 @@ def families_brought(*, without_vocabulary: bool = False) -> tuple[str, ...]:
 
 
 def need_vocabulary(families: Iterable[str]) -> bool:
-    """Whether mutants of any of these families need a vocabulary."""
+    """Return whether mutants of any of these families need a vocabulary."""
     asked = set(families)
     return not asked.isdisjoint(OF_CALLS) or not asked <= set(families_brought(without_vocabulary=True))
 
 
 def why_unknown(name: str) -> str | None:
-    """Why there is no family of this name, with the nearest that is there; None if there is one."""
+    """Return why there is no family of this name, with the nearest name; None if there is one."""
     if name in OF_CALLS:
         why = not_installed(name, "operators")
         return why and f"the family {name} {why}"
@@ -322,7 +322,7 @@ def asked_for(names: Iterable[str]) -> tuple[str, ...]:
 
 
 def known_families() -> tuple[str, ...]:
-    """All that can be asked for. Raises OperatorError or ExtensionError for a package that is of no use."""
+    """Return all known families. Raises OperatorError or ExtensionError for an invalid package."""
     from mutabot.operators import load_all  # noqa: PLC0415  # most campaigns ask for mutabot's own
 
     of_operators = (rule.family for rule in load_all())

@@ -1,4 +1,4 @@
-"""Classes of plain data that does not change, made in a fraction of the time that dataclasses take.
+"""Immutable classes of plain data, made in a fraction of the time that dataclasses take.
 
 ``dataclass(frozen=True)`` writes and compiles six functions for each class. Every process beside a robot
 program has about a hundred such classes, which were half of what it took to import ours, and makes objects of
@@ -27,7 +27,7 @@ def frozen(*, refuses: bool = ..., order: bool = ...) -> Callable[[type[T]], typ
 
 @dataclass_transform(frozen_default=True, field_specifiers=(field,))
 def frozen(kind: type[T] | None = None, /, *, refuses: bool = False, order: bool = False) -> Any:
-    """Make a dataclass with slots of a class, with the methods of ``dataclass(frozen=True)``.
+    """Turn a class into a dataclass with slots and the methods of ``dataclass(frozen=True)``.
 
     Its ``__init__`` and its fields are made when they are first asked for, with its first object as a rule,
     or by ``compile_all``; what compares, hashes and shows is shared by all. All annotations are of fields.
@@ -69,7 +69,7 @@ def _frozen(kind: type[T], *, refuses: bool, order: bool) -> type[T]:
 
 
 def _is_without(default: Any, method: str) -> bool:
-    """Whether a field says of itself that this method leaves it out."""
+    """Return whether a field excludes itself from this method."""
     return isinstance(default, Field) and not getattr(default, method)
 
 
@@ -83,7 +83,7 @@ _helpers: list[type[Any]] = []
 
 
 def compile_all() -> None:
-    """Compile all that is left to compile: in a process that will be forked, else each fork would do it."""
+    """Compile all remaining classes, in a process that will be forked, as otherwise each fork would."""
     for kind in list(_pending):
         _compile(kind)
 
@@ -104,7 +104,7 @@ def _compile(kind: Any) -> None:
 
 
 def _init_later(kind: Any) -> Callable[..., None]:
-    """An ``__init__`` that gives way to a compiled one when it is called first."""
+    """Return an ``__init__`` that replaces itself by a compiled one when it is first called."""
 
     def __init__(self: Any, *values: Any, **named: Any) -> None:  # noqa: N807  # a method to be
         _compile(kind)

@@ -1,4 +1,4 @@
-"""What is known of the original, the unmutated program, when mutants are planned."""
+"""Facts about the original, the unmutated program, that are known when mutants are planned."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from mutabot.model.source_units import ExecutedByTests
 
 @frozen
 class TextSeen:
-    """What the baseline saw of instrumented program text in a round.
+    """What the baseline observed in instrumented program text in a round.
 
     Attributes:
         imported: the files that were imported.
@@ -50,12 +50,12 @@ LIMIT = 1_000_000
 
 
 class NoAnswerError(MutabotError):
-    """Nobody knows what the program would get if the robot did nothing; the text says why."""
+    """It is unknown what the program would get if the robot did nothing; the text says why."""
 
 
 @dataclass(slots=True)
 class RecordedAnswers:
-    """The notes of what calls of one place returned, as ``runtime.interception.adapter`` writes them.
+    """The recorded answers of one place, as ``runtime.interception.adapter`` writes them.
 
     Attributes:
         first: note of the first call that returned, by test (``Idle.key``).
@@ -69,11 +69,11 @@ class RecordedAnswers:
 
     @property
     def is_nothing(self) -> bool:
-        """Whether all calls that returned, returned nothing (None)."""
+        """Whether all calls that returned, returned None."""
         return not self.varying and all(note is None for note in self.first.values())
 
     def add(self, round: int, test: str, note: Any) -> None:
-        """The next call of the place in this test has returned, or raised."""
+        """Add the answer of the place's next call in this test, or that it raised."""
         if isinstance(note, dict) and "raised" in note:
             self.has_raised = True
             return
@@ -86,7 +86,7 @@ class RecordedAnswers:
 
 
 def idle_of(operation: Operation, pattern: Pattern | None, answers: RecordedAnswers) -> Any:
-    """What the program gets when the command is left out, as a mutant carries it.
+    """Return what the program gets when the command is left out, as a mutant carries it.
 
     What the vocabulary says goes first. Raises NoAnswerError.
     """
@@ -117,7 +117,7 @@ def _kept(note: Any) -> Any:
 
 @dataclass(slots=True)
 class Original:
-    """What the baseline has seen of the original.
+    """What the baseline knows of the original.
 
     Attributes:
         tests: per round, the tests that ended alike in all repetitions and let the suite pass, in its order.
@@ -148,7 +148,7 @@ class Original:
     unreached: tuple[Place, ...] = ()
 
     def sightings(self) -> dict[int, Sighting]:
-        """What was seen at places of the program text in all rounds, by the numbers of the places.
+        """Return the merged observations of all rounds, by the numbers of the places in the program text.
 
         All kinds of values, and the variables that each round saw.
         """
@@ -159,14 +159,14 @@ class Original:
         return merged
 
     def reached_places(self) -> set[int]:
-        """The numbers of the places of the program text that tests, or processes below them, reach."""
+        """Return the numbers of the places of the program text that tests, or processes below them, reach."""
         found = (tests for one in self.text.values() for tests in (one.reached, *one.below.values()))
         return {number for tests in found for numbers in tests.values() for number in numbers}
 
     def refused_files(self) -> dict[str, str]:
-        """The files of the program whose text could not be looked at, with the reason."""
+        """Return the files of the program whose text could not be instrumented, with the reason."""
         return {file: why for _, one in sorted(self.text.items()) for file, why in one.refused.items()}
 
     def simulated(self, round: int, test: str) -> float:
-        """Simulated seconds that a test took; 0 without a clock, or if the test let none pass."""
+        """Return the simulated seconds of a test; 0 without a clock, or if the test let no time pass."""
         return self.ends[round, test].simulated or 0.0

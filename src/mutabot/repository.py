@@ -1,4 +1,4 @@
-"""Git, asked by its own program: it alone reads every repository. Nothing is written, not even the index."""
+"""Read-only queries to git, by running its program, since only that reads every kind of repository."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ _OF_A_REPOSITORY = {
 
 
 class GitError(Exception):
-    """Git cannot tell; the text says why."""
+    """Git cannot answer; the text says why."""
 
 
 def repository_of(folder: Path) -> Path | None:
-    """The top of the repository that a folder lies in; None if it lies in none."""
+    """Return the top of the repository that a folder lies in; None if it lies in none."""
     return next((one for one in (folder, *folder.parents) if (one / ".git").exists()), None)
 
 
 def tracked(folder: Path, *names: str) -> list[str]:
-    """The files below a folder that git tracks, relative to it, those of submodules included.
+    """Return the files below a folder that git tracks, relative to it, those of submodules included.
 
     ``names``: only these files, and what is below them if they are folders. Raises GitError.
     """
@@ -51,7 +51,7 @@ def _listed(folder: Path, *options: str) -> list[str]:
 
 
 def git(folder: Path, *command: str) -> subprocess.CompletedProcess[bytes]:
-    """What git says about the repository that a folder lies in. Raises GitError if it cannot be started."""
+    """Run git in a folder without letting it write. Raises GitError if it cannot be started."""
     environment = {name: value for name, value in os.environ.items() if name not in _OF_A_REPOSITORY}
     environment |= {"GIT_OPTIONAL_LOCKS": "0", "LC_ALL": "C"}
     words = ["git", "-C", os.fspath(folder), *command]

@@ -1,4 +1,4 @@
-"""Memory that processes forked from one share, for what any of them has computed for all.
+"""A memory that forked processes share, as a cache of computed values.
 
 A campaign runs the same tests of the same program many times, each time with one fault. Up to the fault, and
 wherever it changes nothing, a simulator computes what it has computed before. What it keeps here must depend
@@ -22,7 +22,7 @@ _FIRST = _PLACE.size * (1 + _SLOTS)
 
 
 class SharedMemory:
-    """Values by keys, shared by processes. New values take the place of the oldest ones once it is full.
+    """A cache of values by keys. New values replace the oldest ones once it is full.
 
     It takes up memory only as it is filled. Processes read and write without waiting for each other; a sum
     tells of a value that is incomplete.
@@ -41,7 +41,7 @@ class SharedMemory:
 
     @classmethod
     def current(cls) -> SharedMemory | None:
-        """The memory that this process shares with others; None outside of campaigns."""
+        """Return the memory that this process shares with others; None outside of campaigns."""
         return cls._current
 
     @classmethod
@@ -60,7 +60,7 @@ class SharedMemory:
         cls._current = None
 
     def get(self, key: bytes) -> bytes | None:
-        """What was put under a key, if it is still there."""
+        """Return the value of a key, if it is still stored."""
         (place,) = _PLACE.unpack_from(self._bytes, _slot(key))
         if not _FIRST <= place <= _SIZE - _HEAD.size:
             return None
@@ -71,7 +71,7 @@ class SharedMemory:
         return value if zlib.crc32(value, zlib.crc32(key)) == check else None
 
     def put(self, key: bytes, value: bytes) -> None:
-        """Keep a value.
+        """Store a value.
 
         Args:
             key: `key_size` bytes that tell apart all that the value depends on, such as a digest.

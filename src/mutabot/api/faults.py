@@ -1,4 +1,4 @@
-"""What a package needs that brings faults: operators, providers and active faults."""
+"""The interface for packages that bring faults: operators, providers and active faults."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where tasks of a campaign run, and what lives beside a program in its processes."""
+"""The interface for packages about processes: executors, guards, simulations, observed runs of a suite."""
 
 from __future__ import annotations
 

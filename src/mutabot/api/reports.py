@@ -1,4 +1,4 @@
-"""What reports and commands read: results of a campaign, its outcomes and recordings."""
+"""The interface for packages that read results: reports, commands, outcomes and recordings."""
 
 from __future__ import annotations
 

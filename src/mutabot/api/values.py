@@ -1,4 +1,4 @@
-"""What operators and middlewares work on: operations, their quantities, and calls of them."""
+"""The interface for operators and middlewares: operations, their quantities, and calls of them."""
 
 from __future__ import annotations
 

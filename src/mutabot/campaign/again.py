@@ -36,7 +36,7 @@ _STARTUP = 300.0
 
 @dataclass(frozen=True)
 class CampaignRun(Campaign):
-    """A campaign that is run in parts: its baseline is taken, what else is run its user says.
+    """A campaign that is run in parts: its baseline, and then whatever its user asks for.
 
     ``task`` makes tasks of its mutants, and ``executor`` runs them.
 
@@ -52,7 +52,7 @@ class CampaignRun(Campaign):
     @classmethod
     @contextmanager
     def open(cls, request: Request, progress: Progress) -> Iterator[Self]:
-        """Take the baseline, each round once. Leaving the context ends all processes.
+        """Take the baseline, each round once, and yield the campaign. Leaving the context ends all processes.
 
         Raises ConfigurationError for a vocabulary that does not fit the program, NothingToDoError without
         tests, BaselineError when tests fail.
@@ -73,7 +73,7 @@ class CampaignRun(Campaign):
     def of_original(
         request: Request, rounds: Iterable[int], progress: Progress
     ) -> Iterator[Iterator[Result]]:
-        """Run the suite on the original in these rounds (from 0), also if tests fail.
+        """Yield one iterator of results for each run of the suite on the original in these rounds (from 0).
 
         Gives the results as they come; ``task.key`` is the round. Leaving the context ends all processes.
         """
@@ -105,7 +105,7 @@ class CampaignRun(Campaign):
 def replay_one(
     request: Request, journal: JournalReader, mutant: Mutant, rounds: Iterable[int], progress: Progress
 ) -> list[Replayed]:
-    """Run one mutant again in these rounds, beside what the journal says of it.
+    """Replay one mutant in these rounds, without changing the journal.
 
     Raises what ``CampaignRun.open`` and ``CampaignRun.current`` raise.
     """

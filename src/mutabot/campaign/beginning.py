@@ -54,7 +54,7 @@ _REMARKS = 8
 
 
 def open_executor(request: Request, progress: Progress) -> AbstractContextManager[Executor]:
-    """What runs the tasks of a campaign."""
+    """Return a context manager that opens the executor of a campaign."""
     if request.executor is None:
         return request.on_this_machine(progress.note)
     return request.executor.open(request, progress.note)
@@ -62,7 +62,7 @@ def open_executor(request: Request, progress: Progress) -> AbstractContextManage
 
 @contextmanager
 def locked_executor(request: Request, progress: Progress) -> Iterator[Executor]:
-    """Open what runs the tasks of a campaign; meanwhile the project is locked, and Ctrl-C waits until safe.
+    """Open the executor of a campaign; meanwhile the project is locked, and Ctrl-C waits until safe.
 
     Raises UsageError if the system allows too few open files.
     """
@@ -126,7 +126,7 @@ def whole_plan(campaign: Campaign) -> tuple[Plan, tuple[str, ...]]:
 
 
 def selected(campaign: Campaign, plan: Plan) -> Plan:
-    """The plan with the mutants that were asked for.
+    """Return the plan with only the mutants that were asked for.
 
     Raises NothingToDoError if none is left, saying why.
     """
@@ -148,7 +148,7 @@ def selected(campaign: Campaign, plan: Plan) -> Plan:
 
 
 def _ignored(request: Request, plan: Plan) -> Iterator[Remark]:
-    """Settings of the configuration that have no effect on any provider of faults."""
+    """Remark on settings of the configuration that have no effect on any provider of faults."""
     configuration, mutants = request.configuration, plan.mutants
     without = {rule.name for rule in rules_of(request.families) if not rule.has_moments}
     others = sorted({one.family for one in mutants if one.operator in without})
@@ -187,7 +187,7 @@ def _why_no_mutants(request: Request, plan: Plan, baseline: Baseline) -> str:
 
 @frozen
 class PlannedCampaign:
-    """What a campaign would run.
+    """A campaign that has been planned but not run.
 
     Attributes:
         mutants: those that would run.
@@ -216,7 +216,7 @@ def plan_only(request: Request, progress: Progress) -> PlannedCampaign:
 
 
 def check(request: Request, progress: Progress) -> CheckReport:
-    """Try the whole set-up, controls included, without running mutants."""
+    """Try the whole set-up, controls included, without running other mutants."""
     refuse_tracked(request.journal_path)
     previews = dict(_previews(request))
     with locked_executor(request, progress) as opened, ExitStack() as stack:
@@ -236,13 +236,13 @@ def check(request: Request, progress: Progress) -> CheckReport:
 
 
 def _leave(original: OriginalRuns, journal: Path) -> None:
-    """Leave the runs of the original to campaigns that come, unless one is under way."""
+    """Keep the runs of the original for later campaigns, unless another campaign is running."""
     with suppress(JournalError):
         original.keep(lambda kept: Journal.keep_original(journal, kept))
 
 
 def _previews(request: Request) -> Iterator[tuple[str, Preview]]:
-    """What executors that the configuration has a table for would take elsewhere, by their names."""
+    """Yield each executor that the configuration has a table for, with what it would take elsewhere."""
     if not request.configuration.tables:
         return
     for name, part in brought("executors").items():
@@ -308,7 +308,7 @@ def _report(
 
 
 def _untested(found: Untested) -> Iterator[str]:
-    """Say what no test reaches of the program."""
+    """Yield lines about the parts of the program that no test reaches."""
     if found.text:
         yield f"untested  {found.text}"
     for what, names in found.named.items():
@@ -316,7 +316,7 @@ def _untested(found: Untested) -> Iterator[str]:
 
 
 def _unused(vocabulary: Vocabulary, unused: Collection[str]) -> Iterator[str]:
-    """Name the operations that no test reaches; of a vocabulary's file that has many, the first of them."""
+    """Yield lines about the operations that no test reaches; of a file with many, only the first."""
     of: dict[str, list[str]] = {}
     for operation in vocabulary.operations:
         of.setdefault(operation.source.partition(":")[0], []).append(operation.target)

@@ -66,16 +66,16 @@ class Campaign:
 
     @cached_property
     def sources(self) -> Sources:
-        """Names the sites that workers report."""
+        """The source files in which the sites that workers report lie."""
         return Sources(self.request.root)
 
     @property
     def whole(self) -> Campaign:
-        """Return a copy of the campaign that runs every mutant with the whole suite."""
+        """A copy of the campaign that runs every mutant with the whole suite."""
         return replace(self, is_short=False)
 
     def reaching(self, mutants: Iterable[Mutant], round: int) -> dict[str, tuple[int, ...]]:
-        """Which tests of the suite are run as which mutant, see ``Job.reaching``."""
+        """Return the tests of the suite that are run as each mutant, by its id; see ``Job.reaching``."""
         numbers = {test: number for number, test in enumerate(self.baseline.suite(round))}
         return {
             mutant.id: tuple(sorted(numbers[test] for test in self.baseline.tests_reaching(round, mutant)))
@@ -84,7 +84,7 @@ class Campaign:
         }
 
     def task(self, mutant: Mutant, round: int, tests: tuple[str, ...], *, stop: bool = True) -> Task:
-        """The task of running these tests as this mutant in a process of its own."""
+        """Return the task of running these tests as this mutant in a process of its own."""
         request, faults = self.request, self.baseline.faults
         job = self.job(
             round, tests, [mutant],
@@ -97,7 +97,7 @@ class Campaign:
         return Task((mutant, round), job, limits, self.startup_limit, self.startup_limit, alone=alone)
 
     def job(self, round: int, tests: tuple[str, ...], mutants: Iterable[Mutant], **details: Any) -> Job:
-        """The job of running these tests as these mutants, with the limits that the baseline gives."""
+        """Return the job of running these tests as these mutants, with limits based on the baseline."""
         refused = ((test, self.baseline.refused.get((round, test))) for test in tests)
         return self.request.job(
             round,
@@ -115,12 +115,12 @@ class Campaign:
 
     @property
     def startup_limit(self) -> Limit:
-        """What a mutant may take until its first test begins."""
+        """The time limit of a mutant until its first test begins."""
         startup = self.baseline.startup
         return self._limit(startup, startup)
 
     def limits(self, round: int, tests: Iterable[str]) -> dict[str, Limit]:
-        """What a mutant may take for each of these tests, of which it may run some alone.
+        """Return the time limit of a mutant for each of these tests, some of which it may run alone.
 
         A test that comes after others which are not run may be the first to prepare what these did.
         """
@@ -141,7 +141,7 @@ class Campaign:
         return Limit(max(least, factor * wall), max(least, factor * processor))
 
     def _simulated(self, round: int, tests: Iterable[str]) -> dict[str, float]:
-        """The simulated time that each test may take, of those that take any on the original."""
+        """Return the limit of simulated time (s) for each test that takes any on the original."""
         times = {test: self.baseline.ends[round, test].simulated for test in tests}
         return {
             test: SPARE_SIMULATED + self._factor * time for test, time in times.items() if time is not None
@@ -153,7 +153,7 @@ class Campaign:
 
     @property
     def _spare(self) -> float:
-        """Seconds of processor time that any test gets beside a multiple of the baseline's."""
+        """The processor time (s) that any test gets beside a multiple of the baseline's."""
         least = self.request.configuration.timeout_seconds
         if least is not None:
             return least

@@ -29,7 +29,7 @@ CommandName = tuple[str, str | None]
 
 
 def _angles_of(operations: Sequence[Operation]) -> dict[CommandName, dict[str, Quantity]]:
-    """The orientations and angles among the values of each command, by name."""
+    """Return the orientations and angles among the values of each command, by name."""
     owners: list[tuple[CommandName, Operation | Pattern]] = [((one.target, None), one) for one in operations]
     owners += [((one.target, pattern.text), pattern) for one in operations for pattern in one.patterns]
     return {
@@ -43,7 +43,7 @@ def _angles_of(operations: Sequence[Operation]) -> dict[CommandName, dict[str, Q
 
 
 def _values_apart(before: Any, after: Any, angles: Mapping[str, Quantity]) -> float:
-    """The greatest distance of two sets of values by quantity."""
+    """Return the greatest distance of two sets of values by quantity."""
     if not angles or not isinstance(before, Mapping) or not isinstance(after, Mapping):
         return _distance(before, after)
     distances = []
@@ -103,7 +103,7 @@ class Observation:
 
     @property
     def readings(self) -> _Readings:
-        """The probes at its end."""
+        """The probes at the end of the test."""
         return _Readings(self.probes, self.unread)
 
 
@@ -202,7 +202,7 @@ def _on_the_way(
 
 
 def _common_moments(one: Observation, other: Observation) -> list[tuple[int, dict[str, Any], dict[str, Any]]]:
-    """After which calls both were read, as far as they made the same calls, and what was read."""
+    """Return the calls after which both runs were read, while they made the same calls, and the readings."""
     before, after = _readings(one.moments or ()), _readings(other.moments or ())
     same = _same_calls(one, other)
     return [
@@ -214,7 +214,7 @@ def _common_moments(one: Observation, other: Observation) -> list[tuple[int, dic
 
 @frozen
 class ProbeSpread:
-    """How far probes are apart in runs of the original of one test with different seeds.
+    """How far probes are apart in runs of one test of the original with different seeds.
 
     Attributes:
         ends: by what is compared, at the ends.
@@ -228,7 +228,7 @@ class ProbeSpread:
     def between(
         cls, first: Observation, others: Iterable[Observation], probes: Sequence[Probe]
     ) -> ProbeSpread:
-        """How far the other runs are from the first."""
+        """Return how far the other runs are from the first."""
         ends: dict[str, float] = {}
         ways: dict[str, float] = {}
         for other in others:
@@ -241,14 +241,14 @@ class ProbeSpread:
 
 
 def _same_calls(original: Observation, mutant: Observation) -> int:
-    """How many calls at the beginning are the same."""
+    """Return the number of calls at the beginning that are the same."""
     pairs = zip(original.events, mutant.events, strict=False)
     shorter = min(len(original.events), len(mutant.events))
     return next((number for number, (one, other) in enumerate(pairs) if one.key != other.key), shorter)
 
 
 def _readings(moments: Sequence[Any]) -> dict[int, dict[str, Any]]:
-    """All parts at each moment; a trace that is cut off has its last number more than once."""
+    """Return all readings by moment; a trace that is cut off repeats its last moment."""
     found: dict[int, dict[str, Any]] = {}
     last: dict[str, Any] = {}
     for call, parts, is_whole in moments:
@@ -263,7 +263,7 @@ def as_steady(
     probes: Sequence[Probe],
     operations: Sequence[Operation] = (),
 ) -> Observation | None:
-    """The observation of the original that mutants are compared with, after a second run of it.
+    """Return the observation that mutants are compared with: what two runs of the original have in common.
 
     Without what the program returned, or probes along the way, if only that differs; None if more does.
     """
@@ -275,7 +275,7 @@ def as_steady(
 
 
 def farthest(comparisons: Sequence[Difference]) -> Difference:
-    """One comparison for several tests of the same mutant: the worst of them, all of them equal or not."""
+    """Merge the comparisons of several tests of one mutant: the largest differences; equal if all are."""
     if not comparisons:
         return Difference(True, None, ())
     ranked = sorted(
@@ -328,7 +328,7 @@ def _compared(original: Observation, mutant: Observation, moments: int) -> Compa
 
 
 def _returned_difference(original: Observation, mutant: Observation, probes: Sequence[Probe]) -> str | None:
-    """The first difference in what the program returned.
+    """Return the first difference in the values that the program returned; None if there is none.
 
     A fixture that tests share is set up in one of them, in another one if others are run before: the last of
     what was returned to fixtures is from those that the test has alone.
@@ -372,7 +372,7 @@ def _event_text(name: str, value: Any) -> str:
 
 
 def _place_text(key: str) -> str:
-    """A call's place without its columns: ``sorting.py:118 Arm.move_by``."""
+    """Return a call's place without its columns: ``sorting.py:118 Arm.move_by``."""
     return _EXTENT.sub(r"\1", key)
 
 
@@ -401,14 +401,14 @@ class _ProbeDifference(NamedTuple):
         return min(self.size / self.tolerance, OTHER_WORLD)
 
     def deviation(self, spread: Mapping[str, float]) -> float:
-        """The difference in units of the original's spread; of clocks, which tell of mere delay, none."""
+        """Return the difference in units of the original's spread; None for clocks, which only show delay."""
         if self.is_clock:
             return 0.0
         tolerance = max(self.tolerance, TOLERANCES.get(self.unit or "", 0.0))
         return min(deviation_of(self.size, spread.get(self.key, 0.0), tolerance), OTHER_WORLD)
 
     def rank(self, spread: Mapping[str, float]) -> tuple[float, float]:
-        """Lowest for the largest deviation."""
+        """Return the sort key of a difference; the lowest is the largest deviation."""
         return -self.deviation(spread), -self.distance
 
 
@@ -442,7 +442,7 @@ def _probe_differences(
 def _of_quantity(
     name: str, quantity: Quantity, before: Any, after: Any, tolerance: float
 ) -> _ProbeDifference | None:
-    """How far a part is apart whose meaning is known; None if its values are compared as any others."""
+    """Return the difference of a part whose meaning is known; None if it is compared like any other value."""
     part = f"{name}{quantity.path}"
     short = _short(f"{name}{''.join(map(step_text, quantity.path.steps))}")
     if quantity.kind is Kind.STAMP and is_number(before) and is_number(after):
@@ -462,7 +462,7 @@ def _of_quantity(
 
 
 def _parts(values: Mapping[str, Any], probes: Sequence[Probe]) -> Iterator[tuple[str, Quantity]]:
-    """The quantities of the readings among some values, with the names of the readings."""
+    """Yield the quantities of the readings among some values, with the names of the readings."""
     for probe in probes:
         for name in readings_of(probe, values) if probe.result else ():
             for quantity in probe.result:
@@ -470,7 +470,7 @@ def _parts(values: Mapping[str, Any], probes: Sequence[Probe]) -> Iterator[tuple
 
 
 def _readable(original: _Readings, mutant: _Readings, target: str) -> str:
-    """How a probe that only one side can read differs."""
+    """Describe how a probe differs that only one of both runs can read."""
     if target in mutant.unread:
         return f"cannot be read, as it could be in the original: {mutant.unread[target]}"
     return f"can be read, as it could not be in the original: {original.unread[target]}"
@@ -495,7 +495,7 @@ def _short(key: str) -> str:
 
 @frozen
 class _Readings:
-    """_Readings of probes at one moment.
+    """Readings of probes at one moment.
 
     Attributes:
         values: by ``target.part``.
@@ -507,7 +507,7 @@ class _Readings:
 
 
 def _angle_between(quantity: Quantity | None, before: Any, after: Any) -> float | None:
-    """Distance between two values of a quantity as orientations or angles; None for other quantities."""
+    """Return the distance of two orientations or angles; None for other quantities."""
     if quantity is not None and quantity.is_whole:
         first, second = quantity.orientation(before), quantity.orientation(after)
         return quantity.from_unit(first.distance(second), "rad") if first and second else None
@@ -518,7 +518,7 @@ def _angle_between(quantity: Quantity | None, before: Any, after: Any) -> float 
 
 
 def _distance(before: Any, after: Any) -> float:
-    """Absolute difference of two numbers or of the worst pair in two lists; infinite if not comparable."""
+    """Return the absolute difference of two numbers, or the greatest in two lists; inf if there is none."""
     if is_number(before) and is_number(after):
         if before == after or (math.isnan(before) and math.isnan(after)):
             return 0.0
@@ -533,7 +533,7 @@ def _distance(before: Any, after: Any) -> float:
 
 
 def _is_same(before: Any, after: Any, tolerance: float) -> bool:
-    """Whether two values are equal, fractions within the tolerance."""
+    """Return whether two values are equal, fractions within the tolerance."""
     if isinstance(before, Mapping) and isinstance(after, Mapping):
         same_keys = before.keys() == after.keys()
         return same_keys and all(_is_same(before[key], after[key], tolerance) for key in before)
@@ -547,7 +547,7 @@ def _is_same(before: Any, after: Any, tolerance: float) -> bool:
 
 
 def _first_part(before: Any, after: Any, tolerance: float) -> tuple[str, Any, Any]:
-    """The first part in which two values of one shape differ: its path, and what it is in each."""
+    """Return the path of the first part in which two values differ, and the part's value in each."""
     if isinstance(before, Mapping) and isinstance(after, Mapping) and before.keys() == after.keys():
         pairs = [(f"[{key!r}]", before[key], after[key]) for key in before]
     elif isinstance(before, list | tuple) and isinstance(after, list | tuple) and len(before) == len(after):

@@ -1,4 +1,4 @@
-"""Confirm with the whole suite what mutants did that were run without some of its tests.
+"""Confirm with the whole suite the outcomes of mutants that ran without some of its tests.
 
 The whole suite judges a mutant. Where the tests that do not reach survivors, after the first that does, would
 take longer than all the rest of the campaign, they are left out at first. A mutant that ends otherwise than
@@ -33,12 +33,12 @@ SURVIVORS = 1 / 3
 
 
 def earlier_decision(journal: Journal) -> bool | None:
-    """Return the decision of the campaign that this one continues; None if that one was complete."""
+    """Return whether the campaign that this one continues left out tests; None if that one was complete."""
     return journal.meta().get(CONFIRMATION) if journal.finished != "complete" else None
 
 
 def decide(campaign: Campaign, mutants: Sequence[Mutant], journal: Journal, earlier: bool | None) -> Campaign:
-    """The campaign with or without the tests that are left out at first. The journal says which.
+    """Decide whether some tests are left out at first, note that in the journal, and return the campaign.
 
     This goes by what the tests took in the baseline, and by how many mutants are taken to survive.
     ``earlier``: what this campaign has decided before it was interrupted.
@@ -64,7 +64,7 @@ def confirm(
     writer: OutcomeWriter,
     done: Collection[tuple[str, int]] = (),
 ) -> None:
-    """Run with the whole suite what counts with that only, and a sample of what was let through without it.
+    """Re-run with the whole suite the outcomes that need it, and a sample of the survivors that do not.
 
     If it notices one of these, all of them are run. ``done``: ids and rounds of outcomes that were known
     before this campaign.
@@ -104,7 +104,7 @@ def confirm(
 def _affordable(
     campaign: Campaign, mutants: Mapping[str, Mutant], left: Iterable[Outcome], seconds: float
 ) -> Iterator[Outcome]:
-    """Return the first mutants whose runs with the whole suite fit into the time; at least one."""
+    """Yield the first outcomes whose re-runs with the whole suite fit into the time; at least one."""
     baseline = campaign.baseline
     rounds: set[int] = set()
     for number, one in enumerate(left):
@@ -120,7 +120,7 @@ def _affordable(
 
 
 def _fixed(campaign: Campaign) -> float:
-    """Seconds that a campaign takes for the original alone, in all its runs."""
+    """Return the time (s) that a campaign takes for the original alone, in all its runs."""
     request, baseline = campaign.request, campaign.baseline
     rounds = range(request.rounds)
     once = sum(baseline.seconds(round, baseline.suite(round)) for round in rounds)

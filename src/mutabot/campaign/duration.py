@@ -1,4 +1,4 @@
-"""How long a campaign will take, estimated from its baseline before any mutant runs."""
+"""An estimate, before any mutant runs, of how long a campaign will take, by its baseline."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _SUITES = 2
 
 @frozen
 class Duration:
-    """An estimate.
+    """An estimate of the duration of a campaign.
 
     Attributes:
         runs: mutants in rounds.
@@ -64,5 +64,5 @@ def duration_of(campaign: Campaign, mutants: Sequence[Mutant]) -> Duration:
 
 
 def _wall(campaign: Campaign, round: int, tests: Iterable[str]) -> float:
-    """Seconds that tests took on the original."""
+    """Return the wall-clock time (s) that tests took on the original."""
     return sum(campaign.baseline.ends[round, test].wall for test in tests)

@@ -57,7 +57,7 @@ class CampaignEvidence:
         self._spread = lru_cache(None)(self._spread_of)
 
     def begin(self, runs: Iterable[tuple[int, int, Iterable[TestEnd]]], mutants: Iterable[Mutant]) -> None:
-        """The baseline is taken.
+        """Begin to keep recordings, once the baseline is taken.
 
         Args:
             runs: round, repetition, and the ends of the tests.
@@ -75,7 +75,7 @@ class CampaignEvidence:
                     self.problems.update(dict.fromkeys(found.problems))
 
     def add_seed(self, round: int, ends: Iterable[TestEnd]) -> None:
-        """The original has run with the seed of a round in which no mutant runs."""
+        """Add runs of the original with the seed of a round in which no mutant runs."""
         self.recordings.forget(ORIGINAL, round)
         for end in ends:
             if end.recording is not None:
@@ -92,7 +92,7 @@ class CampaignEvidence:
         return found
 
     def add_again(self, round: int, end: TestEnd) -> None:
-        """A further run of the original: how far things are apart without any fault."""
+        """Add a further run of the original, which shows how far things are apart without any fault."""
         changed = self._changed(round, end)
         found = noise_between(*changed[:2]) if changed is not None else {}
         if any(found.values()):
@@ -101,7 +101,7 @@ class CampaignEvidence:
     def take(
         self, mutant: str, round: int, ends: Iterable[TestEnd], *, survived: bool
     ) -> tuple[Diverged, ...]:
-        """Keep what differs of a mutant's tests. Returns how it does, what says most first.
+        """Keep what differs of a mutant's tests. Return the differences, the most telling first.
 
         Recordings that cannot be read or written any more, whoever has spoiled them, cost no outcome.
         """
@@ -132,7 +132,7 @@ class CampaignEvidence:
         return tuple(sorted(found, key=lambda one: one.rank, reverse=True))
 
     def _changed(self, round: int, end: TestEnd) -> tuple[RecordedPaths, RecordedPaths, bytes] | None:
-        """The original's recording of a test, this one, and its data; None if they are the same."""
+        """Return the original's recording of a test, this one, and its data; None if they are the same."""
         if end.recording is None or _digest(end.recording) == self._digests.get((round, end.test)):
             return None
         original, data = self._original(round, end.test), bytes_of(end.recording)
@@ -146,7 +146,7 @@ class CampaignEvidence:
             return set()
 
     def _spread_of(self, test: str) -> Spread:
-        """How far the original's runs of a test with different seeds are apart."""
+        """Return how far the original's runs of a test with different seeds are apart."""
         runs = (self._original(round, test) for round in self._passed.get(test, ()))
         return spread_between([one for one in runs if one is not None])
 
@@ -157,7 +157,7 @@ class CampaignEvidence:
 
 @contextmanager
 def recorded(request: Request, progress: Progress) -> Iterator[CampaignEvidence | None]:
-    """The recordings of a campaign, if any are asked for; says at the end what is missing."""
+    """Yield the recordings of a campaign, None if none are asked for; report at the end what is missing."""
     if not request.evidence:
         yield None
         return

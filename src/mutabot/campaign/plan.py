@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 @frozen
 class Plan:
-    """Mutants to run, and what is left out.
+    """The mutants to run, and those that are left out.
 
     Attributes:
         drawing: how the mutants were drawn from the selected ones; None if all of these are there.
@@ -41,7 +41,7 @@ class Plan:
 
 
 def draw(mutants: Sequence[Mutant], seed: int, sample: Sample) -> tuple[list[Mutant], Drawing]:
-    """The mutants to run, in their order and with their numbers, and how they were drawn."""
+    """Return the mutants to run, in their order and with their numbers, and how they were drawn."""
     strata: dict[tuple[str, str], list[Mutant]] = {}
     for mutant in mutants:
         strata.setdefault((mutant.family, mutant.site.role.value), []).append(mutant)
@@ -64,7 +64,7 @@ def shuffled(mutants: Iterable[Mutant], salt: str) -> list[Mutant]:
 
 
 def make_plan(baseline: Baseline, project: Project) -> Plan:
-    """All mutants that are asked for, provider by provider; the baseline learns of their places."""
+    """Return all mutants that are asked for, by provider, and add their places to the baseline."""
     plan = Plan([], [])
     planned = {provider: planned_by(provider, project, baseline) for provider in asked_for(project)}
     for made in planned.values():
@@ -82,7 +82,7 @@ def make_plan(baseline: Baseline, project: Project) -> Plan:
 
 
 def summaries(mutants: Iterable[Mutant]) -> dict[str, str]:
-    """The summary of each operator that made one of the mutants, by its name."""
+    """Return the summary of each operator that made one of the mutants, by its name."""
     mutants = list(mutants)
     providers = {one.provider: provider(one.provider) for one in mutants}
     known = {(name, rule.name): rule.summary for name, one in providers.items() for rule in one.rules()}
@@ -91,13 +91,13 @@ def summaries(mutants: Iterable[Mutant]) -> dict[str, str]:
 
 
 def drawing(mutants: Iterable[Mutant]) -> list[str]:
-    """The names of the operators among them that draw a number for each round."""
+    """Return the names of the operators of these mutants that draw a number for each round."""
     used = {(mutant.provider, mutant.operator) for mutant in mutants}
     return sorted(name for by, name in used if provider(by).draws(name))
 
 
 def reaching(baseline: Baseline, mutants: Iterable[Mutant]) -> Reaching:
-    """Which tests reach the sites of the mutants in any round."""
+    """Return which tests reach the sites of the mutants in any round."""
     numbers: dict[str, int] = {}
     sites: dict[str, set[int]] = {}
     for place in dict.fromkeys(map(Place.of, mutants)):
@@ -111,7 +111,7 @@ def reaching(baseline: Baseline, mutants: Iterable[Mutant]) -> Reaching:
 def carry(
     known: Iterable[Mutant], request: Request, planned: Sequence[Mutant], whole: Iterable[Mutant]
 ) -> list[Mutant]:
-    """The mutants of earlier campaigns that the program still has and that are not planned now.
+    """Return the mutants of earlier campaigns that the program still has and that are not planned now.
 
     ``whole``: all that the program has now, of the families of this campaign, with their numbers. Mutants of
     other families are kept, for of these nothing is known now. A number that is taken gives way.
@@ -127,7 +127,7 @@ def carry(
 
 
 def renumbered(mutants: Sequence[Mutant], planned: Sequence[Mutant]) -> list[Mutant]:
-    """Mutants beside a plan, by number; a number that is taken gives way."""
+    """Return mutants with numbers that no planned mutant has."""
     taken = {mutant.number for mutant in planned}
     last = max((mutant.number for mutant in (*planned, *mutants)), default=0)
     found = []
@@ -142,7 +142,7 @@ def renumbered(mutants: Sequence[Mutant], planned: Sequence[Mutant]) -> list[Mut
 
 
 def listed_rules(families: Collection[str] = ()) -> list[dict[str, str]]:
-    """The operators of these families, or all: by family, in the order of the documentation.
+    """Describe the operators of these families, or all: by family, in the order of the documentation.
 
     ``source`` is the bug class that one stands for, or the published operators that it makes; else empty.
 

@@ -1,4 +1,4 @@
-"""Readings of probes: which values they hold, and how often to take them."""
+"""Readings of probes: the values that they hold, and how often to take them."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ def parts_of(name: str, quantity: Quantity, values: Mapping[str, Any]) -> Iterat
 
 
 def is_pattern(quantity: Quantity) -> bool:
-    """Whether it matches all parts by name, such as ``["*tool"]``; there may be no match."""
+    """Return whether it matches all parts by name, such as ``["*tool"]``; there may be no match."""
     last = quantity.path.steps[-1].item if quantity.path.steps else None
     return isinstance(last, str) and "*" in last
 
 
 def quantities_meant(name: str, quantity: Quantity, values: Mapping[str, Any]) -> Iterator[Quantity]:
-    """The quantities that a pattern matches, or the quantity itself if it is no pattern."""
+    """Yield the quantities that a pattern matches, or the quantity itself if it is no pattern."""
     if not is_pattern(quantity):
         yield quantity
         return
@@ -55,7 +55,7 @@ def quantities_meant(name: str, quantity: Quantity, values: Mapping[str, Any]) -
 
 
 def readings_of(probe: Probe, values: Mapping[str, Any]) -> list[str]:
-    """The probe's names among its values: one for each object."""
+    """Return the probe's names among its values: one for each object."""
     found: dict[str, None] = {}
     for key in values:
         tail = key[len(probe.target) :] if key.startswith(probe.target) else None
@@ -66,7 +66,7 @@ def readings_of(probe: Probe, values: Mapping[str, Any]) -> list[str]:
 
 
 def keys_of(name: str, quantity: Quantity, values: Mapping[str, Any]) -> tuple[str, ...]:
-    """The flat values that a quantity consists of, in its order; none if they are not there."""
+    """Return the flat values that a quantity consists of, in its order; none if they are not there."""
     path = quantity.path
     bounds = path.steps[-1].bounds if path.steps else None
     steps = path.steps[:-1] if bounds is not None else path.steps
@@ -99,7 +99,7 @@ def step_text(step: Step) -> str:
 
 
 def probe_intervals_of(ends: Mapping[tuple[int, str], TestEnd]) -> dict[int, dict[str, int]]:
-    """After every how many commands the probes are read, by round and test; tests without are left out."""
+    """Return the number of commands between two readings, by round and test; tests without are left out."""
     read = [end for end in ends.values() if end.reading is not None]
     if not read or any(end.not_along for end in ends.values()):
         return {}
@@ -115,6 +115,6 @@ def probe_intervals_of(ends: Mapping[tuple[int, str], TestEnd]) -> dict[int, dic
 
 
 def _readings_at(commands: int, stride: int) -> int:
-    """About how many readings a test has."""
+    """Return about how many readings a test has."""
     moments = commands // stride
     return moments if moments <= _FULL else _FULL + 50 * (moments // _FULL).bit_length()

@@ -1,4 +1,4 @@
-"""The files of a project, for an executor that takes some of them to other machines."""
+"""The files of a project, for an executor that copies some of them to other machines."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class ProjectListing:
 
 
 def _named(configuration: Configuration) -> Iterator[str]:
-    """What the configuration names: files, folders, and options that may be either."""
+    """Yield the files and folders that the configuration names, and options that may be either."""
     yield from (*configuration.program, *configuration.oracle)
     yield from (argument.partition("::")[0] for argument in configuration.tests)
     yield from (option.partition("=")[2] or option for option in configuration.pytest_args)
@@ -87,7 +87,7 @@ def _named(configuration: Configuration) -> Iterator[str]:
 
 
 def _is_path(root: Path, name: str) -> bool:
-    """Whether a text names something in the project."""
+    """Return whether a text names something in the project."""
     if not name or "\0" in name or name.startswith(("-", "/", "~")) or ".." in PurePosixPath(name).parts:
         return False
     try:
@@ -101,13 +101,13 @@ def _is_ours(name: str) -> bool:
 
 
 def _is_file(root: Path, name: str) -> bool:
-    """Whether there is a file or a link. Git also tells of folders: of repositories of their own."""
+    """Return whether this is a file or a link; git also lists folders that are repositories of their own."""
     path = root / name
     return path.is_symlink() or path.is_file()
 
 
 def _walk(root: Path) -> Iterator[tuple[str, list[str]]]:
-    """The folders of the project with the files and links in each."""
+    """Yield the folders of the project with the files and links in each."""
     for folder, folders, names in os.walk(root):
         here = Path(folder)
         links = {name for name in folders if (here / name).is_symlink()}
@@ -120,17 +120,17 @@ def _walk(root: Path) -> Iterator[tuple[str, list[str]]]:
 
 
 def is_folder_of_project(folder: Path) -> bool:
-    """Whether a folder may hold what a test imports or reads."""
+    """Return whether a folder may hold what a test imports or reads."""
     return is_name_of_project(folder.name) and not any((folder / mark).exists() for mark in _MARKS)
 
 
 def is_name_of_project(name: str) -> bool:
-    """Whether a file or folder may be the project's, by its name alone."""
+    """Return whether a file or folder may be the project's, by its name alone."""
     return not (name.startswith(".") or name in _FOLDERS or name.endswith(UNREAD))
 
 
 def _above(root: Path, repository: Path | None) -> Iterator[Path]:
-    """Pytest's configuration files in folders above the project; in a repository only tracked files."""
+    """Yield pytest's configuration files in folders above the project; in a repository only tracked files."""
     for folder in root.parents[:-1] if repository != root else ():
         there = [folder / name for name in _OF_PYTEST if (folder / name).is_file()]
         if there and repository is not None:

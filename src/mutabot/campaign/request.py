@@ -34,7 +34,7 @@ VERIFIED = 5
 
 
 class Preview(Protocol):
-    """What an executor would take elsewhere, known before it does.
+    """What an executor will copy to other machines, known in advance.
 
     Attributes:
         folders_left_out: folders with files that stay here, relative to the project: which of these files
@@ -48,16 +48,16 @@ class Preview(Protocol):
         """Describe the files that tests opened here and will lack there; None if they lack none."""
 
     def check(self, opened: Collection[str] | None) -> tuple[list[str], Mapping[str, Any]]:
-        """What ``mutabot check`` says of it: lines for people, and the same for machines."""
+        """Return what ``mutabot check`` reports of it: lines for people, and the same data for machines."""
 
 
 class ExecutorChoice(ABC):
-    """An executor as the command line names it, with its settings. The base of those that packages bring."""
+    """An executor as the command line names it, with its settings. The base class for those of packages."""
 
     @classmethod
     @abstractmethod
     def parse(cls, value: str, root: Path, table: Table | None) -> Self:
-        """Return the choice that the value of its option stands for.
+        """Parse the value of the executor's option.
 
         Args:
             value: what stands after the option, such as ``tcp://scheduler:8786``.
@@ -88,7 +88,7 @@ class ExecutorChoice(ABC):
 
     @classmethod
     def preview(cls, request: Request) -> Preview | None:
-        """Return what it would take elsewhere; None if all stays on this machine.
+        """Return what the executor would copy elsewhere; None if all stays on this machine.
 
         ``mutabot check`` asks this where the configuration has a table of the executor's name.
         """
@@ -97,7 +97,7 @@ class ExecutorChoice(ABC):
 
 @dataclass(frozen=True)
 class Request:
-    """One campaign.
+    """The request for one campaign.
 
     Attributes:
         configuration: the project's configuration.
@@ -153,7 +153,7 @@ class Request:
 
     @property
     def engines(self) -> tuple[str, ...]:
-        """The engines that it may use, in the order in which they are asked. Raises UsageError if none."""
+        """The engines that it may use, in the order in which they are tried. Raises UsageError if none."""
         found = tuple(name for name in ENGINES if self.engine in (AUTO, name))
         if not found:
             raise UsageError(unknown_name_text("engine", self.engine, (AUTO, *ENGINES)))
@@ -161,13 +161,12 @@ class Request:
 
     @property
     def forks(self) -> bool:
-        """Whether mutants are forked where they can be."""
+        """Whether mutants are forked where possible."""
         return FORK in self.engines
 
     @property
     def repetitions(self) -> int:
-        """How often the baseline runs each round. With forks, their parent is one more run of the
-        original."""
+        """How often the baseline runs each round; with forks, their parent is a further run."""
         return max(1 if self.forks else 2, self.baseline or 0)
 
     @property
@@ -177,7 +176,7 @@ class Request:
 
     @property
     def project(self) -> Project:
-        """What is asked of providers of faults; what is demanded of magnitudes is so of single faults."""
+        """The project as providers of faults see it; demands on magnitudes concern single faults."""
         return Project(
             self.root,
             self.configuration.program,
@@ -195,11 +194,11 @@ class Request:
 
     @property
     def journal_path(self) -> Path:
-        """Where the journal of this project lies."""
+        """The path of the project's journal."""
         return self.root / HOME / self.journal
 
     def files(self) -> ProjectListing:
-        """List the project's files, for whoever takes some of them elsewhere. Raises UsageError."""
+        """Return the project's files, for executors that copy some elsewhere. Raises UsageError."""
         return ProjectListing.of(self.root, self.configuration)
 
     def on_this_machine(self, tell: Callable[[str], None]) -> AbstractContextManager[Workers]:
@@ -236,12 +235,12 @@ class Request:
         return replace(self, configuration=configuration, vocabulary=vocabulary)
 
     def clock(self) -> float:
-        """Seconds since some moment: what the campaign may spend is counted by these."""
+        """Return the seconds since an arbitrary moment, by the clock of the campaign's budget."""
         return time.monotonic()
 
     @property
     def guards(self) -> tuple[tuple[str, Mapping[str, Any]], ...]:
-        """What stands before every operation: the reference of each guard, and its table."""
+        """The guards that check every operation: a reference to each, and its table."""
         tables = self.configuration.tables
         return tuple(
             (part.reference, tables[name].model_dump(mode="json"))
@@ -250,7 +249,7 @@ class Request:
         )
 
     def job(self, round: int, **details: Any) -> Job:
-        """A job of this campaign in a round."""
+        """Return a job of this campaign in a round."""
         return Job(
             root=str(self.root),
             program=self.configuration.program,
@@ -269,11 +268,11 @@ class Request:
 
 
 class Progress(Protocol):
-    """Shows what a campaign is doing. The methods of this class itself do nothing."""
+    """Shows what a campaign is doing. The methods of this base class do nothing."""
 
     @property
     def left(self) -> float | None:
-        """Seconds that the rest of the stage will take; None as long as too little is known to estimate."""
+        """The estimated time (s) that the rest of the stage takes; None if too little is known yet."""
         return None
 
     def stage(self, text: str, total: int | None = None) -> None:
@@ -281,21 +280,21 @@ class Progress(Protocol):
         return
 
     def mutant_ended(self, end: MutantEnd) -> None:
-        """A mutant has ended in a round, or an earlier campaign has found how. This is no step of a stage."""
+        """Report that a mutant has ended in a round, now or earlier; this is no step of a stage."""
         return
 
     def advance(self, line: str | None = None) -> None:
-        """One step is done; ``line`` says which."""
+        """Report that a step is done; ``line`` says which."""
         return
 
     def note(self, text: str) -> None:
-        """Something the user should know."""
+        """Tell the user something."""
         return
 
 
 @frozen
 class CheckReport:
-    """What ``mutabot check`` found.
+    """The result of ``mutabot check``.
 
     Attributes:
         lines: for people.

@@ -1,4 +1,4 @@
-"""Run a campaign: baseline, plan, what still holds, controls, mutants. The journal is there at once."""
+"""Run a campaign: baseline, plan, reuse, controls, mutants. The journal is written from the start."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ def _run(
     evidence: CampaignEvidence | None,
     stack: ExitStack,
 ) -> str:
-    """Returns how it ended: a budget may end before all was run."""
+    """Run a campaign with its files open. Return how it ended: a budget may end it early."""
     started = request.clock()
     revision = Revision.find(request.root, request.since) if request.since is not None else None
     with OriginalRuns(request, journal.original(), progress) as original:
@@ -141,7 +141,7 @@ def _run(
 
 @contextmanager
 def _refutable(campaign: Campaign, journal: Journal) -> Iterator[None]:
-    """Keep the baseline for no later campaign if the original ends otherwise in a run that comes after it."""
+    """Discard the kept baseline if the original ends differently in a later run."""
     baseline = campaign.baseline
     unstable, is_refuted = len(baseline.unstable), False
     try:
@@ -159,7 +159,7 @@ def _refutable(campaign: Campaign, journal: Journal) -> Iterator[None]:
 
 
 def _note_lacking(request: Request, original: OriginalRuns, progress: Progress) -> None:
-    """Name what tests need and will not have where they run, before anything goes there."""
+    """Tell the user which needed files will be missing where tests run, before anything is sent there."""
     preview = request.executor.preview(request) if request.executor is not None else None
     lacking = preview.lacking(original.opened) if preview is not None else None
     if lacking is not None:
@@ -167,21 +167,21 @@ def _note_lacking(request: Request, original: OriginalRuns, progress: Progress) 
 
 
 def _tidy(journal: Journal, request: Request, whole: Plan) -> None:
-    """Forget mutants that the program has no longer. Of other families nothing is known now."""
+    """Forget mutants that the program no longer has; families that were not planned are kept."""
     there = {one.id for one, _ in journal.known()} | {one.id for one in whole.mutants}
     rest = {one for one, _ in journal.kept()} - there
     journal.tidy([*there, *(one for one in rest if family_of(one) not in request.families)])
 
 
 def _end(journal: Journal, part: Plan, rounds: int) -> str:
-    """How a campaign has ended that ran all, by what is in the journal; of ladders, not every mutant is."""
+    """Return how a campaign that ran everything has ended, by its journal; ladders may skip mutants."""
     known = journal.rounds_known()
     is_known = all(known.get(one.id, 0) >= rounds for one in part.mutants if not one.ladder)
     return "complete" if is_known else records.INCOMPLETE
 
 
 def _note_others(journal: Journal, progress: Progress) -> None:
-    """Say what others did to the journal while the campaign ran."""
+    """Tell the user what other processes did to the journal during the campaign."""
     if journal.lost:
         times = f", {len(journal.lost)} times" if len(journal.lost) > 1 else ""
         progress.note(
@@ -195,7 +195,7 @@ def _note_others(journal: Journal, progress: Progress) -> None:
 def _forget_if_edited(
     campaign: Campaign, journal: Journal, dependencies: Dependencies, after: Snapshot
 ) -> None:
-    """Outcomes that may come from two versions of a file are not reused."""
+    """Mark outcomes as not reusable if files were edited during the campaign."""
     edited = Snapshot.take(campaign.request.root, after).edited_since(dependencies.files)
     if edited:
         campaign.progress.note(
@@ -207,7 +207,7 @@ def _forget_if_edited(
 
 @contextmanager
 def _disk_errors_named(request: Request) -> Iterator[None]:
-    """Turn the error of a disk that cannot be written into one for users, with the file's name."""
+    """Turn errors of writing to disk into errors for users, with the file's name."""
     try:
         yield
     except OSError as error:

@@ -1,4 +1,4 @@
-"""Run the mutants of a plan: which come first, and until when.
+"""Run the mutants of a plan in a useful order, until all are done or time is up.
 
 Under a budget, the most informative runs come first, in batches: forks share the run of the original, so
 a batch gives no outcome of a survivor until that run ends. A batch is as much as is expected to end in half
@@ -43,7 +43,7 @@ _SHARE = 0.5
 def run_planned(
     campaign: Campaign, mutants: Sequence[Mutant], writer: OutcomeWriter, found: Reused, started: float
 ) -> bool:
-    """Run what is not known yet, ladders last. Returns whether that is all.
+    """Run what is not known yet, ladders last. Return whether everything was run.
 
     Of ladders only what it takes to find their thresholds is run.
 
@@ -82,7 +82,7 @@ def run_planned(
 def _run_batches(
     campaign: Campaign, mutants: Sequence[Mutant], writer: OutcomeWriter, found: Reused, until: float
 ) -> None:
-    """Run these in batches, and keep note of how far it came."""
+    """Run these in batches, and record the progress."""
     request = campaign.request
     runs = in_order(mutants, request.rounds, found.done, request.seed, found.before)
     seconds = request.budget or 0.0
@@ -109,7 +109,7 @@ def _run_batches(
 def _run_ladders(
     campaign: Campaign, ladders: Ladders, writer: OutcomeWriter, done: Collection[RunId]
 ) -> None:
-    """Find the thresholds. ``done``: the runs whose outcomes the journal holds already."""
+    """Find the thresholds of these ladders. ``done``: runs whose outcomes the journal holds already."""
     if not ladders:
         return
     request = campaign.request
@@ -135,7 +135,7 @@ def _run_ladders(
 
 
 def _is_whole(ladder: Sequence[Mutant]) -> bool:
-    """Whether all magnitudes of a ladder are run, since a larger one may be missed where a smaller is not."""
+    """Return whether all magnitudes of a ladder are run, as tests may notice one and miss a larger one."""
     return not provider(ladder[0].provider).is_monotone(ladder[0].operator)
 
 
@@ -146,7 +146,7 @@ def in_order(
     seed: int,
     before: Mapping[RunId, Verdict],
 ) -> list[MutantRun]:
-    """All runs that are not done, the most informative first, one round after the other.
+    """Return all runs that are not done, the most informative first, one round after the other.
 
     Among those that are expected to tell alike much, the order depends on the seed and the mutants' ids
     alone. ``before``: what outcomes were that do not hold any more.

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 class SimulatedMiddleware(ABC):
-    """A simulation of a middleware that a package brings: a plug-in of pytest runs the tests over it.
+    """A simulation of a middleware that a package brings, with a pytest plug-in that runs tests over it.
 
     Attributes:
         name: the one in the extension.
@@ -48,7 +48,7 @@ class SimulatedMiddleware(ABC):
     def arguments(
         self, root: Path, given: Sequence[str], tables: Mapping[str, Table]
     ) -> Sequence[str] | None:
-        """What pytest is given before a project's own arguments, so that its tests run over the simulation.
+        """Return pytest arguments, placed before the project's own, that run its tests over the simulation.
 
         None if the project has no use for it. Raises UsageError, with the reason, if the project could use it
         but needs the real middleware.
@@ -60,7 +60,7 @@ class SimulatedMiddleware(ABC):
         """
 
     def draws(self, tables: Mapping[str, Table]) -> bool:
-        """Whether each round has an order of callbacks of its own; ``tables`` as in ``arguments``.
+        """Return whether each round has an order of callbacks of its own; ``tables`` as in ``arguments``.
 
         A test that fails in some rounds alone has found something then: it is no difference between
         simulation and middleware.
@@ -68,7 +68,7 @@ class SimulatedMiddleware(ABC):
         return False
 
     def reason(self, message: str) -> str:
-        """Why the original did not run over the simulation, in one sentence, by the message of its error."""
+        """Return why the original did not run over the simulation, in one sentence, by its error message."""
         return " ".join(line.strip() for line in message.splitlines()[:2])
 
 
@@ -104,7 +104,7 @@ def _over(simulation: SimulatedMiddleware, request: Request) -> Request | None:
 
 @frozen
 class Tried:
-    """The original as it ran over a simulation.
+    """The result of running the original over a simulation.
 
     Attributes:
         simulation: which one.
@@ -139,7 +139,7 @@ def try_original(request: Request, take: Callable[[Request], tuple[Campaign, lis
 
 
 def chosen(real: Campaign, results: list[Result], tried: Tried) -> tuple[Campaign, list[Result]]:
-    """The campaign over the simulation if the original ends there as over the real middleware, else this one.
+    """Return the campaign over the simulation if the original ends there as over the real middleware.
 
     What is chosen is told, and stands in the journal.
     """
@@ -161,7 +161,7 @@ def chosen(real: Campaign, results: list[Result], tried: Tried) -> tuple[Campaig
 
 
 def _difference(real: Campaign, results: Sequence[Result], tried: Tried) -> str | None:
-    """How the original differs over a simulation, in one line; None if it ends there as over the real one.
+    """Describe how the original differs over a simulation; None if it ends as over the real middleware.
 
     What differs between two runs over the real middleware as well is no difference. If the simulation draws
     another order of callbacks in each round, a test that fails in some of them alone has found something, and
@@ -201,7 +201,7 @@ def _difference(real: Campaign, results: Sequence[Result], tried: Tried) -> str 
 
 
 def _value(first: Observation, second: Observation, other: Observation, words: Vocabulary) -> str | None:
-    """The first difference in what two real runs have alike: probes, what was returned, calls of a site.
+    """Describe the first difference in probes, returned values or calls of a site that real runs share.
 
     In which order nodes come to their sites is a matter of chance.
     """
@@ -223,7 +223,7 @@ def _value(first: Observation, second: Observation, other: Observation, words: V
 
 
 def _at(site: str, runs: Sequence[Observation]) -> list[Observation]:
-    """The first call of a site in some runs.
+    """Return the first call of a site in some runs.
 
     How often it is reached, and whether an answer comes before the test has ended, is a matter of moments.
     """

@@ -42,7 +42,7 @@ _USAGE = f"write `# {_MARK} accept OPERATOR: why`, or `exclude`; several operato
 
 
 def suppressions_of(request: Request) -> tuple[Suppression, ...]:
-    """All decisions of a project. Raises ConfigurationError, about all mistakes at once."""
+    """Return all decisions of a project. Raises ConfigurationError, about all mistakes at once."""
     configuration = request.configuration
     found = [*read_suppressions(request.root)]
     for file in program_files(request.root, (*configuration.program, *configuration.oracle)):
@@ -52,7 +52,7 @@ def suppressions_of(request: Request) -> tuple[Suppression, ...]:
 
 
 def text_of(file: Path) -> str:
-    """A program text with ``\\n`` at the ends of lines, as far as it can be read."""
+    """Return a program text with plain newlines, decoded as far as possible."""
     source = file.read_bytes()
     try:
         return front_end_of(str(file)).text_of(source)
@@ -71,7 +71,7 @@ def _unknown_operators(found: Iterable[Suppression]) -> Iterator[ConfigurationEr
 
 
 def comments_in(file: str, text: str) -> list[Suppression]:
-    """The decisions in the comments of a program file. Raises ConfigurationError."""
+    """Return the decisions in the comments of a program file. Raises ConfigurationError."""
     if _MARK not in text:
         return []
     lines, found, errors = text.split("\n"), list[Suppression](), list[ConfigurationError]()
@@ -96,7 +96,7 @@ def comments_in(file: str, text: str) -> list[Suppression]:
 
 
 def _comments(file: str, text: str) -> Iterator[tuple[int, str, bool]]:
-    """Yield the line of each comment that has the mark, its text, and whether it stands alone."""
+    """Yield the line of each marked comment, its text, and whether the line has no code."""
     if not file.lower().endswith(".py"):
         for number, line in enumerate(text.split("\n"), start=1):
             if _MARK in line and (found := _ANY_COMMENT.match(line)):
@@ -111,7 +111,7 @@ def _comments(file: str, text: str) -> Iterator[tuple[int, str, bool]]:
 
 
 def _next_code(lines: Sequence[str], number: int) -> int:
-    """The first line below a comment, by numbers from 1, that is neither a comment nor empty."""
+    """Return the first line below a comment, by numbers from 1, that is neither a comment nor empty."""
     below = ((at, lines[at - 1].strip()) for at in range(number + 1, len(lines) + 1))
     return next((at for at, text in below if text and not _COMMENT_LINE.match(text)), number)
 
@@ -153,14 +153,14 @@ def _unmatched(campaign: Campaign, plan: Plan, lines: _SourceLines) -> Iterator[
 
 
 def _is_of(one: Suppression, families: Collection[str]) -> bool:
-    """Whether a decision may be about mutants of these families."""
+    """Return whether a decision may be about mutants of these families."""
     if not one.id and (not one.operator or {"*", "?"} & {*one.operator}):
         return True
     return family_of(one.id or one.operator) in families
 
 
 def note_accepted(journal: Journal, suppressions: Iterable[Suppression], unmatched: Sequence[str]) -> None:
-    """Write into a journal which of its mutants are accepted if they survive, and what fits none."""
+    """Record in a journal which mutants are accepted if they survive, and which decisions match none."""
     accepting = [one for one in suppressions if one.action is Action.ACCEPT]
     lines = cache(lambda file: (journal.source(file) or "").split("\n"))
     found = {}
@@ -172,20 +172,20 @@ def note_accepted(journal: Journal, suppressions: Iterable[Suppression], unmatch
 
 
 def line_at(lines: LinesOf, mutant: Mutant) -> str:
-    """The first line of a mutant's first place, without blanks around it; empty if there is none."""
+    """Return the first line of a mutant's first place, without blanks around it; empty if there is none."""
     span = mutant.site.span
     return "".join(lines(span.file)[max(0, span.line - 1) : span.line]).strip()
 
 
 class _SourceLines:
-    """Lines of the files in which mutants stand, each read once."""
+    """A cache of the lines of files in which mutants stand."""
 
     def __init__(self, root: Path) -> None:
         self._root = root
         self._of: dict[str, list[str]] = {}
 
     def of(self, file: str) -> list[str]:
-        """The lines of a file; none if there is no such file."""
+        """Return the lines of a file; none if there is no such file."""
         if file not in self._of:
             path = self._root / file
             self._of[file] = text_of(path).split("\n") if path.is_file() else []

@@ -1,4 +1,4 @@
-"""Typing mistakes in ``--only`` and ``--skip`` that are seen without a plan, before the baseline."""
+"""Find typing mistakes in ``--only`` and ``--skip`` before the baseline, without a plan."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def refuse_typos(request: Request) -> None:
 
 
 def _may_fit(word: str, files: Sequence[str], names: Collection[str], root: Path) -> bool:
-    """Whether there may be such a mutant. What numbers and lists mean is for the plan to say."""
+    """Return whether a mutant may match; numbers and lists are checked with the plan."""
     file, colon, _ = word.partition(":")
     if means_numbers(word) or word.startswith("@"):
         return True
@@ -56,12 +56,12 @@ def _may_fit(word: str, files: Sequence[str], names: Collection[str], root: Path
 
 
 def _length(file: Path) -> int:
-    """The number of lines of a file."""
+    """Return the number of lines of a file."""
     return file.read_bytes().count(b"\n") + 1
 
 
 def _is_file(word: str, file: str) -> bool:
-    """Whether a word is a file, its last part, or a folder above it."""
+    """Return whether a word is a file's name, its last part, or a folder above it."""
     return (
         word == file
         or file.endswith("/" + word.removeprefix("…/"))

@@ -1,4 +1,4 @@
-"""The verdict: the one named end of a mutant in a round, from what was seen of it by either engine."""
+"""Decide the verdict of a mutant in a round, from what either engine saw of it."""
 
 from __future__ import annotations
 
@@ -96,13 +96,13 @@ class Run:
 
     @property
     def hindered(self) -> str | None:
-        """Why the wall-clock limit that ended it is inconclusive; None if no such limit did."""
+        """Why the wall-clock limit that ended the run is inconclusive; None if no such limit ended it."""
         deaths = [self.death.hindered] if self.death is not None else []
         return next((why for why in (*deaths, *(end.hindered for end in self.ends)) if why is not None), None)
 
 
 def run_of(result: Result, sources: Sources) -> Run:
-    """What a worker saw of its mutant."""
+    """Return what a worker saw of its mutant."""
     job = result.task.job
     assert job.mutant is not None
     places = sources.places(result.sites)
@@ -125,7 +125,7 @@ def run_of(result: Result, sources: Sources) -> Run:
 
 
 def _death_in(result: Result, tests: Collection[str]) -> Death | None:
-    """Set if the process did not run all its tests to their end; None if it did, or stopped at a verdict."""
+    """Return how the process died; None if it ran all its tests, or stopped at a verdict."""
     if result.end is None:
         text: str | None = result.death()
     elif result.end.errors:
@@ -147,7 +147,7 @@ def _death_in(result: Result, tests: Collection[str]) -> Death | None:
 
 
 def not_run(tests: Collection[str], ends: Collection[TestEnd], exit_code: int) -> str | None:
-    """Why nothing is known of tests although the session has come to its end; None if that says enough.
+    """Return why tests have no end although the session ended; None if the exit code says enough.
 
     A suite that ends early, and says so by its exit code, has ended otherwise than on the original.
     """
@@ -158,7 +158,7 @@ def not_run(tests: Collection[str], ends: Collection[TestEnd], exit_code: int) -
 
 
 def without_tests(baseline: Baseline, mutant: Mutant, round: int) -> Outcome:
-    """The outcome of a mutant that no test can judge in this round."""
+    """Return the outcome of a mutant that no test can judge in this round."""
     aside = baseline.missing_judges(round, mutant)
     if aside:
         text = f"all tests that reach the site are excluded in this round, such as {aside[0]}"
@@ -168,7 +168,7 @@ def without_tests(baseline: Baseline, mutant: Mutant, round: int) -> Outcome:
 
 
 def judged(campaign: Campaign, run: Run) -> Outcome:
-    """The outcome of a run, whose recordings are kept as far as they differ from the original's.
+    """Return the outcome of a run; its recordings are kept as far as they differ from the original's.
 
     What goes wrong while it is judged is an error of this mutant, and not the end of the campaign. An outcome
     with ``beside`` was ended by a limit of wall clock on a busy machine: it is to be run once more alone.
@@ -182,7 +182,7 @@ def judged(campaign: Campaign, run: Run) -> Outcome:
 
 
 def not_judged(mutant: Mutant, round: int, error: Exception, engine: str) -> Outcome:
-    """The outcome of a mutant that could not be judged; an error that is not about it is raised again."""
+    """Return the outcome of a mutant that could not be judged; other errors are raised again."""
     if isinstance(error, MutabotError | OSError):  # it says something of the user's set-up or of the disk
         raise error
     where = traceback.extract_tb(error.__traceback__)[-1]
@@ -205,7 +205,7 @@ def _judged(campaign: Campaign, run: Run) -> Outcome:
 
 
 def judge(campaign: Campaign, run: Run) -> Outcome:
-    """The outcome of a run."""
+    """Return the outcome of a run."""
     request, baseline = campaign.request, campaign.baseline
     verdict, end, message = _ruling(run, baseline.exits[run.round])
     aside = baseline.missing_judges(run.round, run.mutant) if verdict is Verdict.SURVIVED else ()
@@ -248,7 +248,7 @@ def judge(campaign: Campaign, run: Run) -> Outcome:
 
 
 def _executed(run: Run, decided: TestEnd | None, baseline: Baseline, *, is_of_suite: bool) -> Executed | None:
-    """The units that were executed in the tests that the outcome depends on, also by the original.
+    """Return the units executed in the tests that the outcome depends on, also by the original.
 
     None if that is not known: of a process that died, and of a suite that ended otherwise without a failed
     test.
@@ -265,7 +265,7 @@ def _executed(run: Run, decided: TestEnd | None, baseline: Baseline, *, is_of_su
 
 
 def _lacks_tests(run: Run, outcome: Outcome) -> bool:
-    """Whether tests were left out that might have decided: before the one that did, or any if none did.
+    """Return whether tests that might have decided were left out before the deciding one.
 
     What changes nothing is the original in these as well; a refusal leaves it to other tests to decide.
     """
@@ -277,7 +277,7 @@ def _lacks_tests(run: Run, outcome: Outcome) -> bool:
 
 
 def _looked(run: Run, baseline: Baseline) -> tuple[Looked, ...]:
-    """The tests that reach a survivor, those first in which it acted."""
+    """Return the tests that reach a survivor, first those in which it acted."""
     reaching = baseline.tests_reaching(run.round, run.mutant)
     ends = (end for end in run.ends if end.test in reaching)
     found = [Looked(end.test, end.acted > 0, end.checks, end.more_checks) for end in ends]
@@ -285,7 +285,7 @@ def _looked(run: Run, baseline: Baseline) -> tuple[Looked, ...]:
 
 
 def _ruling(run: Run, usual: int) -> Ruling:
-    """Verdict, the test that decided it, and the reason as text; ``usual``: the suite's exit code."""
+    """Return the verdict, the deciding test and the reason; ``usual`` is the suite's normal exit code."""
     if run.problem is not None:
         return Verdict.ERROR, None, run.problem
     acted = False
@@ -326,7 +326,7 @@ def _ruling_on_end(run: Run, refused: TestEnd | None, usual: int, *, acted: bool
 
 
 def _before_death(run: Run) -> list[TestEnd]:
-    """The tests up to the one in which the process died, if it did: what comes after decides nothing."""
+    """Return the tests up to the one in which the process died, if it did; later ones decide nothing."""
     if run.death is None or run.death.test not in run.tests:
         return run.ends
     before = set(run.tests[: run.tests.index(run.death.test)])
@@ -334,7 +334,7 @@ def _before_death(run: Run) -> list[TestEnd]:
 
 
 def _kills(run: Run, message: str | None) -> tuple[Kill, ...]:
-    """The tests that noticed the mutant, in their order; a crash is noticed by the test it ended."""
+    """Return the tests that noticed the mutant, in order; a crash is noticed by the test it ended."""
     found: list[Kill] = []
     acted = False
     for end in run.ends:
@@ -369,7 +369,7 @@ def _ruling_on_exit(code: int | None, usual: int, acted: bool) -> Ruling:
 
 
 def _collected_otherwise(run: Run) -> tuple[str, ...]:
-    """Describes how the collected tests differ from the original's."""
+    """Describe how the collected tests differ from the original's."""
     new = [end.test for end in run.ends if end.test not in run.tests]
     told = [f"{in_short(run.gone, 1)} not collected"] if run.gone else []
     told += [f"collected beside the original's tests: {in_short(new, 1)}"] if new else []
@@ -377,7 +377,7 @@ def _collected_otherwise(run: Run) -> tuple[str, ...]:
 
 
 def _with_tests(comparisons: Mapping[str, Difference]) -> Mapping[str, Difference]:
-    """What differs in each test; if that is several, each line names its test."""
+    """Return what differs in each test; if that is several, each line names its test."""
     if sum(bool(one.divergence) for one in comparisons.values()) < 2:
         return comparisons
     return {
@@ -389,7 +389,7 @@ def _with_tests(comparisons: Mapping[str, Difference]) -> Mapping[str, Differenc
 
 
 def stable_first(comparisons: Mapping[str, Difference], scattering: Collection[str]) -> Difference:
-    """One comparison of all tests; where the end of a test scatters in the original, others say more."""
+    """Merge the comparisons of all tests; tests whose end varies in the original come last."""
     whole = farthest([*comparisons.values()])
     stable = farthest([one for test, one in comparisons.items() if test not in scattering])
     if not scattering or not stable.divergence:
@@ -400,7 +400,7 @@ def stable_first(comparisons: Mapping[str, Difference], scattering: Collection[s
 
 
 def _compared(campaign: Campaign, outcome: Outcome, run: Run) -> Outcome:
-    """The outcome of a survivor with how far its world is from the original's."""
+    """Return the outcome of a survivor with how far its world is from the original's."""
     baseline, vocabulary = campaign.baseline, campaign.request.vocabulary
     if otherwise := _collected_otherwise(run):
         return replace(outcome, divergence=otherwise, indistinguishable=False)

@@ -68,7 +68,7 @@ def accept(context: CommandContext, mutant: _Mutants = None, why: _Why = "", jso
 
 
 def _named(results: Results, names: Sequence[str]) -> Iterator[MutantResult]:
-    """The mutants that these words name, each of numbers such as ``3,16-20``. Raises SelectionError."""
+    """Yield the mutants that these words name, each of numbers such as ``3,16-20``. Raises SelectionError."""
     for name in names:
         for word in map(str, numbers_in(name)) if means_numbers(name) else [name]:
             yield results.mutant(word)
@@ -90,7 +90,7 @@ def _refuse_others(chosen: Sequence[MutantResult]) -> None:
 
 
 def _apply(path: Path, root: Path, results: Results) -> None:
-    """Write into the journal what the file and the program of its campaign say."""
+    """Update the journal's accepted mutants by the file and the program of its campaign."""
     suppressions = [*read_suppressions(root)]
     for file, text in results.sources.items():
         suppressions += comments_in(file, text)

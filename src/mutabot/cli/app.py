@@ -106,7 +106,7 @@ SETTINGS: dict[str, Any] = {
 
 
 class Commands(TyperGroup):
-    """Mutabot's own commands and those of packages.
+    """The commands of mutabot and of packages.
 
     A command is a function; ``cli.parameters`` says what its parameters stand for.
     """
@@ -150,7 +150,7 @@ def _command(name: str, function: Callable[..., object], help: str | None = None
 
 @contextmanager
 def terminated_like_ctrl_c() -> Iterator[list[int]]:
-    """Make SIGTERM do what Ctrl-C does, also where that is ignored; give a list that tells whether one came.
+    """Treat SIGTERM like Ctrl-C, even where Ctrl-C is ignored; yield a list that is empty until one comes.
 
     Does nothing outside the main thread, which alone receives signals, and where SIGTERM is handled or
     ignored already.
@@ -206,13 +206,13 @@ def options(
 
 
 def project_of(folder: Path) -> Path:
-    """The nearest project from this folder upwards, relative to it; this folder if there is none."""
+    """Return the nearest project from this folder upwards, relative to it; this folder if there is none."""
     above = (one for one in (folder, *folder.parents) if _is_project(one))
     return Path(os.path.relpath(next(above, folder), folder))
 
 
 def _is_project(folder: Path) -> bool:
-    """Whether a folder has a configuration, or a journal."""
+    """Return whether a folder has a configuration, or a journal."""
     if any((folder / name).exists() for name in ("mutabot.toml", ".mutabot")):
         return True
     try:
@@ -267,7 +267,7 @@ def _usage_error(error: Any) -> int:
 
 
 def _instead(error: Any) -> str | None:
-    """Say what replaces an option or a command that is gone, or which package brings one."""
+    """Return the replacement of an option or a command that is gone, or the package that brings one."""
     option: str = getattr(error, "option_name", None) or ""
     found = re.match(r"No such command '([^']*)'", getattr(error, "message", ""))
     command = found[1] if found is not None else ""

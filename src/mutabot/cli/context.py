@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 class CommandContext:
-    """The project that a command works on, and its output.
+    """The project that a command works on, and the command's output.
 
     Results and JSON go to standard output, progress and remarks to standard error.
 
@@ -52,15 +52,15 @@ class CommandContext:
         return find_journal(self.project)
 
     def results(self, *, earlier: bool = False) -> Results:
-        """Read the last campaign, and what earlier ones found if ``earlier``. Raises JournalError."""
+        """Return the results of the last campaign, and earlier ones if ``earlier``. Raises JournalError."""
         return Results.read(self.journal, earlier=earlier)
 
     def recordings(self) -> StoredEvidence:
-        """Open what was recorded in the last campaign, to be closed. Raises JournalError."""
+        """Open the recordings of the last campaign; the caller closes them. Raises JournalError."""
         return StoredEvidence(self.journal)
 
     def keep_film(self, results: Results, mutant: str, file: Path, round: int, test: str) -> None:
-        """Keep a copy of a film of a mutant, which pages of the campaign show.
+        """Keep a copy of a film of a mutant, for the pages of the campaign's report.
 
         Args:
             results: of the campaign.
@@ -79,7 +79,7 @@ class CommandContext:
         checks: Mapping[str, tuple[str, str, tuple[str, ...]]],
         reasons: Mapping[str, str],
     ) -> None:
-        """Keep what was found for survivors, by their ids, for reports of this campaign.
+        """Keep suggestions for survivors, by their ids, for reports of this campaign.
 
         Args:
             checks: a check that kills it: the test that it is added to, its code, and what there is to say of
@@ -130,13 +130,13 @@ class CommandContext:
             typer.echo(line, err=True)
 
     def progress(self) -> Bar | Lines:
-        """Return what shows the progress of a campaign; it is to be used as a context manager."""
+        """Return a display of a campaign's progress, to be used as a context manager."""
         return make_progress(make_console(stderr=True))
 
     def show_results(
         self, path: Path, *, json: bool, earlier: bool = False, summary: bool = False
     ) -> Results:
-        """Print what the journal at ``path`` holds, and return it.
+        """Print the results in the journal at ``path``, and return them.
 
         Args:
             earlier: also show what earlier campaigns found.
@@ -195,20 +195,20 @@ class CommandContext:
         return results
 
     def exit_as(self, decision: Decision) -> NoReturn:
-        """Print why, and exit so. Raises typer.Exit."""
+        """Print the reason of a decision, and exit with its code. Raises typer.Exit."""
         self.tell(decision.lines)
         raise typer.Exit(decision.exit_code)
 
 
 class _Streaming(Lines):
-    """Plain lines of progress; what becomes of mutants goes to a stream instead."""
+    """Plain lines of progress, whose outcomes of mutants go to a stream instead."""
 
     def __init__(self, console: Console, stream: MutantStream) -> None:
         super().__init__(console)
         self._stream = stream
 
     def mutant_ended(self, end: MutantEnd) -> None:
-        """Hand the outcome to the stream."""
+        """Pass the outcome to the stream."""
         self._stream.add(end)
 
 

@@ -1,4 +1,4 @@
-"""What the parameters of commands stand for.
+"""Parameters of commands, made of classes that list the options.
 
 A command is a function. ``context`` is a ``CommandContext``. ``request`` is the ``Request`` that is made of
 the options of ``run``, or of those of another class of ``cli.options``:
@@ -69,7 +69,7 @@ def with_options(function: Callable[..., object]) -> Callable[..., object]:
 
 
 def _settings_of(asked: Parameter | None) -> Any:
-    """The class of the options that make the request of a command; None if it has none."""
+    """Return the class of the options that make the request of a command; None if it has none."""
     if asked is None:
         return None
     return get_args(asked.annotation)[1] if get_origin(asked.annotation) is Annotated else Running

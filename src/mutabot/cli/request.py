@@ -1,4 +1,4 @@
-"""Make the request for a campaign of the command line's options and the configuration."""
+"""Make the request for a campaign from the command line's options and the configuration."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def request_of(
     every_test: bool = False,
     **given: Unpack[Running],
 ) -> Request:
-    """The request of a command: its options, else what the configuration says.
+    """Return the request of a command, by its options and, where they are missing, the configuration.
 
     Args:
         executor: the name of an executor, and the value of its option; None for this machine.
@@ -81,7 +81,7 @@ def request_of(
 
 
 def _chosen(executor: tuple[str, str] | None, configuration: Configuration) -> ExecutorChoice | None:
-    """Return the executor that the command line names, or else the configuration means.
+    """Return the executor that the command line names, or otherwise the configuration implies.
 
     None for this machine.
     """
@@ -100,7 +100,7 @@ def _chosen(executor: tuple[str, str] | None, configuration: Configuration) -> E
 
 
 def request_again(root: Path, results: Results, jobs: int | None) -> Request:
-    """The request of the campaign that had these results, for some of its mutants."""
+    """Return the request of the campaign that had these results, for some of its mutants."""
     meta = results.meta
     request = request_of(
         root, rounds=results.rounds, seed=meta.get("seed"), jobs=jobs, family=meta.get("families"),
@@ -112,13 +112,13 @@ def request_again(root: Path, results: Results, jobs: int | None) -> Request:
 
 
 def families_of(given: Sequence[str] | None) -> tuple[str, ...]:
-    """The families of the command line, in the order of their numbers. Raises UsageError."""
+    """Return the families of the command line, in the order of their numbers. Raises UsageError."""
     named = (name.strip() for text in given or () for name in text.split(","))
     return asked_for(name for name in named if name)
 
 
 def _listed(words: Sequence[str] | None, root: Path) -> tuple[str, ...]:
-    """Words of ``--only`` and ``--skip``; a list, ``@FILE``, is looked for here and in the project.
+    """Return the words of ``--only`` and ``--skip``; a list, ``@FILE``, is searched here and in the project.
 
     Raises UsageError now rather than after the baseline.
     """

@@ -31,7 +31,7 @@ class _Stream:
         return getattr(self._stream, name)
 
     def write(self, text: str) -> int:
-        """Write a text."""
+        """Write a text. Returns its length."""
         try:
             return self._stream.write(text)
         except OSError as error:
@@ -53,7 +53,7 @@ class _Stream:
 
 @contextmanager
 def guarded_streams() -> Iterator[_Stream]:
-    """Raise UsageError where standard output cannot be written; what standard error cannot take is lost.
+    """Raise UsageError if standard output cannot be written; discard what standard error cannot take.
 
     Gives standard output.
     """
@@ -69,7 +69,7 @@ def guarded_streams() -> Iterator[_Stream]:
 
 
 def output_failed(error: OSError) -> None:
-    """Report that standard output cannot be written. A closed pipe is no fault: its error is passed on.
+    """Report that standard output cannot be written; if its reader closed the pipe, raise the error again.
 
     Raises UsageError, or the error of a pipe.
     """
@@ -80,7 +80,7 @@ def output_failed(error: OSError) -> None:
 
 
 def _discard(stream: TextIO) -> None:
-    """Discard all that is buffered or written from now on: it would fail again at the end."""
+    """Discard everything buffered or written from now on, which would fail again at the end."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     try:
         with suppress(OSError, ValueError):  # of a test there may be no descriptor

@@ -1,1 +1,1 @@
-"""What a user writes in TOML files, read and checked: the configuration; and mistakes in his words."""
+"""The configuration and vocabularies, read from TOML files and checked, with messages about mistakes."""

@@ -43,7 +43,7 @@ _WILD = re.compile(r"[*?\[]")
 
 
 def _amount(value: Any, *, least: int, example: str) -> Any:
-    """The bytes in a text such as ``4 GB`` or ``512 MiB``; whole numbers are bytes already."""
+    """Return the bytes in a text such as ``4 GB`` or ``512 MiB``; whole numbers are bytes already."""
     if isinstance(value, str):
         try:
             value = int(_BYTES.validate_python(value if value.strip(" .0123456789") else ""))
@@ -64,7 +64,7 @@ def _known_family(name: str) -> str:
 
 
 class _FamilyNames:
-    """What a schema says of them: packages are asked only where it is made."""
+    """The JSON schema of a list of families, made when it is asked for, as it loads packages."""
 
     def __get_pydantic_json_schema__(
         self, core: CoreSchema, handler: pydantic.GetJsonSchemaHandler
@@ -220,7 +220,7 @@ class Settings(Table):
 
 
 class Configuration(Settings):
-    """What a campaign is to do: the settings, with paths expanded and sorted.
+    """The configuration of a campaign: the settings, with paths expanded and sorted.
 
     Attributes:
         root: absolute path of the project.
@@ -238,7 +238,7 @@ class Configuration(Settings):
 def load_configuration(
     folder: Path, families: Collection[str] = (), overrides: Sequence[str] = ()
 ) -> Configuration:
-    """The configuration of the project in ``folder``.
+    """Return the configuration of the project in ``folder``.
 
     ``families``: those that are asked for instead of those that it names. ``overrides``: keys that the
     command line sets, as ``KEY=VALUE``.
@@ -299,7 +299,7 @@ def _checked(
 
 
 def _tables_of_packages(given: dict[str, Any], overrides: Sequence[str]) -> dict[str, type[Table]]:
-    """The models of the tables of packages that are written down, or set by the command line."""
+    """Return the classes of the packages' tables that the file contains or the command line sets."""
     named = {text.partition("=")[0].partition(".")[0].strip() for text in overrides}
     named |= given.keys()
     if not named - Settings.model_fields.keys():
@@ -309,7 +309,7 @@ def _tables_of_packages(given: dict[str, Any], overrides: Sequence[str]) -> dict
 
 
 def _without(raw: dict[str, Any], models: Collection[str], place: DocumentPlace) -> dict[str, Any]:
-    """The keys of the core. A table of a package that is not installed is noted."""
+    """Return the keys of the core. Note tables of packages that are not installed as mistakes."""
     own = {key: value for key, value in raw.items() if key not in models}
     for key in own.keys() - Settings.model_fields.keys():
         why = not_installed(key, "tables")
@@ -320,7 +320,7 @@ def _without(raw: dict[str, Any], models: Collection[str], place: DocumentPlace)
 
 
 def _find(folder: Path) -> DocumentPlace:
-    """Where the keys of the configuration stand."""
+    """Return where the keys of the configuration stand."""
     if not folder.is_dir():
         raise ConfigurationError("there is no such folder", file=str(folder))
     found: list[DocumentPlace] = []
@@ -344,20 +344,20 @@ def _find(folder: Path) -> DocumentPlace:
 
 
 class _Paths:
-    """The paths of a configuration: inside the project, and really there."""
+    """Checks paths of a configuration: they must lie in the project and exist."""
 
     def __init__(self, root: Path) -> None:
         self.root = root
 
     def sources(self, place: DocumentPlace, names: tuple[str, ...]) -> tuple[str, ...]:
-        """Files and folders, relative to the root, sorted; globs expanded."""
+        """Return files and folders, relative to the root, sorted; globs expanded."""
         found: set[str] = set()
         for index, name in enumerate(names):
             found.update((place / index).attempt(self._fitting, name, only_sources=True) or ())
         return tuple(sorted(found))
 
     def check(self, place: DocumentPlace, settings: Settings, *, has_tests: bool) -> None:
-        """Note what is wrong with the paths of the tests and the vocabulary."""
+        """Note mistakes in the paths of the tests and the vocabulary."""
         for index, argument in enumerate(settings.tests):
             after_option = index > 0 and settings.tests[index - 1].startswith("-")
             name = argument.partition("::")[0]
@@ -372,7 +372,7 @@ class _Paths:
             (place / "vocabulary" / index).attempt(self._inside, name)
 
     def check_patterns(self, place: DocumentPlace, names: tuple[str, ...]) -> None:
-        """Note each path or pattern that fits nothing."""
+        """Note each path or pattern that matches nothing."""
         for index, name in enumerate(names):
             (place / index).attempt(self._fitting, name)
 
@@ -399,7 +399,7 @@ class _Paths:
         raise ValueError(f"there is no {name!r}{f'; did you mean {near!r}?' if near else ''}")
 
     def _fitting(self, name: str, *, only_sources: bool = False) -> list[str]:
-        """What a path or pattern names, relative to the root. Raises ValueError if that is nothing.
+        """Return what a path or pattern matches, relative to the root. Raises ValueError if that is nothing.
 
         ``only_sources``: of what a pattern fits, only Python files and folders.
         """
@@ -423,7 +423,7 @@ class _Paths:
 
 
 def _refuse_overlap(place: DocumentPlace, program: tuple[str, ...], oracle: tuple[str, ...]) -> None:
-    """Note each part of the oracle that is a part of the program as well."""
+    """Note each part of the oracle that belongs to the program as well."""
     for path, other in product(oracle, program):
         one, two = PurePosixPath(path), PurePosixPath(other)
         if one.is_relative_to(two) or two.is_relative_to(one):

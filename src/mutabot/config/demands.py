@@ -38,7 +38,7 @@ class DemandTable(Table):
 
 
 def check_demands(place: DocumentPlace, tables: Sequence[Mapping[str, Any]]) -> tuple[Demand, ...]:
-    """The demands that these tables mean; what is wrong with them is noted."""
+    """Return the demands in these tables; mistakes are noted."""
     found = (_demand(place / index, raw) for index, raw in enumerate(tables))
     return tuple(one for one in found if one is not None)
 
@@ -64,7 +64,7 @@ def _demand(place: DocumentPlace, raw: Mapping[str, Any]) -> Demand | None:
 
 
 def _amount(place: DocumentPlace, notice: str | float) -> tuple[float, str | None]:
-    """The magnitude and its unit; (0, None) if they cannot be read, which is noted."""
+    """Return the magnitude and its unit; (0, None) if they cannot be read, which is noted."""
     try:
         return parse_amount(notice if isinstance(notice, str) else f"{notice:g}")
     except KeyError as error:

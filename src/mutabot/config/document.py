@@ -1,4 +1,4 @@
-"""A TOML file together with where its keys stand."""
+"""A TOML file together with the lines of its keys."""
 
 from __future__ import annotations
 
@@ -63,18 +63,18 @@ class Document:
         return document
 
     def line(self, place: KeyPath) -> int | None:
-        """Line of the key, or of the nearest one around it."""
+        """Return the line of the key, or of the nearest table around it."""
         for length in range(len(place), 0, -1):
             if place[:length] in self.lines:
                 return self.lines[place[:length]]
         return None
 
     def error(self, place: KeyPath, problem: str) -> ConfigurationError:
-        """The error for a problem at this place."""
+        """Return the error for a problem at this place."""
         return self.error_type(problem, file=self.file, key=self.key(place), line=self.line(place))
 
     def key(self, place: KeyPath) -> str | None:
-        """The place as an engineer would say it: ``robot:Arm.move_by · arguments.dx.unit``."""
+        """Return the place as an engineer would say it: ``robot:Arm.move_by · arguments.dx.unit``."""
         chunks: list[str] = []
         dotted = ""
         node: Any = self.data
@@ -93,7 +93,7 @@ class Document:
 
 
 def _extremes(data: Any) -> Iterator[tuple[KeyPath, str]]:
-    """Find what is nested too deeply, too long or too large."""
+    """Yield the place and the reason of data that is nested too deeply, too long or too large."""
     left: list[tuple[KeyPath, Any]] = [((), data)]
     while left:
         place, value = left.pop()
@@ -149,7 +149,7 @@ _LABELS = ("call", "text", "topic", "service", "action", "parameter", "timer", "
 
 
 def _label(node: Any) -> str | None:
-    """What names an element of a list of tables."""
+    """Return what names an element of a list of tables."""
     if not isinstance(node, dict):
         return None
     labels = (node[key] for key in _LABELS if key in node)
@@ -162,7 +162,7 @@ _LAST = re.compile(r"""(?:\]|\"""|''')[ \t]*(?:\#.*)?$""")
 
 
 def key_lines(text: str) -> dict[KeyPath, int]:
-    """The 1-based line of every key, table header and list item of a valid TOML text.
+    """Return the 1-based line of every key, table header and list item of a valid TOML text.
 
     The standard library's reader does not tell, so it reads statement by statement. An item of a list has a
     line of its own if each item before it, and it itself, stands on one line.
@@ -197,7 +197,7 @@ def _read(text: str) -> dict[str, Any] | None:
 
 
 def _header(data: Any, tables: dict[KeyPath, int]) -> KeyPath:
-    """The place of the table that a header opens; ``tables`` counts on."""
+    """Return the place of the table that a header opens; ``tables`` counts elements of lists of tables."""
     place: KeyPath = ()
     while data:
         ((key, data),) = data.items()
@@ -211,7 +211,7 @@ def _header(data: Any, tables: dict[KeyPath, int]) -> KeyPath:
 
 
 def _item_lines(statement: list[str]) -> list[int]:
-    """For each item of a list over several lines, how many lines below its key it stands."""
+    """Return for each item of a list over several lines how many lines below its key it lies."""
     found: list[int] = []
     last = len(statement) - 1
     for offset, line in enumerate(statement if last else ()):
@@ -228,7 +228,7 @@ def _item_lines(statement: list[str]) -> list[int]:
 def _places(
     value: Any, place: KeyPath, item_lines: Sequence[int], offset: int = 0
 ) -> Iterator[tuple[KeyPath, int]]:
-    """The places of all that is in a value, each with the lines that lie between it and the key."""
+    """Yield the places of all parts of a value, each with its number of lines below the key."""
     if isinstance(value, dict):
         for key, item in value.items():
             yield (*place, key), offset

@@ -1,4 +1,4 @@
-"""Report mistakes in TOML files: file, line, key and what would have been right."""
+"""Report mistakes in TOML files: file, line, key and the valid alternatives."""
 
 from __future__ import annotations
 
@@ -70,13 +70,13 @@ class DocumentPlace:
         return replace(self, path=(*self.path, key))
 
     def each(self, raw: Any) -> list[tuple[DocumentPlace, Any]]:
-        """The items of a list with their places; a value that is no list stands for itself."""
+        """Return the items of a list with their places; any other value counts as the only item."""
         if not isinstance(raw, list):
             return [(self, raw)]
         return [(self / index, item) for index, item in enumerate(raw)]
 
     def source(self, name: str) -> str:
-        """Where something is described: ``robot.toml:12 · robot:Arm.move_by``."""
+        """Return where something is described: ``robot.toml:12 · robot:Arm.move_by``."""
         line = self.document.line(self.path)
         return f"{self.document.file}{f':{line}' if line is not None else ''} · {name}"
 
@@ -183,7 +183,7 @@ def shown(value: Any) -> str:
 
 
 def raise_errors(errors: list[ConfigurationError]) -> None:
-    """Raise the first error in the order of the files' lines, telling about the others as well."""
+    """Raise the first error in the order of the files' lines; its message mentions the others as well."""
     if not errors:
         return
     files = list(dict.fromkeys(error.file for error in errors))
@@ -197,7 +197,7 @@ def raise_errors(errors: list[ConfigurationError]) -> None:
 
 
 def problem_error(problem: Problem) -> ConfigurationError:
-    """The error for a problem that was noticed beside the robot program.
+    """Return the error for a problem that was noticed beside the robot program.
 
     ``problem.text`` is either a sentence or, if it does not mention the name that is wrong, what kind
     of name it is (``argument``).

@@ -1,4 +1,4 @@
-"""What the command line says of a campaign, as a user writes it.
+"""Values of command-line options about a campaign, parsed.
 
 How long: ``90s``, ``10m``, ``1h30m``; how many mutants: ``20`` or ``10%``; which part of a campaign: ``2/8``;
 which keys of the configuration have other values: ``rounds=5``.
@@ -45,7 +45,7 @@ _SECONDS = {"h": 3600.0, "min": 60.0, "m": 60.0, "s": 1.0}
 
 
 def seconds_of(text: str) -> float:
-    """What ``90s``, ``10m`` or ``1h 30m`` says, in seconds. Raises UsageError for anything else."""
+    """Return the seconds in a text such as ``90s``, ``10m`` or ``1h 30m``. Raises UsageError otherwise."""
     plain, text = text.strip().lower(), shortened(text)
     parts = _PART.findall(plain)
     if not parts or _PART.sub("", plain).strip():
@@ -59,7 +59,7 @@ def seconds_of(text: str) -> float:
 
 
 def in_words(seconds: float) -> str:
-    """``10 min``, ``1 h 30 min``, ``90 s``."""
+    """Return a duration as text: ``10 min``, ``1 h 30 min``, ``90 s``."""
     if seconds < 120 and seconds % 60:
         return f"{seconds:g} s"
     minutes, left = divmod(round(seconds), 60)
@@ -88,7 +88,7 @@ class Sample:
 
     @classmethod
     def parse(cls, text: str) -> Sample:
-        """What ``10%``, ``12.5 %`` or ``50`` says. Raises UsageError for anything else."""
+        """Parse ``10%``, ``12.5 %`` or ``50``. Raises UsageError for anything else."""
         plain = text.strip()
         share, count = _SHARE.fullmatch(plain), _COUNT.fullmatch(plain)
         if share is not None and 0 < Decimal(share[1]) <= 100:
@@ -101,7 +101,7 @@ class Sample:
         )
 
     def sizes(self, roles: Mapping[str, int]) -> dict[str, int]:
-        """How many to draw of each role of one family, given how many there are.
+        """Return how many to draw of each role of one family, given how many there are.
 
         A number is divided as the mutants are; no role goes away empty while there is enough for all.
         """
@@ -148,7 +148,7 @@ class Shard:
 
     @classmethod
     def parse(cls, text: str) -> Shard:
-        """What ``2/8`` says. Raises UsageError for anything else."""
+        """Parse ``2/8``. Raises UsageError for anything else."""
         found = _SHARD.fullmatch(text)
         number, of = (int(found[1]), int(found[2])) if found is not None else (0, 0)
         if not 1 <= number <= of:
@@ -163,7 +163,7 @@ _DEPTH = 2
 
 
 def overridden(raw: dict[str, Any], texts: Sequence[str], lists: Collection[str]) -> dict[str, Any]:
-    """A table of the configuration with what ``KEY=VALUE`` says instead of its own keys.
+    """Return a table of the configuration in which ``KEY=VALUE`` texts replace keys.
 
     A value is written as in TOML; what is no TOML is a text, so ``-o when=once`` needs no quotation marks. A
     text for one of the keys in ``lists`` (``TABLE.KEY`` in a table) is a list of one.

@@ -58,7 +58,7 @@ class _Entries(Table):
 
 
 def read_suppressions(root: Path) -> tuple[Suppression, ...]:
-    """Return what the file of a project says; nothing if there is none.
+    """Return the decisions in the file of a project; none without a file.
 
     Raises ConfigurationError, about all mistakes at once.
     """
@@ -75,7 +75,7 @@ def read_suppressions(root: Path) -> tuple[Suppression, ...]:
 
 
 def _suppression(place: DocumentPlace, action: Action, raw: Mapping[str, Any]) -> Iterator[Suppression]:
-    """Yield the decision of an entry, or note what is wrong with it."""
+    """Yield the decision of an entry, or note its mistake."""
     entry = place.table(Entry, raw)
     if entry is None:
         return

@@ -23,10 +23,10 @@ class Table(BaseModel):
 
     @classmethod
     def lists(cls) -> set[str]:
-        """The keys that hold a list."""
+        """Return the keys that hold a list."""
         return {name for name, field in cls.model_fields.items() if get_origin(field.annotation) is tuple}
 
     @classmethod
     def paths(cls) -> list[str]:
-        """The keys that hold ``ProjectFiles``."""
+        """Return the keys that hold ``ProjectFiles``."""
         return [name for name, field in cls.model_fields.items() if _IN_PROJECT in field.metadata]

@@ -1,4 +1,4 @@
-"""What the world did while a test ran: reported by a simulator, recorded for reports.
+"""Recordings of the world during a test: reported by a simulator, compared, and described for reports.
 
     from mutabot.api.processes import Feed
 

@@ -1,4 +1,4 @@
-"""The first call in which a mutant's test differs from the original's."""
+"""Find the first call in which a mutant's test differs from the original's."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def _difference(one: RecordedCall, other: RecordedCall) -> str:
 
 
 def _are_equal(value: Any, other: Any) -> bool:
-    """Whether values are equal, numbers up to rounding."""
+    """Return whether values are equal, numbers up to rounding."""
     if isinstance(value, Mapping) and isinstance(other, Mapping):
         return value.keys() == other.keys() and all(_are_equal(value[key], other[key]) for key in value)
     if isinstance(value, list | tuple) and isinstance(other, list | tuple):

@@ -1,4 +1,4 @@
-"""Contacts of a recording: which bodies touch when, and which of them are things, robots and supports."""
+"""Contacts in a recording: which bodies touch when, and which are things, robots and supports."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def intervals_of(recording: Recording) -> dict[BodyPair, list[ContactSpan]]:
 
 
 def joined(intervals: Iterable[ContactSpan]) -> list[ContactSpan]:
-    """Return intervals in order, those as one that overlap or nearly meet."""
+    """Return intervals in order, with those merged that overlap or nearly meet."""
     found: list[ContactSpan] = []
     for begin, end in sorted(intervals):
         if found and begin <= found[-1][1] + _FLICKER:
@@ -65,7 +65,7 @@ class RecordedContacts:
 
     @cached_property
     def things(self) -> list[str]:
-        """Tracked bodies that have contacts: objects that a robot can move."""
+        """The tracked bodies that have contacts: objects that a robot can move."""
         touched = {name for pair in self.intervals for name in pair}
         paths = self.seen.paths.items()
         return [name for name, path in paths if path.track.kind is not TrackKind.VALUE and name in touched]
@@ -79,7 +79,7 @@ class RecordedContacts:
 
     @cached_property
     def robots(self) -> frozenset[str]:
-        """The bodies of robots: as the simulator says, else all that are neither tracked nor stand still."""
+        """The bodies of robots: those that the simulator names, else all that move and are not tracked."""
         recording = self.seen.recording
         if recording.robots:
             return frozenset(recording.robots)
@@ -88,7 +88,7 @@ class RecordedContacts:
 
     @cached_property
     def carriers(self) -> frozenset[str]:
-        """Bodies that move things lying on them, as conveyors do."""
+        """The bodies that move things lying on them, as conveyors do."""
         found = set()
         for thing in self.things:
             held = [(begin - _CARRIED, end + _CARRIED) for begin, end in self.holds(thing)]
@@ -99,7 +99,7 @@ class RecordedContacts:
         return frozenset(found)
 
     def _moves(self, thing: str, lies: list[ContactSpan], held: list[ContactSpan]) -> bool:
-        """Whether a thing moves over the ground while it lies on something and is not held."""
+        """Return whether a thing moves over the ground while it lies on something and is not held."""
         path = self.seen.paths[thing]
         for (before, one), (after, other) in pairwise(zip(path.when, path.points, strict=True)):
             way = hypot(other[0] - one[0], other[1] - one[1])
@@ -111,7 +111,7 @@ class RecordedContacts:
         return False
 
     def holds(self, thing: str) -> list[ContactSpan]:
-        """The intervals in which any robot touches a thing."""
+        """Return the intervals in which any robot touches a thing."""
         return joined(
             one
             for pair, found in self.intervals.items()
@@ -120,7 +120,7 @@ class RecordedContacts:
         )
 
     def supports(self, thing: str) -> dict[str, list[ContactSpan]]:
-        """The intervals in which a thing touches other bodies than robots, by their names."""
+        """Return the intervals in which a thing touches other bodies than robots, by their names."""
         found = {}
         for pair, intervals in self.intervals.items():
             (other,) = {*pair} - {thing} if thing in pair and len({*pair}) > 1 else ("",)
@@ -130,5 +130,5 @@ class RecordedContacts:
 
 
 def is_within(time: float, intervals: Iterable[ContactSpan]) -> bool:
-    """Whether a moment lies in one of the intervals; the moment at which one ends does not."""
+    """Return whether a moment lies in one of the intervals; the moment at which one ends does not."""
     return any(begin <= time < end for begin, end in intervals)

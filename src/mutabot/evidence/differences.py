@@ -53,7 +53,7 @@ def measures_of(path: TrackPath) -> Iterator[Measure]:
 
 
 def turned(one: Row, other: Row) -> float:
-    """The angle between two orientations, deg."""
+    """Return the angle between two orientations, deg."""
     dot = abs(sum(a * b for a, b in zip(one[3:7], other[3:7], strict=True)))
     return degrees(2.0 * acos(min(1.0, dot)))
 
@@ -86,7 +86,7 @@ def differences(
     spread: Spread,
     until: float = inf,
 ) -> list[Apart]:
-    """Return what was apart by more than its tolerance, largest deviation first.
+    """Return the things that were apart by more than their tolerance, largest deviation first.
 
     Args:
         noise: by how much each thing is apart in equal runs of the original.
@@ -106,7 +106,7 @@ def differences(
 
 
 def noise_between(one: RecordedPaths, other: RecordedPaths) -> dict[str, float]:
-    """Return by how much each thing is apart in two equal runs of the original."""
+    """Return by how much each thing differs between two equal runs of the original."""
     found = {}
     for name in one.paths.keys() & other.paths.keys():
         rows = list(_together(one.paths[name], other.paths[name]))
@@ -117,7 +117,7 @@ def noise_between(one: RecordedPaths, other: RecordedPaths) -> dict[str, float]:
 
 
 def _together(before: TrackPath, after: TrackPath) -> Iterator[tuple[float, Row, Row]]:
-    """Pair the rows of both runs at each moment of either; the last row of an ended run holds."""
+    """Yield each moment of either run with the rows of both; the last row of an ended run holds."""
     if before.when == after.when:
         yield from zip(before.when, before.rows, after.rows, strict=True)
         return
@@ -133,7 +133,7 @@ def _apart(
     noise: Mapping[str, float],
     spread: Spread,
 ) -> Apart | None:
-    """How far apart a thing was, if by more than the tolerance."""
+    """Return how far apart a thing was; None if within the tolerance."""
     tolerance = max(measure.tolerance, 2.0 * noise.get(measure.name, 0.0))
     gaps = [(time, measure.between(one, other) if one != other else 0.0) for time, one, other in rows]
     first = next((time for time, gap in gaps if gap > tolerance), None)
@@ -149,7 +149,7 @@ def _apart(
 
 
 def aside_of(measure: Measure, before: TrackPath, after: TrackPath) -> float | None:
-    """How far something left the path, orientations or range that it has in the original.
+    """Return how far a value left the path, orientations or range that it has in the original.
 
     None for angles that are values: in which range they are depends on how full turns are counted.
     """

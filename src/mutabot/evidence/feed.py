@@ -1,4 +1,4 @@
-"""The feed: the interface by which a simulator, or a node connected to it, reports where things are."""
+"""The interface by which a simulator, or a node connected to it, reports the positions of things."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class _Source:
 
 
 class Feed:
-    """Records where tool and objects are, at a fixed rate of simulated time, while a test is recorded.
+    """Records tool and objects at a fixed rate of simulated time while a test is recorded.
 
     Outside a campaign ``tick`` does nothing, and costs next to nothing. What is told is only read: it must
     change nothing in the simulation and draw no random number.
@@ -122,7 +122,7 @@ class Feed:
 
     @property
     def due(self) -> float:
-        """The simulated time, s, before which ``tick`` records nothing; inf while no test is recorded.
+        """The simulated time (s) before which ``tick`` records nothing; inf while no test is recorded.
 
         For a simulator that takes many steps at once: calls of ``tick`` before it may be left out.
         """
@@ -141,7 +141,7 @@ class Feed:
                 self._tick(tape)
 
     def _now(self, tape: Tape) -> float | None:
-        """Return the simulator's own time, s; None, and note a problem, if it has none."""
+        """Return the simulator's own time (s); None if it has none, which is noted."""
         with tape.reading("the simulated time cannot be read"):
             now = float(self._time())
             if isfinite(now):
@@ -172,7 +172,7 @@ class Feed:
             tape.picture(self._offset + now, read)
 
     def _begin(self, tape: Tape, now: float) -> None:
-        """Begin to record a test: the times of an existing simulation begin at 0 as well."""
+        """Begin to record a test, at time 0 even if the simulation already ran."""
         self._tape = tape
         is_first = not tape.recording.times
         self._offset = -now if is_first else tape.end + _GAP - now
@@ -194,7 +194,7 @@ class Feed:
                 self._sample(tape, now)
 
     def _go_on(self, tape: Tape, now: float) -> None:
-        """Continue after simulated time has been reset: later moments follow all earlier ones."""
+        """Continue after simulated time was reset: later moments follow all earlier ones."""
         self._offset = tape.end + _GAP - now
         self._due = self._next_picture = now
         self._before = frozenset()
@@ -226,7 +226,7 @@ class Feed:
 
 
 def _coarse(number: float) -> float:
-    """A millimetre is enough to be drawn, and takes a fraction of the room."""
+    """Round a coordinate to a millimetre, which is enough to be drawn and saves space."""
     return round(number * 1024) / 1024 if isfinite(number) else number
 
 

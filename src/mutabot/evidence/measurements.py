@@ -1,4 +1,4 @@
-"""What was measured of motions and contacts, as the mutant beside the original, where it differs."""
+"""Measurements of motions and contacts that differ between the mutant and the original."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ FactsByName = Mapping[tuple[str, str], Fact]
 def measurements_of(
     original: FactsByName, mutant: FactsByName, spread: Spread, *, is_cut: bool
 ) -> list[Measurement]:
-    """Return what differs by more than the original itself does, largest deviation first.
+    """Return the differences that exceed the original's own spread, largest deviation first.
 
     ``is_cut``: whether the mutant's test ended early, so that only what exceeds the original counts.
     """

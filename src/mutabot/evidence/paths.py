@@ -1,4 +1,4 @@
-"""Paths: where each recorded thing was over time, and the distance of points from a path.
+"""Paths of recorded things over time, and the distance of points from a path.
 
 Paths of points are simplified before the distance of points from a path is measured. Between two recorded
 moments a path is not known: what is no farther from it than it may bow there has not left it.
@@ -43,7 +43,7 @@ def simple(points: Sequence[Point], tolerance: float) -> list[Point]:
 
 
 def _kept(points: Sequence[Point], tolerance: float) -> list[int]:
-    """The numbers of the points that ``simple`` keeps."""
+    """Return the numbers of the points that ``simple`` keeps."""
     kept = {0, len(points) - 1}
     waiting = [(0, len(points) - 1)]
     while waiting:
@@ -79,7 +79,7 @@ def aside(points: Iterable[Point], path: Sequence[Point], bows: Sequence[float] 
 
 
 def turned_aside(rows: Sequence[Row], path: Sequence[Row]) -> float:
-    """Return the greatest angle of orientations from those that a path takes, also between its moments, deg.
+    """Return the greatest angle (deg) of orientations from those on a path, also between its moments.
 
     Unit quaternions at the angle a lie 2 sin(a / 4) apart, and those between two moments near their chord.
     """
@@ -97,7 +97,7 @@ def turned_aside(rows: Sequence[Row], path: Sequence[Row]) -> float:
 
 
 def _turns(rows: Sequence[Row]) -> list[list[float]]:
-    """Quaternions, each with the sign that is nearer to the one before, without repetitions."""
+    """Return the quaternions, each with the sign nearer to its predecessor, without repetitions."""
     found: list[list[float]] = []
     for row in rows[:: len(rows) // _MOST_TURNS + 1]:
         one = list(row[3:7])
@@ -109,7 +109,7 @@ def _turns(rows: Sequence[Row]) -> list[list[float]]:
 
 
 def _chord(point: Sequence[float], start: Sequence[float], end: Sequence[float]) -> float:
-    """The square of a point's distance from a line between two others."""
+    """Return the square of a point's distance from the line through two others."""
     along = [b - a for a, b in zip(start, end, strict=True)]
     way = [b - a for a, b in zip(start, point, strict=True)]
     length = sum(part * part for part in along)
@@ -119,14 +119,14 @@ def _chord(point: Sequence[float], start: Sequence[float], end: Sequence[float])
 
 
 def _segment(one: Point, other: Point) -> tuple[float, ...]:
-    """A line's start, its direction, and the square of its length."""
+    """Return the start of a segment, its direction, and the square of its length."""
     x, y, z = one
     dx, dy, dz = other[0] - x, other[1] - y, other[2] - z
     return x, y, z, dx, dy, dz, dx * dx + dy * dy + dz * dz
 
 
 def _square(point: Point, segment: tuple[float, ...]) -> float:
-    """The square of a point's distance from a segment, written out: many are asked of every mutant."""
+    """Return the square of a point's distance from a segment, inlined, as every mutant needs many."""
     ax, ay, az, dx, dy, dz, length = segment
     x, y, z = point[0] - ax, point[1] - ay, point[2] - az
     share = (x * dx + y * dy + z * dz) / length if length else 0.0
@@ -137,7 +137,7 @@ def _square(point: Point, segment: tuple[float, ...]) -> float:
 
 @dataclass(frozen=True)
 class TrackPath:
-    """Where one thing was over time.
+    """The path of one thing over time.
 
     Attributes:
         track: its numbers.
@@ -149,7 +149,7 @@ class TrackPath:
 
     @cached_property
     def _present(self) -> list[tuple[float, Row]]:
-        """The moments at which it was there, with their numbers."""
+        """The moments at which the thing existed, with their numbers."""
         values = [iter(self.track.values)] * self.track.width
         rows = zip(self.times, zip(*values, strict=True), strict=False)
         if self.track.kind is TrackKind.LINE:  # each of its points may be missing
@@ -158,27 +158,27 @@ class TrackPath:
 
     @cached_property
     def rows(self) -> list[Row]:
-        """The numbers of each moment at which it was there."""
+        """The numbers of each moment at which the thing existed."""
         return [row for _, row in self._present]
 
     @cached_property
     def when(self) -> Sequence[float]:
-        """The moments at which it was there."""
+        """The moments at which the thing existed."""
         return [time for time, _ in self._present]
 
     @cached_property
     def points(self) -> list[Point]:
-        """Its positions, m."""
+        """The positions, m."""
         return [(row[0], row[1], row[2]) for row in self.rows]
 
     @cached_property
     def outline(self) -> list[Point]:
-        """Return the path with fewer points, to half of the tolerance."""
+        """The path with fewer points, within half of the tolerance."""
         return [self.points[number] for number in self._corners]
 
     @cached_property
     def bows(self) -> list[float]:
-        """How far it may have been from each line of its outline between the moments of its rows, m."""
+        """The distance (m) it may have had from each line of its outline between the moments of its rows."""
         swerves = [0.0, *(self._swerve(number) for number in range(len(self.points))), 0.0]
         beside = zip(swerves, swerves[1:], swerves[2:], swerves[3:], strict=False)
         bends = [
@@ -191,7 +191,7 @@ class TrackPath:
         return _kept(self.points, LENGTH / 2)
 
     def _swerve(self, number: int) -> float:
-        """How far a point is from the line between the two beside it, m.
+        """Return how far a point is from the line between its neighbours, m.
 
         On an arc that is four times as far as the path is from the line between two moments, and so are the
         points next to these. At a corner between two moments it is nearly as far as the corner, and those
@@ -206,13 +206,13 @@ class TrackPath:
         return sqrt(_square(point, _segment(one, other)))
 
     def at(self, time: float) -> int:
-        """The number of the row that holds at a time: the last one before or at it, else the first."""
+        """Return the number of the row that holds at a time: the last one before or at it, else the first."""
         return max(0, bisect_right(self.when, time + _SAME) - 1)
 
 
 @dataclass(frozen=True, eq=False)
 class RecordedPaths:
-    """What was recorded of one test, and the paths of what was tracked, which are worked out once."""
+    """The recording of one test, with the paths of tracked things, computed once."""
 
     recording: Recording
 
@@ -223,12 +223,12 @@ class RecordedPaths:
 
     @cached_property
     def paths(self) -> dict[str, TrackPath]:
-        """What is compared, by name, if it was ever there; times in s, positions in m."""
+        """The paths that are compared, by name, of things that existed; times in s, positions in m."""
         return self._those(is_drawn=False)
 
     @cached_property
     def lines(self) -> dict[str, TrackPath]:
-        """What is only drawn, likewise: lines through points, three numbers each."""
+        """The lines that are only drawn, by name; three numbers for each point."""
         return self._those(is_drawn=True)
 
     def _those(self, *, is_drawn: bool) -> dict[str, TrackPath]:

@@ -1,4 +1,4 @@
-"""Physics of a recording: what was let go and from which height, what slipped, was dragged or hit, how fast.
+"""Physical facts of a recording: drops and their heights, slips, drags, collisions, and speeds.
 
 Recordings have some ten moments a second, so the speed of an impact is that of a free fall from the height at
 which a thing was let go.
@@ -88,14 +88,14 @@ def _facts(contacts: RecordedContacts) -> Iterator[Fact]:
 
 
 def _speeds(path: TrackPath) -> Iterator[tuple[float, float]]:
-    """The speed of a thing at each moment, m/s."""
+    """Yield the speed of a thing at each moment, m/s."""
     for (before, one), (after, other) in pairwise(zip(path.when, path.points, strict=True)):
         if after - before > STEP:
             yield after, dist(one, other) / (after - before)
 
 
 def _releases(contacts: RecordedContacts, thing: str) -> Iterator[Fact]:
-    """From how high a thing fell after a robot had touched it last; zero where it stood on something."""
+    """Yield from how high a thing fell after a robot had last touched it; 0 if it stood on something."""
     path = contacts.seen.paths[thing]
     supports = contacts.supports(thing)
     for _, end in contacts.holds(thing):
@@ -114,7 +114,7 @@ def _releases(contacts: RecordedContacts, thing: str) -> Iterator[Fact]:
 
 
 def _landing(supports: Mapping[str, Sequence[ContactSpan]], time: float) -> tuple[float, str] | None:
-    """When a thing that was let go touched something first, and what."""
+    """Return when a released thing first touched something, and what; None if it did not."""
     begins = (
         (begin, name)
         for name, found in supports.items()
@@ -125,7 +125,7 @@ def _landing(supports: Mapping[str, Sequence[ContactSpan]], time: float) -> tupl
 
 
 def _impact(contacts: RecordedContacts, release: Fact) -> float:
-    """How fast a thing was when it touched what it fell onto, m/s: from its energy when it was let go.
+    """Return the speed (m/s) at which a thing hit what it fell onto, by its energy at the release.
 
     Zero for what was set down: how fast it was between two moments, while the arm slowed down, is not known.
 
@@ -141,7 +141,7 @@ def _impact(contacts: RecordedContacts, release: Fact) -> float:
 
 
 def lowest(path: TrackPath, number: int) -> float:
-    """The height of a thing's lowest corner at a moment, m; of its middle if its size is not known."""
+    """Return the height (m) of a thing's lowest corner at a moment; of its centre if its size is unknown."""
     row, size = path.rows[number], path.track.size
     if size is None:
         return row[2]
@@ -149,7 +149,7 @@ def lowest(path: TrackPath, number: int) -> float:
 
 
 def _upward(row: Row) -> tuple[float, float, float]:
-    """How much each edge of a thing points upward."""
+    """Return how far each edge of a thing points upward."""
     if len(row) < 7:
         return 0.0, 0.0, 1.0
     w, x, y, z = row[3:7]
@@ -157,7 +157,7 @@ def _upward(row: Row) -> tuple[float, float, float]:
 
 
 def _slips(contacts: RecordedContacts, thing: str) -> Iterator[Fact]:
-    """How far a thing moved in a robot's grip while nothing else touched it."""
+    """Yield how far a thing moved in a robot's grip while nothing else touched it."""
     path = contacts.seen.paths[thing]
     supports = [one for found in contacts.supports(thing).values() for one in found]
     for hold in contacts.holds(thing):
@@ -178,7 +178,7 @@ def _slips(contacts: RecordedContacts, thing: str) -> Iterator[Fact]:
 
 
 def _in_frame(frame: Row, point: Sequence[float]) -> tuple[float, ...]:
-    """A point in the frame of a pose; of a mere point, relative to it."""
+    """Return a point in the frame of a pose; relative to the position if there is no orientation."""
     x, y, z = (a - b for a, b in zip(point, frame[:3], strict=True))
     if len(frame) < 7:
         return x, y, z
@@ -192,7 +192,7 @@ def _in_frame(frame: Row, point: Sequence[float]) -> tuple[float, ...]:
 
 
 def _drags(contacts: RecordedContacts, thing: str) -> Iterator[Fact]:
-    """How far a robot moved a thing over what it stood on; what moves things by itself is left out."""
+    """Yield how far a robot moved a thing over its support; supports that move things are left out."""
     path, holds = contacts.seen.paths[thing], contacts.holds(thing)
     for other, found in contacts.supports(thing).items():
         together = [(begin, end) for begin, end in found if any(a < end and begin < b for a, b in holds)]
@@ -209,7 +209,7 @@ def _drags(contacts: RecordedContacts, thing: str) -> Iterator[Fact]:
 
 
 def _collisions(contacts: RecordedContacts) -> Iterator[Fact]:
-    """When a robot touched something that is no tracked thing, and how fast its tool was just before."""
+    """Yield when a robot touched something that is not tracked, and its tool's speed just before."""
     for pair, found in contacts.intervals.items():
         robots = [name for name in pair if name in contacts.robots]
         if not robots or contacts.robots >= {*pair} or {*contacts.things} & {*pair}:

@@ -1,4 +1,4 @@
-"""A recording: where tool and objects were over time, what touched what, what was commanded and read.
+"""Recordings: positions of tool and objects over time, contacts, commands and readings.
 
 Plain data, made in the robot program's process and read outside of it. The standard library is enough.
 """
@@ -58,7 +58,7 @@ class Track:
 
     @property
     def width(self) -> int:
-        """Numbers at each moment."""
+        """The count of numbers at each moment."""
         return self.kind.width * max(1, len(self.radii))
 
 
@@ -116,7 +116,7 @@ class RecordedCall(NamedTuple):
 
 @dataclass(slots=True)
 class Recording:
-    """What was seen of one test.
+    """The recording of one test.
 
     Attributes:
         times: moments at which the tracks were read, s since the test's first simulated moment.
@@ -151,7 +151,7 @@ _PLAIN_FIELDS = (
 
 
 def to_bytes(recording: Recording) -> bytes:
-    """The recording as compressed bytes, to be kept; numbers in this machine's order of bytes."""
+    """Return the recording as compressed bytes, to be stored; numbers are in this machine's byte order."""
     tracks = recording.tracks.values()
     fields = {name: getattr(recording, name) for name in _PLAIN_FIELDS}
     fields["tracks"] = [(one.name, one.kind, one.unit, one.size, one.radii) for one in tracks]
@@ -163,7 +163,7 @@ def to_bytes(recording: Recording) -> bytes:
 
 @lru_cache(1)
 def _compressed(data: bytes) -> bytes:
-    """Compress data, and keep the result for an equal recording, as of tests without commands."""
+    """Compress data, and cache the result for an equal recording, such as of tests without commands."""
     return zlib.compress(data, 1)
 
 
@@ -192,12 +192,12 @@ def from_bytes(data: bytes) -> Recording:
 
 
 def to_text(recording: Recording) -> str:
-    """The recording as a line of ASCII, for the pipe to the controller."""
+    """Return the recording as a line of ASCII, for the pipe to the controller."""
     return base64.b64encode(to_bytes(recording)).decode()
 
 
 def bytes_of(text: str) -> bytes:
-    """Return the bytes of ``to_bytes`` for a text of ``to_text``."""
+    """Return the bytes, as ``to_bytes`` made them, of a text of ``to_text``."""
     return base64.b64decode(text)
 
 

@@ -46,7 +46,7 @@ def spread_between(runs: Sequence[RecordedPaths]) -> Spread:
 
 
 def _ends_apart(measure: Measure, before: TrackPath, after: TrackPath) -> float:
-    """How far apart a thing ends; what each seed places elsewhere, by how it has moved since."""
+    """Return how far apart a thing ends; if each seed places it elsewhere, by how far it has moved since."""
     apart = measure.between(before.rows[-1], after.rows[-1])
     return min(apart, dist(_moved(before), _moved(after))) if measure.unit == "m" else apart
 

@@ -1,4 +1,4 @@
-"""What happened, in a sentence: how a mutant's test differs from the original's, by what was recorded.
+"""Describe in a sentence how a mutant's test differs from the original's, by the recordings.
 
 The sentence names contacts and releases first, where a simulator reports contacts; then what slipped, was
 dragged, left its path or ended elsewhere, the largest deviation first. The original's value stands beside.
@@ -91,7 +91,7 @@ def diverged(
 
 
 def _first_text(one: Apart) -> str:
-    """What is different first: a place, an orientation, or a value."""
+    """Return the first difference: a place, an orientation, or a value."""
     thing = one.name.removesuffix(TURNED)
     if thing != one.name:
         return f"{thing} is turned otherwise than in the original run"
@@ -138,7 +138,7 @@ class _ComparedRuns:
         return [one for one in found if one.name != DURATION or are_simulated]
 
     def story(self, apart: Sequence[Apart], measured: Sequence[Measurement]) -> str:
-        """The sentence, most important part first; empty if the world was the same."""
+        """Return the sentence, most important part first; empty if the world was the same."""
         parts = [*self._cut(), *list(self._contacts(measured))[:_MOST_CONTACTS]]
         others = [(one.deviation, self._motion(one)) for one in measured]
         told = [one for one in apart if _is_told(one)]
@@ -161,7 +161,7 @@ class _ComparedRuns:
             yield f"the test ended at {self.end:.1f} s instead of {due:.1f} s"
 
     def _contacts(self, measured: Sequence[Measurement]) -> Iterator[str]:
-        """What never touched, what was let go otherwise, and what was hit."""
+        """Yield what never touched, what was released differently, and what was hit."""
         usual, contacts = RecordedContacts(self.original), RecordedContacts(self.mutant)
         always = self.spread.always
         for pair in sorted(usual.intervals.keys() - contacts.intervals.keys()):
@@ -178,7 +178,7 @@ class _ComparedRuns:
     def _hits(
         self, usual: RecordedContacts, contacts: RecordedContacts, measured: Sequence[Measurement]
     ) -> Iterator[str]:
-        """What touched that touches in no run of the original, beside what was let go onto something."""
+        """Yield contacts that no run of the original has, except those of released things."""
         onto = {_pair(one.thing, one.other) for one in self.facts.values() if one.name == RELEASE}
         speeds = {one.thing: one.value or 0.0 for one in measured if one.name == COLLISION}
         new = contacts.intervals.keys() - usual.intervals.keys() - self.spread.ever - onto
@@ -211,7 +211,7 @@ class _ComparedRuns:
         return f"{self._verb(thing, after)} {now}{_height(after)} (original: {then}{known}){impact}"
 
     def _not_landed(self, thing: str, usual: RecordedContacts, contacts: RecordedContacts) -> str:
-        """How a thing was let go that was not seen to touch anything afterwards, or that was held on to."""
+        """Describe the release of a thing that touched nothing afterwards, or that was never released."""
         ends = [found[-1][1] for one in (usual, contacts) if (found := one.holds(thing))]
         if len(ends) < 2 or ends[0] >= self.end:
             return ""
@@ -222,7 +222,7 @@ class _ComparedRuns:
         return f"{thing} was lost at {ends[1]:.1f} s (original: let go at {ends[0]:.1f} s)"
 
     def _verb(self, thing: str, release: Fact) -> str:
-        """Whether fingers opened, as far as they are recorded."""
+        """Return the verb of a release: whether fingers opened, if they are recorded."""
         if release.value <= SET_DOWN:
             return f"{thing} was set down"
         paths = [one for one in self.mutant.paths.values() if one.track.kind is TrackKind.VALUE]
@@ -235,7 +235,7 @@ class _ComparedRuns:
         return f"{thing} was lost" if fingers else f"{thing} was let go"
 
     def _impact(self, thing: str) -> str:
-        """With which speed it hit what it fell onto."""
+        """Describe the speed at which it hit what it fell onto."""
         now, then = (one.get((IMPACT, thing)) for one in (self.facts, self.usual))
         if now is None or now.value < _SLOW:
             return ""
@@ -244,7 +244,7 @@ class _ComparedRuns:
         return f" and hit it with {_amount(now.value, 'm/s')}{usual}"
 
     def _motion(self, one: Measurement) -> str:
-        """What slipped, was dragged or was faster."""
+        """Describe what slipped, was dragged or was faster."""
         if one.name == SLIP:
             return f"{one.thing} slipped {_beside(one)} in the grip"
         if one.name == DRAG:
@@ -256,7 +256,7 @@ class _ComparedRuns:
         return ""
 
     def _delay(self) -> str:
-        """By how much the same things happened later or earlier."""
+        """Describe by how much the same things happened later or earlier."""
         delays = [after - before for before, after in self._same_moments()]
         if not delays:
             return "the same movements happened at other times"
@@ -266,7 +266,7 @@ class _ComparedRuns:
         return f"the same movements happened up to {abs(worst):.1f} s {'later' if worst > 0 else 'earlier'}"
 
     def _same_moments(self) -> Iterator[tuple[float, float]]:
-        """When the same calls began and the same bodies touched, in the original and in the mutant."""
+        """Yield when the same calls began and the same bodies touched, in the original and in the mutant."""
         original, mutant = self.original.recording, self.mutant.recording
         for one, other in zip(original.calls, mutant.calls, strict=False):
             if one.operation != other.operation:
@@ -288,7 +288,7 @@ def _height(release: Fact) -> str:
 
 
 def _beside(one: Measurement, digits: int = 2) -> str:
-    """``12 mm (original: 1 mm)``"""
+    """Return a measurement beside the original's: ``12 mm (original: 1 mm)``."""
     usual = "none" if not one.original else _amount(one.original, one.unit, digits)
     return f"{_amount(one.value or 0.0, one.unit, digits)} (original: {usual})"
 
@@ -298,12 +298,12 @@ def _amount(value: float, unit: str = "m", digits: int = 2) -> str:
 
 
 def _is_told(one: Apart) -> bool:
-    """Whether it is no mere delay, and more than the original does by itself; of margins the least counts."""
+    """Return whether it is more than delay and the original's spread, and worth a sentence."""
     return not one.is_delay and one.deviation > 1.0 and not one.name.endswith("margin")
 
 
 def _strayed(one: Apart, *, is_whole: bool) -> str:
-    """How far one thing was from its path, and where it ended; empty if not farther than the original."""
+    """Describe how far a thing was from its path and end; empty if not farther than the original."""
     strayed, final = one.aside or 0.0, one.final if is_whole and one.of_end > 1.0 else 0.0
     if final <= one.tolerance:
         return ""
@@ -319,7 +319,7 @@ def _strayed(one: Apart, *, is_whole: bool) -> str:
 
 
 def _detours(apart: Sequence[Apart], *, is_whole: bool) -> Iterator[tuple[float, str]]:
-    """What left its path, or was turned on its way, and reached its end, each with its deviation."""
+    """Yield the things that left their path, or turned on the way, but reached its end, with deviations."""
     found = [one for one in apart if one.aside is not None and not _strayed(one, is_whole=is_whole)]
     found = [one for one in found if one.aside > max(one.tolerance, one.aside_spread)]  # type: ignore[operator]
     paths = [one for one in found if one.unit == "m" and not one.is_value]
@@ -336,7 +336,7 @@ def _detours(apart: Sequence[Apart], *, is_whole: bool) -> Iterator[tuple[float,
 
 
 def amount(value: float, unit: str = "m") -> str:
-    """``40 mm``, ``0.31 m``, ``12 deg``."""
+    """Return a value with its unit: ``40 mm``, ``0.31 m``, ``12 deg``."""
     if unit == "m" and value < 0.1:
         millimetres = 1e3 * value if value >= 1e-4 else 0.0
         return f"{millimetres:.0f} mm" if millimetres >= 10.0 else f"{millimetres:.2g} mm"

@@ -1,4 +1,4 @@
-"""The recorder of the running test, which feeds write to and the session reads; and its film.
+"""The recorder of the running test, which feeds write to and the session reads, and its film.
 
 There is one tape per process. Outside a campaign, and between tests, there is none and feeds do nothing.
 """
@@ -19,7 +19,7 @@ MOST_PICTURES = 6000
 
 
 class PictureWriter(Protocol):
-    """Stores pictures.
+    """The interface of a writer of pictures.
 
     Attributes:
         count: how many there are.
@@ -28,7 +28,7 @@ class PictureWriter(Protocol):
     count: int
 
     def add(self, time: float, picture: Any) -> None:
-        """Add one. Raises ValueError for what is no picture, TypeError for what holds no numbers.
+        """Add a picture. Raises ValueError if it is no picture, TypeError if it holds no numbers.
 
         Args:
             time: s.
@@ -45,7 +45,7 @@ _WALL = 1.0
 
 
 class Tape:
-    """What is recorded of one test.
+    """The recorder of one test.
 
     Attributes:
         recording: it, so far.
@@ -73,7 +73,7 @@ class Tape:
 
     @property
     def now(self) -> float:
-        """The time, to be given to ``seconds`` when the test is over.
+        """The current time, to be converted by ``seconds`` when the test is over.
 
         Nobody knows before whether anything will tell the simulated time. Until something does, it is that of
         the wall clock, below zero so that it is known for what it is.
@@ -82,11 +82,11 @@ class Tape:
         return self.at_wall(monotonic()) if told is None else told
 
     def at_wall(self, moment: float) -> float:
-        """A moment of the clock of ``time.monotonic``, as a time."""
+        """Return a moment of ``time.monotonic`` as a time of the tape."""
         return self._began - moment - _WALL
 
     def seconds(self, time: float | None) -> float | None:
-        """What a time means: seconds since the test began, simulated if there are any."""
+        """Return the seconds since the test began at this time, simulated if there is a simulated clock."""
         if time is None or time >= 0.0:
             return time
         return 0.0 if self.is_simulated else -time - _WALL
@@ -126,7 +126,7 @@ class Tape:
         return found
 
     def close_moment(self, now: float) -> None:
-        """Add a moment; tracks that were not read at it get no value there."""
+        """Add a moment; tracks that were not read at it get no value."""
         times = self.recording.times
         times.append(now)
         for track in self.recording.tracks.values():
@@ -178,7 +178,7 @@ class Tape:
             self.recording.problems.append(text)
 
     def _thin(self) -> None:
-        """Keep every second moment."""
+        """Drop every second moment."""
         self.coarseness *= 2
         recording = self.recording
         recording.times = recording.times[::2]
@@ -198,12 +198,12 @@ _tape: Tape | None = None
 
 
 def running() -> Tape | None:
-    """The tape of the running test; None if nothing is recorded."""
+    """Return the tape of the running test; None if nothing is recorded."""
     return _tape
 
 
 def now() -> float | None:
-    """The time, as the tape of the running test has it; None if nothing is recorded."""
+    """Return the time of the running test's tape; None if nothing is recorded."""
     return _tape.now if _tape is not None else None
 
 

@@ -1,1 +1,1 @@
-"""Processes that run jobs, as many at a time as they may."""
+"""Run jobs in processes, a limited number at a time."""

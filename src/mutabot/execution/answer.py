@@ -1,4 +1,4 @@
-"""What became of a task on another machine, as bytes, and the check of such bytes.
+"""The result of a task on another machine as bytes, and the validation of such bytes.
 
 That machine may be broken, of another version, or hostile, so what it sends is checked before it is used.
 What it says of its own task is believed, since no other machine has seen that. It can say nothing of other
@@ -57,7 +57,7 @@ class Ending:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """The events of a task that has run on another machine, and what became of it.
+    """The events of a task that has run on another machine, and how its process ended.
 
     Attributes:
         events: what its process reported, in that order.
@@ -78,7 +78,7 @@ class Answer:
         raise OSError("a task ended without a result")
 
     def to_bytes(self, root: str) -> bytes:
-        """Return it as lines of JSON, the first for the result and one for each event.
+        """Return the answer as lines of JSON, the first for the result and one for each event.
 
         ``root``: what the project's folder is called where the answer goes.
         """
@@ -106,7 +106,7 @@ class Answer:
         return cls(found, result)
 
     def undecided(self) -> tuple[Answer, Task | None]:
-        """Return the answer without what a limit of wall clock has ended, and the task that runs that here.
+        """Return the answer without what a wall-clock limit ended, and the task that runs that here.
 
         What is slow on another machine may be quick enough on this one, and a time-out is a verdict. Of a
         fork parent, that task has only the mutants whose forks were ended.
@@ -122,7 +122,7 @@ class Answer:
 
 
 def _decoded(line: bytes, place: str, decode: Any) -> Any:
-    """What a line of JSON says, with texts that can be stored. Raises ValueError."""
+    """Return the content of a line of JSON, with storable texts. Raises ValueError."""
     kind = ""
     try:
         data = _storable(_loaded(line))
@@ -142,7 +142,7 @@ def _loaded(line: bytes) -> Any:
 
 
 def _storable(value: Any) -> Any:
-    """A value with storable texts: of characters that come in halves only the whole ones."""
+    """Return a value with storable texts, in which lone surrogates are escaped. Raises ValueError."""
     if isinstance(value, str):
         return value if value.isascii() else value.encode("utf-8", "backslashreplace").decode("utf-8")
     if isinstance(value, list):
@@ -178,12 +178,12 @@ def _integers(item: Any) -> Iterator[int]:
 
 @cache
 def _fields(kind: Any) -> dict[str, bool]:
-    """The fields of a dataclass, and whether each is mutabot's own: then its type says all."""
+    """Return the fields of a dataclass, and whether each is mutabot's own: then its type says all."""
     return {name: "Any" not in str(hint) for name, hint in get_type_hints(kind).items()}
 
 
 def check_fit(found: Iterable[Event], job: Job) -> None:
-    """Raise ValueError for events that this job cannot have made."""
+    """Raise ValueError for events that this job cannot have caused."""
     forking = job.forking
     mutants = {one.id for one in forking.mutants} if forking is not None else set()
     sites: set[int] = set()
@@ -240,7 +240,7 @@ def _sites(event: Event) -> Iterator[events.SiteSeen]:
 
 
 def _check_file(name: str) -> None:
-    """Files of the project are read to name the places in them."""
+    """Raise ValueError for the name of a file outside the project, whose files are read to name places."""
     if PurePosixPath(name).is_absolute() or ".." in PurePosixPath(name).parts or "\0" in name:
         raise ValueError(f"{name[:_SHOWN_NAME]!r} is not a file of the project")
 

@@ -1,4 +1,4 @@
-"""Let Ctrl-C, and the end of a campaign's time, take effect where it is safe.
+"""Delay Ctrl-C, and the end of a campaign's time, until it is safe.
 
 Python raises KeyboardInterrupt between any two instructions, also between the opening of a descriptor or
 the start of a process and the moment from which on somebody looks after it. So the first Ctrl-C is kept for
@@ -22,11 +22,11 @@ class OutOfTimeError(Exception):
 
 
 class Interruption(KeyboardInterrupt):
-    """A first Ctrl-C, raised where the campaign waits: its state is consistent."""
+    """Ctrl-C was pressed once; raised where the campaign waits and its state is consistent."""
 
 
 class _InterruptionGuard:
-    """Keeps interruptions until they are safe, while a campaign runs.
+    """Delays interruptions until they are safe, while a campaign runs.
 
     Attributes:
         may_raise: whether an interruption is safe right now.
@@ -46,7 +46,7 @@ class _InterruptionGuard:
         self.is_kept = True
 
     def let_go(self) -> None:
-        """Raise Interruption if one was held back, and OutOfTimeError if the time is up."""
+        """Raise Interruption if one was delayed, and OutOfTimeError if the time is up."""
         if self.is_kept:
             self.is_kept = False
             raise Interruption
@@ -55,7 +55,7 @@ class _InterruptionGuard:
             raise OutOfTimeError
 
     def be_late(self) -> None:
-        """The time is up."""
+        """Note that the time is up."""
         if self.may_raise:
             raise OutOfTimeError
         self.is_late = True
@@ -65,7 +65,7 @@ _keeper: _InterruptionGuard | None = None
 
 
 def interrupt(number: int = signal.SIGINT, frame: FrameType | None = None) -> None:
-    """Do what Ctrl-C does, in the main thread: a handler of signals."""
+    """Interrupt the campaign like Ctrl-C; a signal handler of the main thread."""
     if _keeper is None:
         raise KeyboardInterrupt
     _keeper.interrupt()
@@ -73,7 +73,7 @@ def interrupt(number: int = signal.SIGINT, frame: FrameType | None = None) -> No
 
 @contextmanager
 def interruptions_kept() -> Iterator[None]:
-    """Inside, Ctrl-C is kept until the campaign waits, or until the end of the block.
+    """Delay Ctrl-C inside the context until the campaign waits, or until the end of the block.
 
     Does nothing in other threads than the main one, which Python tells nothing of signals, and where
     somebody else handles them already. Where Ctrl-C is ignored it stays so.
@@ -98,7 +98,7 @@ def interruptions_kept() -> Iterator[None]:
 
 @contextmanager
 def limited(until: float, clock: Callable[[], float]) -> Iterator[None]:
-    """Inside, OutOfTimeError is raised at the next wait once the time is up.
+    """Raise OutOfTimeError at the next wait inside the context once the time is up.
 
     Only inside ``interruptions_kept``, in whose threads and circumstances it does nothing either.
 
@@ -130,7 +130,7 @@ def limited(until: float, clock: Callable[[], float]) -> Iterator[None]:
 
 @contextmanager
 def interruptible() -> Iterator[None]:
-    """Let Ctrl-C take effect at once inside, including one that was held back."""
+    """Let Ctrl-C take effect at once inside the context, including one that was delayed."""
     keeper = _keeper
     if keeper is None:
         yield

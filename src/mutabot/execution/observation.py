@@ -29,7 +29,7 @@ _PATIENCE = 5.0
 
 @dataclass(frozen=True)
 class Observed(Generic[T]):
-    """What was seen of one run of a suite.
+    """What an observed run of a suite returned.
 
     Attributes:
         seen: what the observer of each process returned, that of the tests' process first.
@@ -89,7 +89,7 @@ def observe(
 
 
 def _wait(words: Sequence[str], root: Path, variables: Mapping[str, str], log: Path, limit: float) -> bool:
-    """Run pytest; whether it was ended because it took too long."""
+    """Run pytest. Return whether it was ended because it took too long."""
     environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1", **variables}
     with (
         log.open("wb") as file,

@@ -46,7 +46,7 @@ _ROOM = 1 << 14
 
 @frozen
 class Home:
-    """A process's own folder: its job, what it prints, pytest's cache.
+    """The folder of a process: its job, its output, and pytest's cache.
 
     Attributes:
         folder: the folder.
@@ -58,7 +58,7 @@ class Home:
 
     @classmethod
     def make(cls, parent: Path, job: Job) -> Home:
-        """A new folder in ``parent``, with the job in it; if that is gone, it is made again."""
+        """Make a folder in ``parent`` with the job in it; ``parent`` is made again if it is gone."""
         parent.mkdir(mode=0o700, parents=True, exist_ok=True)
         home = cls(Path(tempfile.mkdtemp(dir=parent)))
         home.processes.mkdir()
@@ -68,17 +68,17 @@ class Home:
 
     @property
     def job_file(self) -> str:
-        """Where the job is."""
+        """The path of the job's file."""
         return job_file(self.folder)
 
     @property
     def log_file(self) -> Path:
-        """Where the process's output goes."""
+        """The path of the file with the process's output."""
         return self.folder / "log.txt"
 
     @property
     def processes(self) -> Path:
-        """The folder that processes below it know it by."""
+        """The folder by which processes below it find it."""
         return self.folder / FOLDER
 
     def events(self, name: str) -> str:
@@ -91,12 +91,12 @@ class Home:
         return any(self.processes.glob(f"{SESSION}.*{SUFFIX}"))
 
     def stop_forks(self) -> None:
-        """Make it end its forks and start no more."""
+        """Make the process end its forks and start no more."""
         with contextlib.suppress(OSError):  # somebody has deleted the folder
             (self.folder / STOP).touch()
 
     def log_text(self) -> str:
-        """The last of what the process printed."""
+        """Return the end of the process's output."""
         try:
             descriptor = open_file(self.log_file, os.O_RDONLY)
         except OSError:
@@ -107,16 +107,16 @@ class Home:
 
     @property
     def is_whole(self) -> bool:
-        """Return whether the folder still exists, which only the controller may remove."""
+        """Whether the folder still exists, which only the controller may remove."""
         return Path(self.job_file).is_file() if os.access(self.folder, os.X_OK) else False
 
     def remove(self) -> None:
-        """Remove it with all that is in it."""
+        """Remove the folder with its content."""
         remove_folder(self.folder)
 
 
 def refuse_full_disk(folder: Path) -> None:
-    """Raises OSError if a process that worked in ``folder`` may have died because there is no room left."""
+    """Raise OSError if a process that worked in ``folder`` may have died because the disk is full."""
     try:
         is_full = disk_usage(folder).free < _ROOM
     except FileNotFoundError:  # somebody has deleted it
@@ -126,7 +126,7 @@ def refuse_full_disk(folder: Path) -> None:
 
 
 class Spawned:
-    """A fresh process, with a keeper above it that ends all it starts.
+    """A fresh process, with a supervisor above it that ends everything it starts.
 
     Attributes:
         pid: the keeper's number.
@@ -167,18 +167,18 @@ class Spawned:
 
     @property
     def left(self) -> list[str] | None:
-        """What it had left running when it ended, and was ended; None if the keeper did not see to that."""
+        """What it had left running when it ended; None if the supervisor could not end that."""
         try:
             return read_file(self._left, _LEFT_BYTES).decode("utf-8", "replace").splitlines()
         except OSError:
             return None
 
     def kill(self) -> None:
-        """End it and all it has started, without waiting for that."""
+        """End it and everything it has started, without waiting for that."""
         self._process.terminate()
 
     def end(self) -> int:
-        """End it with all that it left behind, if it still runs; return its exit code."""
+        """End it with all that it left behind, if it still runs. Return its exit code."""
         self.kill()
         try:
             return self._process.wait(_PATIENCE)
@@ -187,7 +187,7 @@ class Spawned:
             return self._process.wait()
 
     def release(self) -> None:
-        """Let go of what is held of it."""
+        """Release all resources that are held for it."""
         os.close(self.pidfd)
 
 
@@ -218,22 +218,22 @@ class EventStream:
         os.set_blocking(self.bell, False)
 
     def read(self, *, is_last: bool = False) -> list[Event]:
-        """Return the events written so far; ``is_last``: all processes have ended."""
+        """Return the events written so far; ``is_last`` means that all processes have ended."""
         return self._with_forks(SESSION, self.own(is_last=is_last))
 
     def own(self, *, is_last: bool = False) -> list[Event]:
-        """The events of the process itself, with the ends of its forks."""
+        """Return the events of the process itself, with the ends of its forks."""
         with contextlib.suppress(BlockingIOError):
             os.read(self.bell, 1 << 21)  # more than what a pipe holds
         return self._reader.read(is_last=is_last)
 
     def close(self) -> None:
-        """Hear nothing any more."""
+        """Close the files of events."""
         os.close(self.bell)
         os.close(self.writing)
 
     def _with_forks(self, name: str, events: Iterable[Event]) -> list[Event]:
-        """The events of a process, with those of its forks at their ends."""
+        """Return the events of a process, with those of its forks inserted at their ends."""
         found: list[Event] = []
         for event in events:
             if isinstance(event, ForkEnded):
@@ -243,7 +243,7 @@ class EventStream:
         return found
 
     def _of_fork(self, name: str, ended: ForkEnded) -> list[Event]:
-        """Return the events of a fork that has ended; none if they cannot be relied on."""
+        """Return the events of a fork that has ended; none if they are unreliable."""
         folder = Path(self._home.folder, FORKS, name)
         file = folder / FOLDER / (name + SUFFIX)
         if not file.exists():  # it had no folder of its own yet
@@ -267,7 +267,7 @@ LOOKS = 0.2
 
 
 class Copy:
-    """A copy of a fork server, at work on a job. Like ``Spawned``, but it is the server that sees it end."""
+    """A copy of a fork server, running a job. Like ``Spawned``, but the server waits for it."""
 
     pidfd = None
     #: nobody but the server's keeper looks after what it leaves
@@ -283,19 +283,19 @@ class Copy:
         return self._server.exit_code_of(self.pid)
 
     def kill(self) -> None:
-        """End it and all it has started."""
+        """End it and everything it has started."""
         if self.exit_code is None:
             kill_group(self.pid)
             with contextlib.suppress(ProcessLookupError):  # it may not lead its group yet
                 os.kill(self.pid, signal.SIGKILL)
 
     def end(self) -> int:
-        """End it if it has not ended yet; returns its exit code."""
+        """End it if it has not ended yet. Return its exit code."""
         self.kill()
         return self._server.wait_for(self.pid)
 
     def release(self) -> None:
-        """Do nothing: no resource is held."""
+        """Do nothing, as no resource is held."""
 
 
 class ForkServerProcess:
@@ -326,7 +326,7 @@ class ForkServerProcess:
             self.process = Spawned(root, arguments, self._home, self.events.writing, (theirs.fileno(),))
 
     def serves(self, job: Job) -> bool:
-        """Whether a copy can do this job: all that counts before the first test is the same."""
+        """Return whether a copy can do this job: all that matters before the first test is the same."""
         return _template(job) == self._template
 
     @property
@@ -335,7 +335,7 @@ class ForkServerProcess:
         return None not in self._codes.values()
 
     def wait_until_ready(self, seconds: float, look: Callable[[], None] | None = None) -> str | None:
-        """Wait until the tests are collected. Returns why it cannot serve, or None if it can.
+        """Wait until the tests are collected. Return why it cannot serve, or None if it can.
 
         ``look``: called several times a second meanwhile; what it raises ends the wait.
         """
@@ -353,7 +353,7 @@ class ForkServerProcess:
         return self.serving.reason
 
     def copy(self, home: Home, writing: int) -> Copy | None:
-        """A copy that does the job in ``home`` and rings at ``writing``; None if the server is gone."""
+        """Return a new copy that runs the job in ``home``; None if the server is gone."""
         self._copied = None
         try:
             socket.send_fds(self._jobs, [os.fsencode(home.folder)], [writing])
@@ -363,7 +363,7 @@ class ForkServerProcess:
         return Copy(self._copied, self) if self._copied is not None else None
 
     def listen(self) -> None:
-        """Take in what it reports."""
+        """Read the reports of the server."""
         for event in self.events.own():
             match event:
                 case Serving(copy=int(pid)):
@@ -375,7 +375,7 @@ class ForkServerProcess:
                     self._codes[event.fork] = event.exit_code
 
     def exit_code_of(self, pid: int) -> int | None:
-        """The exit code of a copy; None while it runs. With the server its copies die."""
+        """Return the exit code of a copy; None while it runs. Copies die with the server."""
         code = self._codes[pid]
         if code is None and self.process.exit_code is not None:
             self.listen()
@@ -384,7 +384,7 @@ class ForkServerProcess:
         return code
 
     def wait_for(self, pid: int) -> int:
-        """The exit code of a copy that is about to end."""
+        """Return the exit code of a copy that is about to end."""
         self._listen_until(lambda: self._codes[pid] is not None, _ANSWER)
         if self._codes[pid] is None:  # it cannot be relied on any more
             self.process.kill()
@@ -392,7 +392,7 @@ class ForkServerProcess:
         return -signal.SIGKILL if code is None else code
 
     def close(self) -> list[str]:
-        """End it and all copies; returns what these had left running."""
+        """End it and all copies. Return what these had left running."""
         self._jobs.close()
         self._listen_until(lambda: False, _ANSWER if self.serving is not None else 0.0)
         self.process.end()
@@ -403,7 +403,7 @@ class ForkServerProcess:
         return left
 
     def _listen_until(self, done: Callable[[], bool], seconds: float, period: float = float("inf")) -> None:
-        """Listen until something is so, asked once a ``period``, the server has ended, or time is up."""
+        """Read reports until ``done``, asked once a ``period``, the server's end, or the time limit."""
         until = time.monotonic() + seconds
         poll = select.poll()
         poll.register(self.events.bell, select.POLLIN)
@@ -421,7 +421,7 @@ class ForkServerProcess:
 
 
 def _template(job: Job) -> Job:
-    """Return what jobs must have in common to start as copies of one fork server."""
+    """Return what jobs must have in common to run as copies of one fork server."""
     return replace(
         job,
         round=0,
@@ -439,7 +439,7 @@ def _template(job: Job) -> Job:
 
 
 def command(arguments: Iterable[str], home: Path) -> list[str]:
-    """The command line of a worker."""
+    """Return the command line of a worker."""
     # the native traceback is the one that pytest need not parse any source for: that took a killed mutant
     # longer than all else together
     own = ["--maxfail=0", "--tb=native", "-o", f"cache_dir={home / 'cache'}"]
@@ -447,7 +447,7 @@ def command(arguments: Iterable[str], home: Path) -> list[str]:
 
 
 def environment(job_file: str, pipe: int) -> dict[str, str]:
-    """The environment of a worker."""
+    """Return the environment of a worker."""
     return {**usual_environment(), JOB_VARIABLE: job_file, PIPE_VARIABLE: str(pipe)}
 
 
@@ -470,7 +470,7 @@ def compile_us() -> None:
 
 
 def usual_environment() -> dict[str, str]:
-    """What the environments of all workers have in common.
+    """Return the environment variables that all workers have in common.
 
     Nothing is written beside the user's sources, and hashing and numeric libraries behave the same in
     every worker. Settings of the user's own take precedence.
@@ -491,12 +491,12 @@ _EACH = 16
 
 
 def needed(jobs: int) -> int:
-    """How many files a campaign may have open at a time."""
+    """Return how many files a campaign may have open at once."""
     return _ALWAYS + _EACH * jobs
 
 
 def provide(jobs: int) -> None:
-    """Raise this process's limit of open files, and with it that of all it starts, if it is too low.
+    """Raise the limit of open files of this process and its children, if it is too low.
 
     Raises UsageError if the system does not allow that.
     """

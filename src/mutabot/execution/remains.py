@@ -34,7 +34,7 @@ OWNER = "controller"
 
 
 def end_left_over(folder: Path) -> list[str]:
-    """End every process that was started below the worker of this folder; returns which there were."""
+    """End every process that was started below the worker of this folder. Return their names."""
     entry = _mark(folder)
     ended: list[str] = []
     for _ in range(_LOOKS):
@@ -52,12 +52,12 @@ def end_left_over(folder: Path) -> list[str]:
 
 
 def claim(folder: Path) -> None:
-    """Say that the folder of workers belongs to this process, as long as that lives."""
+    """Mark the folder of workers as belonging to this process for as long as it lives."""
     (folder / OWNER).write_text(f"{os.getpid()} {_began(os.getpid())}", encoding="ascii")
 
 
 def end_abandoned(home: Path) -> int:
-    """End what is left below workers whose controller was killed; returns how many processes there were.
+    """End processes below workers whose controller was killed. Return how many there were.
 
     Args:
         home: the folder in which the folders of workers are made.
@@ -76,19 +76,19 @@ def end_abandoned(home: Path) -> int:
 
 
 def end_below(folder: Path) -> int:
-    """End all processes below workers whose folders are in this one; return their number."""
+    """End all processes below workers whose folders are in this one. Return their number."""
     start = _mark(folder) + b"/"
     marked = [(pid, entry) for pid in _processes() for entry in _environment(pid) if entry.startswith(start)]
     return sum(_end(pid, entry) for pid, entry in marked)
 
 
 def _mark(folder: Path) -> bytes:
-    """What the environment of a process says that was started below the worker of this folder."""
+    """Return the environment entry of processes that were started below the worker of this folder."""
     return os.fsencode(f"{VARIABLE}={folder}")
 
 
 def _began(pid: int) -> str:
-    """When a process began, in the kernel's words; empty if it is gone."""
+    """Return when a process began, as the kernel writes it; empty if it is gone."""
     with suppress(OSError):
         return (_PROC / str(pid) / "stat").read_text("ascii", "replace").rpartition(")")[2].split()[19]
     return ""
@@ -99,7 +99,7 @@ def _processes() -> list[int]:
 
 
 def _environment(pid: int) -> list[bytes]:
-    """What a process began with; empty if it is gone or somebody else's."""
+    """Return a process's first environment; empty if the process is gone or another user's."""
     with suppress(OSError), open(f"/proc/{pid}/environ", "rb") as file:  # noqa: PTH123  # likewise
         return file.read().split(b"\0")
     return []
@@ -114,7 +114,7 @@ def _is_starting(pid: int) -> bool:
 
 
 def _end(pid: int, entry: bytes) -> bool:
-    """End a process and wait until it is gone; not another that has got its number meanwhile."""
+    """End a process and wait until it is gone, unless another one has taken its number."""
     try:
         process = os.pidfd_open(pid)
     except OSError:
@@ -133,7 +133,7 @@ def _end(pid: int, entry: bytes) -> bool:
 
 
 def remove_folder(folder: Path) -> None:
-    """Remove a folder and its content, where its owner has the rights."""
+    """Remove a folder and its content, as far as its owner may."""
     for _ in range(2):  # the second time all folders are open
         with suppress(RecursionError, OSError):
             shutil.rmtree(folder, ignore_errors=True)
@@ -145,7 +145,7 @@ def remove_folder(folder: Path) -> None:
 
 
 def _open_up(folder: Path) -> None:
-    """Let the owner of folders change what is in them. Nothing is changed through a link."""
+    """Give the owner of folders the rights to change their content. Links are not followed."""
     with suppress(OSError):
         folder.chmod(0o700)
     for path, names, _ in os.walk(folder):

@@ -1,4 +1,4 @@
-"""Executors that run tasks on other machines, and what stays on this one.
+"""Executors that run tasks on other machines, and the tasks that stay on this one.
 
 On this machine stay runs of the original: limits, which files were opened, and how equal runs differ are
 measured on one machine. So do films, tasks that nothing may run beside, and the second run of a control.
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class RemoteExecutor(ABC):
-    """An ``Executor`` that runs tasks on other machines. The base of those that packages bring.
+    """The base class of executors that run tasks on other machines.
 
     Args:
         here: runs what stays on this machine.
@@ -39,11 +39,11 @@ class RemoteExecutor(ABC):
     @property
     @abstractmethod
     def remarks(self) -> Sequence[str]:
-        """What is to be known of where tasks ran, for whoever reads the journal."""
+        """Remarks for the journal's readers on where tasks ran."""
 
     @abstractmethod
     def answers(self, tasks: Iterator[Task]) -> Iterator[Answer | Task]:
-        """Run tasks, which are taken as places free up; yield their answers in the order in which they end.
+        """Run tasks, taken when a place is free; yield their answers in the order in which they end.
 
         Each task that is taken is answered, or yielded itself to be run on this machine. Those that are not
         taken are run here, too.
@@ -54,7 +54,7 @@ class RemoteExecutor(ABC):
         return (event for event in self.events(tasks) if isinstance(event, Result))
 
     def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Event]]:
-        """See ``Executor``. The events of a task come when it has ended; what stays here runs last."""
+        """Yield results and events; those of a task come when it has ended, and local tasks run last."""
         waiting = iter(tasks)
         first = next(waiting, None)
         if first is None:
@@ -74,16 +74,16 @@ class RemoteExecutor(ABC):
         yield from self._here.events(chain(staying, waiting))
 
     def rest(self, is_awaited: Callable[[], bool], seconds: float) -> Iterator[Result | tuple[Task, Event]]:
-        """See ``Executor``: nothing is heard of tasks on other machines before they have ended."""
+        """Yield nothing, since tasks on other machines report only when they have ended."""
         return self._here.rest(is_awaited, seconds)
 
     def apart(self) -> AbstractContextManager[Executor]:
-        """See ``Executor``: on this machine."""
+        """Return an executor on this machine for one task at a time."""
         return self._here.apart()
 
 
 def _leaving(tasks: Iterable[Task], staying: list[Task]) -> Iterator[Task]:
-    """The tasks that may run on other machines; the others are put aside."""
+    """Yield the tasks that may run on other machines; put the others aside."""
     for task in tasks:
         if _stays(task):
             staying.append(task)
@@ -92,6 +92,6 @@ def _leaving(tasks: Iterable[Task], staying: list[Task]) -> Iterator[Task]:
 
 
 def _stays(task: Task) -> bool:
-    """Whether a task runs on this machine: the original, and whatever uses this machine's own files."""
+    """Return whether a task must run on this machine: the original, and tasks that use its own files."""
     job = task.job
     return (job.mutant is None and job.forking is None) or job.pictures is not None or task.alone

@@ -1,4 +1,4 @@
-"""Tasks and results: a job with what is needed to run it, and what became of the process; and what runs them.
+"""Tasks, results, and the interface of executors that run them.
 
 An executor only runs what it is given, in worker processes on this machine or on others: which tasks there
 are, and what their results mean, is the engines' business. A package brings another executor by a
@@ -36,7 +36,7 @@ _LINES = 20
 
 
 def said_in(log: str) -> str:
-    """The last lines of what a process printed, in their own layout, as an appendix to a message."""
+    """Return the last lines of a process's output, in their own layout, to append to a message."""
     lines = [line.rstrip() for line in _ESCAPES.sub("", log).splitlines() if line.strip()]
     lines = [_without_frame(line) for line in lines if not _OF_NO_USE.match(line)] or lines
     if not lines:
@@ -45,12 +45,12 @@ def said_in(log: str) -> str:
 
 
 def _without_frame(line: str) -> str:
-    """A line without the exclamation marks that pytest fills it up with."""
+    """Return a line without the exclamation marks with which pytest fills it."""
     return line.strip("! ") if line.startswith("!!!") else line
 
 
 def last_line(log: str) -> str:
-    """The last line with text in it."""
+    """Return the last line with text in it."""
     lines = [line.strip() for line in log.splitlines() if line.strip()]
     return lines[-1][:300] if lines else ""
 
@@ -84,20 +84,20 @@ class Task:
     alone: bool = False
 
     def to_bytes(self) -> bytes:
-        """Return it as JSON, without its key, which means something on this machine only."""
+        """Return the task as JSON, without its key, which has a meaning on this machine only."""
         return json.dumps(to_data(replace(self, key=None)), separators=(",", ":")).encode()
 
     @classmethod
     def of_bytes(cls, data: bytes) -> Task:
-        """Return the task in what ``to_bytes`` made; its key is None."""
+        """Return the task in the JSON of ``to_bytes``; its key is None."""
         return from_data(cls, json.loads(data))
 
     def in_folder(self, root: str) -> Task:
-        """Return the same with the project in another folder, given by its absolute path."""
+        """Return the task with the project in another folder, given by its absolute path."""
         return replace(self, job=replace(self.job, root=root))
 
     def only(self, mutants: Collection[str]) -> Task:
-        """Return the same fork parent with some of its mutants, given by their ids."""
+        """Return the task of the same fork parent with some of its mutants, given by their ids."""
         forking = self.job.forking
         assert forking is not None
         own = replace(
@@ -109,7 +109,7 @@ class Task:
         return replace(self, job=replace(self.job, forking=own, active=active))
 
     def without_mutant(self, test: str) -> Task:
-        """Return the same with the original program, up to a test, given by its node id."""
+        """Return the task with the original program, up to a test, given by its node id."""
         tests = self.job.tests or ()
         job = replace(
             self.job, tests=tests[: tests.index(test) + 1] if test in tests else tests, mutant=None,
@@ -120,7 +120,7 @@ class Task:
 
 @dataclass(slots=True)
 class Result:
-    """What became of a worker.
+    """The result of a worker.
 
     Attributes:
         task: its task.
@@ -175,7 +175,7 @@ class Result:
     untrusted: str | None = None
 
     def take(self, line: events.Event) -> None:  # noqa: PLR0912  # one case per kind of line is the clearest there is
-        """Take one event into account."""
+        """Update the result by one event."""
         match line:
             case events.SiteSeen():
                 self.sites.append(line)
@@ -216,7 +216,7 @@ class Result:
                 self.untrusted = f"{line.reason}{during}"
 
     def death(self, *, said: bool = True) -> str:
-        """Return how the process ended without an orderly end, and the last line it printed if ``said``."""
+        """Return how a process ended abnormally, and if ``said`` the last line it printed."""
         if self.lost is not None:
             return self.lost
         during = f" during {self.running}" if self.running else ""
@@ -226,7 +226,7 @@ class Result:
         return f"{how_ended(self.exit_code)}{during}{f'; it said last: {line}' if line else ''}"
 
     def find_overdue(self, now: float) -> bool:
-        """Whether a limit of the suite's own ended it by ``now`` (``time.monotonic``); it is noted."""
+        """Note and return whether the suite's own limit ended the process by ``now`` (``time.monotonic``)."""
         if self.end is None and self.overdue is None and self.running is not None and self.exit_code == 1:
             self.overdue = next((one.text for one in self.watched if now >= one.until), None)
             return self.overdue is not None
@@ -234,14 +234,14 @@ class Result:
 
 
 def how_ended(code: int) -> str:
-    """How a process ended that did not say that it did, by its exit code."""
+    """Return how a process ended without a report, by its exit code."""
     if code == UNWRITTEN:
         return "the tests' process could not write what it had to tell; is the disk full?"
     return f"killed by signal {-code}" if code < 0 else f"the process ended with exit code {code}"
 
 
 class Executor(Protocol):
-    """Runs tasks, as many at a time as it may. Leaving its context ends whatever still runs.
+    """Runs a limited number of tasks at a time. Leaving its context ends those that still run.
 
     Attributes:
         spread: how many places share nothing, neither fork parents nor fork servers. Work for them is cut
@@ -256,7 +256,7 @@ class Executor(Protocol):
     def remarks(self) -> Sequence[str]: ...
 
     def run(self, tasks: Iterable[Task]) -> Iterator[Result]:
-        """Results in the order in which tasks end. Tasks are taken from the iterable as places free up."""
+        """Yield results in the order in which tasks end. Tasks are taken when a place is free."""
 
     def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Event]]:
         """Yield results and events as they come.

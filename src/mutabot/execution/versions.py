@@ -1,4 +1,4 @@
-"""What tasks run with on this machine: versions of all that may take part in a simulation."""
+"""Versions of everything on this machine that may influence a simulation."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _PARTS = ("model", "operators", "runtime", "campaign", "execution")
 
 
 def versions() -> dict[str, str]:
-    """Python, the type of machine, mutabot, and all that is installed beside it, by name."""
+    """Return the versions of Python, the machine, mutabot, and all installed packages, by name."""
     found = {
         "python": f"{platform.python_implementation()} {platform.python_version()}",
         "machine": f"{sys.platform} {platform.machine()}",

@@ -58,11 +58,11 @@ class TokenPool:
 
     @property
     def path(self) -> str:
-        """Where a fork parent opens it for a moment: its tests may count descriptors, or write to them."""
+        """The path by which a fork parent opens the pool for a moment: its tests may count open files."""
         return f"/proc/{os.getpid()}/fd/{self.reading}"
 
     def take(self, *, beside: int = 0) -> bool:
-        """Take a token, if more than ``beside`` are free."""
+        """Take a token if more than ``beside`` are free. Return whether it was taken."""
         try:
             taken = len(os.read(self.reading, 1 + beside))
         except BlockingIOError:
@@ -72,13 +72,13 @@ class TokenPool:
         return is_enough
 
     def give_back(self, count: int) -> None:
-        """Put tokens back; never more than there are."""
+        """Put tokens back, up to the size of the pool."""
         if count > 0:
             with suppress(BlockingIOError):
                 os.write(self._writing, _BYTE * min(count, self._size))
 
     def refill(self) -> None:
-        """Free all tokens; only when none is held."""
+        """Free all tokens; call it only when none is held."""
         with suppress(BlockingIOError):
             os.read(self.reading, _MOST_TOKENS)
         self.give_back(self._size)
@@ -94,7 +94,7 @@ _HOME_LOST = Untrusted("the folder in which the tests' process worked was delete
 
 
 def _work_folder(home: Path) -> Path:
-    """Make a folder for the workers of this process; those of killed controllers end. Raises JournalError."""
+    """Make a folder for this process's workers; end those of killed controllers. Raises JournalError."""
     try:
         home.mkdir(exist_ok=True)
         ignore = home / ".gitignore"
@@ -172,7 +172,7 @@ class Workers:
 
     @staticmethod
     def versions() -> dict[str, str]:
-        """Return what tasks run with here, by name.
+        """Return the versions that tasks run with here, by name.
 
         Python, the type of machine, mutabot and its code, and all packages that are installed beside it.
         Machines on which these are equal give the same outcomes.
@@ -180,13 +180,13 @@ class Workers:
         return versions()
 
     def run(self, tasks: Iterable[Task]) -> Iterator[Result]:
-        """Results in the order in which they end. Tasks are taken from the iterable as places free up."""
+        """Yield results in the order in which tasks end. Tasks are taken when a place is free."""
         for event in self.events(tasks):
             if isinstance(event, Result):
                 yield event
 
     def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Event]]:
-        """Events as they come, with their task, and results in the order in which they end."""
+        """Yield events with their tasks as they come, and results in the order in which tasks end."""
         waiting = iter(tasks)
         next_task = next(waiting, None)
         while True:
@@ -220,7 +220,7 @@ class Workers:
         return Workers(self._root, self._arguments, jobs=1)
 
     def _note(self, left: list[str] | None) -> None:
-        """Report once what a process left running."""
+        """Report, once, what a process left running."""
         if left and not self._has_told_left:
             self._has_told_left = True
             more = f" and {len(left) - 1} more" if len(left) > 1 else ""
@@ -239,7 +239,7 @@ class Workers:
 
     @property
     def _spared(self) -> int:
-        """Return the number of tokens reserved for fork parents that have ended no test yet, one for each.
+        """The number of tokens reserved for fork parents that have ended no test yet, one for each.
 
         Outcomes wait until the parent ends the test in which they were forked: what runs beside it puts off
         the first of them.
@@ -268,7 +268,7 @@ class Workers:
         return Spawned(self._root, self._arguments, home, writing)
 
     def _server_for(self, task: Task) -> ForkServerProcess | None:
-        """The fork server for such a task; None if there can be none."""
+        """Return the fork server for a task; None if there can be none."""
         found = next((server for server in self._servers if server.serves(task.job)), None)
         if found is not None or not self._may_share:
             return found
@@ -295,7 +295,7 @@ class Workers:
     def _wait(
         self, next_task: Task | None, most: float | None = None
     ) -> Iterator[Result | tuple[Task, Event]]:
-        """Wait for an event, ``most`` seconds at most; ``next_task`` has no place yet."""
+        """Wait at most ``most`` seconds for events; ``next_task`` has no place yet."""
         timeout = min((one for one in (self._patience(), most) if one is not None), default=None)
         is_for_token = next_task is not None and next_task.is_fork_parent and len(self._workers) < self._jobs
         is_for_token = is_for_token and not self._spared  # whom tokens are spared for tells when it ends
@@ -324,7 +324,7 @@ class Workers:
                 yield from self._finish(worker)
 
     def _patience(self) -> float | None:
-        """Seconds until the next check that is due without an event; None if there is none."""
+        """Return the seconds until the next check that no event triggers; None if there is none."""
         if any(worker.has_ended for worker in self._workers):
             return 0.0  # a fork server may have told so while it was asked for something else
         until = min((worker.deadline.until for worker in self._workers), default=None)
@@ -362,11 +362,11 @@ class _Worker:
 
     @property
     def has_forks(self) -> bool:
-        """Whether it has forks whose end it has not reported."""
+        """Whether the process has forks whose end it has not reported."""
         return self._home.has_forks
 
     def stop_forks(self) -> None:
-        """Make it end its forks and start no more."""
+        """Make the process end its forks and start no more."""
         self._home.stop_forks()
 
     def watch(self, selector: selectors.BaseSelector) -> None:
@@ -391,7 +391,7 @@ class _Worker:
         return events
 
     def is_out_of_time(self) -> bool:
-        """Whether it has used its time."""
+        """Return whether it has used up its time."""
         return self.deadline.is_over(self.process.pid)
 
     def expire(self) -> None:
@@ -402,7 +402,7 @@ class _Worker:
         self.process.end()
 
     def finish(self, selector: selectors.BaseSelector) -> tuple[list[Event], Result]:
-        """Collect the rest of a process that has ended: its last lines, and what became of it."""
+        """Collect the last events of a process that has ended, and its result."""
         self.result.exit_code = self._end()
         lines = self._taken([] if self._home.is_whole else [_HOME_LOST])
         lines += self._taken(self.events.read(is_last=True))
@@ -419,7 +419,7 @@ class _Worker:
         return lines, self.result
 
     def close(self, selector: selectors.BaseSelector) -> None:
-        """Let go of all."""
+        """Release all resources."""
         selector.unregister(self.events.bell)
         if self.process.pidfd is not None:
             selector.unregister(self.process.pidfd)
@@ -429,7 +429,7 @@ class _Worker:
         self._home.remove()
 
     def _end(self) -> int:
-        """End it and all that was started below it; returns its exit code."""
+        """End the process and everything started below it. Return its exit code."""
         code = self.process.end()
         if self.left is None:
             left = self.process.left

@@ -1,1 +1,1 @@
-"""The journal of a campaign: one SQLite file. Reading it needs nothing of the controller."""
+"""The journal of a campaign: one SQLite file, which can be read without the controller."""

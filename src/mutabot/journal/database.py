@@ -1,4 +1,4 @@
-"""The SQLite file of a journal: its tables, how it is opened, and how it differs from what was written.
+"""The SQLite file of a journal: its tables, how it is opened, and changes by others.
 
 Most tables hold one object a row, as the JSON of its ``data``; the columns beside it are for SQL to ask by.
 
@@ -67,7 +67,7 @@ _THINGS = "SELECT type, name, sql FROM main.sqlite_master LIMIT ?"
 
 @cache
 def _made() -> frozenset[tuple[str, str, str | None]]:
-    """The tables and indexes that this version makes."""
+    """Return the tables and indexes of this version."""
     with closing(sqlite3.connect(":memory:")) as connection:
         connection.executescript(TABLES)
         return frozenset(connection.execute(_THINGS, (_MOST,)))
@@ -75,7 +75,7 @@ def _made() -> frozenset[tuple[str, str, str | None]]:
 
 @cache
 def columns() -> dict[str, tuple[str, ...]]:
-    """The tables and their columns."""
+    """Return the tables and their columns."""
     with closing(sqlite3.connect(":memory:")) as connection:
         connection.executescript(TABLES)
         tables = [name for kind, name, _ in _made() if kind == "table"]
@@ -87,7 +87,7 @@ def columns() -> dict[str, tuple[str, ...]]:
 
 
 def decode(text: bytes) -> str:
-    """Text of a database, also such as is no UTF-8: that is for whoever knows what it should be."""
+    """Decode a text of the database, keeping bytes that are no UTF-8 for callers that expect them."""
     return text.decode("utf-8", "surrogateescape")
 
 
@@ -105,7 +105,7 @@ def _open(name: str, pragmas: tuple[str, ...], *, uri: bool = False) -> sqlite3.
 
 
 def connect(path: Path) -> sqlite3.Connection:
-    """Open the connection that writes; the file is created if it does not exist."""
+    """Open a connection for writing; the file is created if it does not exist."""
     # NORMAL survives the death of the process; only a power cut can take the last outcomes, and those are
     # simply run again. The last question opens the log, whatever is in its place later.
     pragmas = (_ALONE, "journal_mode = WAL", "synchronous = NORMAL", "schema_version")
@@ -126,7 +126,7 @@ def loaded(source: sqlite3.Connection) -> sqlite3.Connection:
 
 
 def connect_to_read(path: Path) -> sqlite3.Connection:
-    """A connection to what is there now, which makes, changes and locks nothing. Raises OSError."""
+    """Open a connection to the current content that creates, changes and locks nothing. Raises OSError."""
     log = path.with_name(f"{path.name}-wal")
     if not log.exists():  # nobody writes
         return _open(f"{path.absolute().as_uri()}?immutable=1", ("schema_version",), uri=True)
@@ -144,13 +144,13 @@ def connect_to_read(path: Path) -> sqlite3.Connection:
 
 
 def _generation(path: Path, log: Path) -> tuple[tuple[int, int], bytes]:
-    """The log's generation: while it is unchanged, copies of the log match the file."""
+    """Return the log's generation: while it is unchanged, copies of the log match the file."""
     found = path.lstat()
     return (found.st_dev, found.st_ino), read_file(log, _HEAD) if log.exists() else b""
 
 
 def stamps(path: Path) -> list[tuple[int, int, int, int] | None]:
-    """What changes when somebody writes to a database or its log, or puts something else in their place."""
+    """Return values that change when a database or its log is written or replaced."""
     found: list[tuple[int, int, int, int] | None] = []
     for part in (path, path.with_name(f"{path.name}-wal")):
         try:
@@ -182,7 +182,7 @@ def write_anew(copy: sqlite3.Connection, path: Path) -> None:
 
 
 def _rows(connection: sqlite3.Connection, table: str) -> dict[int, tuple[Any, ...]]:
-    """The rows of a table by their numbers."""
+    """Return the rows of a table by their numbers."""
     found = connection.execute(f"SELECT rowid, * FROM main.{table}")
     return {row: tuple(values) for row, *values in found}
 
@@ -203,7 +203,7 @@ def differences(file: sqlite3.Connection, known: sqlite3.Connection) -> list[str
 
 
 def named_row(table: str, values: tuple[Any, ...]) -> str:
-    """What people know a row by; of the values, the first may do."""
+    """Return the name by which people know a row; the first of the values if it has none."""
     known = dict(zip(columns()[table], values, strict=False))
     name = next((known[one] for one in ("mutant", "id", "key", "file", "test") if one in known), values[0])
     text = name if isinstance(name, str) else repr(name)
@@ -217,7 +217,7 @@ def named_row(table: str, values: tuple[Any, ...]) -> str:
 
 
 def check_schema(path: Path, connection: sqlite3.Connection) -> None:
-    """Raise JournalError if this is no journal of this version."""
+    """Raise JournalError if the database is no journal of this version."""
     found = set(connection.execute(_THINGS, (_MOST,)))
     if not found:  # of a campaign that was killed before it had begun
         raise no_journal(path)
@@ -240,7 +240,7 @@ def check_schema(path: Path, connection: sqlite3.Connection) -> None:
 
 
 def no_journal(path: Path) -> JournalError:
-    """There is nothing there."""
+    """Return the error for a missing journal."""
     return JournalError(f"{path}: there is no journal yet; `mutabot run` writes it")
 
 
@@ -283,7 +283,7 @@ def set_aside(path: Path) -> Path | None:
 
 @contextmanager
 def guarded(path: Path) -> Iterator[None]:
-    """Turn what goes wrong with the file at ``path`` into a JournalError."""
+    """Turn errors with the file at ``path`` into a JournalError."""
     try:
         yield
     except sqlite3.DatabaseError as error:
@@ -302,5 +302,5 @@ def guarded(path: Path) -> Iterator[None]:
 
 
 def stored(values: tuple[Any, ...]) -> tuple[Any, ...]:
-    """Values of a row, with texts that can be stored."""
+    """Return the values of a row, with texts that can be stored."""
     return tuple(printable(value) if isinstance(value, str) else value for value in values)

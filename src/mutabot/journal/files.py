@@ -28,7 +28,7 @@ REPORT_MARK = "mutabot-report.txt"
 
 
 def find_journal(project: Path) -> Path:
-    """The journal of the project, also from a folder inside it.
+    """Return the journal of the project, also for a folder inside it.
 
     If there is none, where it would be.
     """
@@ -38,12 +38,12 @@ def find_journal(project: Path) -> Path:
 
 
 def previous_of(journal: Path) -> Path:
-    """Where the last complete campaign before a journal's is kept: ``journal.previous.sqlite``."""
+    """Return the path of the previous complete campaign's journal: ``journal.previous.sqlite``."""
     return journal.with_name(f"{journal.stem}.previous{journal.suffix}")
 
 
 def recordings_path(journal: Path) -> Path:
-    """Where the recordings of a journal's campaigns lie."""
+    """Return the path of the recordings of a journal's campaigns."""
     return journal.with_name(f"{journal.stem}-evidence.sqlite")
 
 
@@ -52,7 +52,7 @@ BESIDE = ("", "-wal", "-shm", "-journal")
 
 
 def clear(path: Path) -> None:
-    """Remove a file, folder or link; not what a link leads to."""
+    """Remove a file, folder or link; the target of a link stays."""
     if path.is_dir() and not path.is_symlink():
         shutil.rmtree(path)
     else:
@@ -86,7 +86,7 @@ class WriterLock:
         raise JournalError(f"{journal} is being written by another `mutabot run`")
 
     def renew(self) -> None:
-        """Take it again if its file is gone. Raises JournalError if another process has it by now."""
+        """Take the lock again if its file is gone. Raises JournalError if another process has it now."""
         if self._descriptor is None:
             return
         try:
@@ -100,14 +100,14 @@ class WriterLock:
             self._descriptor, other._descriptor = other._descriptor, None
 
     def release(self) -> None:
-        """Give the lock back; a second time does nothing."""
+        """Release the lock; a second time does nothing."""
         if self._descriptor is not None:
             os.close(self._descriptor)
             self._descriptor = None
 
 
 def is_written(journal: Path) -> bool:
-    """Whether some process writes this journal now."""
+    """Return whether some process writes this journal now."""
     try:
         descriptor = open_file(journal.with_name(journal.name + ".lock"), os.O_RDONLY)
     except OSError:
@@ -123,7 +123,7 @@ def is_written(journal: Path) -> bool:
 
 @contextmanager
 def at_work(home: Path) -> Iterator[None]:
-    """Mark mutabot's folder as in use; the first user removes what killed processes left there.
+    """Mark mutabot's folder as in use; the first user cleans up after killed processes.
 
     Also folders that their controllers had not claimed yet, or had begun to remove.
     """
@@ -160,7 +160,7 @@ def refuse_tracked(journal: Path) -> None:
 
 
 def _tracked_at(path: Path, journal: Path) -> list[str]:
-    """What git tracks of the files that belong to the journal at ``path``, relative to its folder."""
+    """Return the tracked files of those that belong to the journal at ``path``, relative to its folder."""
     folder = path.parent
     names = [HOME] if folder.name == HOME else []
     if names:

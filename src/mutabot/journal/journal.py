@@ -63,7 +63,7 @@ _OF_THE_DISK = ("full",)
 
 
 class Journal(JournalReader):
-    """Write the record of a campaign; use as a context manager.
+    """A writer for the record of a campaign; use as a context manager.
 
     Every method raises JournalError when the file cannot be read or written.
 
@@ -101,7 +101,7 @@ class Journal(JournalReader):
 
     @classmethod
     def prepare(cls, path: Path, *, meta: Mapping[str, Any]) -> Journal:
-        """Take the journal for a campaign that is to ``begin``; until then it is that of the one before.
+        """Open the journal for a campaign that is to ``begin``; until then it keeps the previous one.
 
         If there is none before, it has begun. What is no journal of this version is moved aside.
 
@@ -130,7 +130,7 @@ class Journal(JournalReader):
 
     @classmethod
     def keep_original(cls, path: Path, kept: KeptBaseline) -> None:
-        """Keep runs of the original for later campaigns, and leave the rest of the journal unchanged."""
+        """Keep runs of the original for later campaigns; leave the rest of the journal unchanged."""
         with cls.amend(path) as journal:
             if journal._is_new:
                 journal.set_meta(NONE_YET_KEY, True)
@@ -139,7 +139,7 @@ class Journal(JournalReader):
     @classmethod
     @contextmanager
     def amend(cls, path: Path) -> Iterator[Journal]:
-        """Open a journal to change facts while no campaign runs; what it says of its campaign stays."""
+        """Open a journal to change facts while no campaign runs; its campaign stays as it is."""
         refuse_tracked(path)
         with database.guarded(path), ExitStack() as opened:
             lock = WriterLock.take(path)
@@ -153,13 +153,13 @@ class Journal(JournalReader):
             yield journal
 
     def close(self) -> None:
-        """Close the file, and give the lock back."""
+        """Close the file, and release the lock."""
         super().close()
         self._file.close()
         self._lock.release()
 
     def begin(self, meta: Mapping[str, Any]) -> None:
-        """Begin the campaign. Mutants and outcomes of earlier campaigns are kept aside.
+        """Begin the campaign, and keep mutants and outcomes of earlier ones for reuse.
 
         All or nothing. A complete campaign stays readable as ``previous_of`` the path.
         """
@@ -217,7 +217,7 @@ class Journal(JournalReader):
                 self._put("original", run.task, _dump(facts), run.events)
 
     def forget_original(self) -> None:
-        """Keep no runs of the original."""
+        """Remove the stored runs of the original."""
         self._write("DELETE FROM original")
 
     def set_plan(
@@ -227,7 +227,7 @@ class Journal(JournalReader):
         *,
         sources: Mapping[str, str] | None = None,
     ) -> None:
-        """Write down the plan, whole or not at all; an older plan is replaced.
+        """Record the plan in one transaction; an older plan is replaced.
 
         ``sources`` holds the text of the files that mutants stand in, by their name in the spans, so that
         reports show what was mutated and not what became of it since.
@@ -269,7 +269,7 @@ class Journal(JournalReader):
                 self._write("INSERT OR IGNORE INTO text VALUES (?, ?)", digest, text)
 
     def forget_keys(self) -> None:
-        """Never reuse what this campaign has found itself."""
+        """Never reuse the outcomes of this campaign itself."""
         self._write("UPDATE outcome SET key = '' WHERE NOT reused")
 
     # Earlier campaigns
@@ -287,14 +287,14 @@ class Journal(JournalReader):
                 self._write("UPDATE kept SET key = '' WHERE mutant = ?", mutant)
 
     def set_known(self, known: Iterable[tuple[Mutant, bool]]) -> None:
-        """Write down the mutants of earlier campaigns that the program still has."""
+        """Record the mutants of earlier campaigns that the program still has."""
         with self._transaction():
             self._write("DELETE FROM known")
             for mutant, outdated in known:
                 self._put("known", mutant.id, _dump(mutant), int(outdated))
 
     def tidy(self, mutants: Collection[str]) -> None:
-        """Forget what earlier campaigns found about other mutants, and what nothing refers to."""
+        """Forget what earlier campaigns found about other mutants, and unreferenced contents."""
         with self._transaction():
             self._drop_others("kept", "mutant", mutants)
             keys = self._rows("SELECT key FROM kept UNION SELECT key FROM outcome")
@@ -311,7 +311,7 @@ class Journal(JournalReader):
     # Shards
 
     def take_plan(self, other: JournalReader) -> None:
-        """Take over the plan of another journal, its baseline and the texts, whole or not at all."""
+        """Copy the plan, the baseline and the texts of another journal, in one transaction."""
         with self._transaction():
             for table in _PLAN:
                 self._write(f"DELETE FROM {table}")
@@ -319,7 +319,7 @@ class Journal(JournalReader):
                     self._put(table, *row)
 
     def take_outcomes(self, other: JournalReader) -> None:
-        """Take over what another journal has found and knows of earlier campaigns; what is there stays."""
+        """Copy the outcomes and earlier outcomes of another journal; existing ones stay."""
         known = {(one.test_file, one.control, one.ok) for one in self.controls()}
         with self._transaction():
             for question, statement in _TAKE.items():
@@ -332,7 +332,7 @@ class Journal(JournalReader):
     # Writing
 
     def _put(self, table: str, *values: Any) -> None:
-        """Add a row, replacing one of the same name where names are unique."""
+        """Return a statement that adds a row, or replaces one of the same name where names are unique."""
         self._write(f"INSERT OR REPLACE INTO {table} VALUES ({', '.join('?' * len(values))})", *values)
 
     def _write(self, statement: str, *values: Any) -> None:
@@ -348,7 +348,7 @@ class Journal(JournalReader):
 
     @contextmanager
     def _transaction(self, *, whole: bool = False) -> Iterator[None]:
-        """What is written meanwhile takes effect together or not at all, in both databases.
+        """Apply what is written inside the context together or not at all, in both databases.
 
         Before, the file is compared with what was written if somebody else wrote, and row by row if it is to
         be ``whole``; after, it is written again if it is not so.
@@ -376,7 +376,7 @@ class Journal(JournalReader):
                 self._restore()
 
     def _repeat_in_file(self, done: list[tuple[str, tuple[Any, ...]]]) -> bool:
-        """Write into the file what was written; returns whether it is there."""
+        """Write the same into the file. Return whether that succeeded."""
         with self._noted():
             for statement, values in done:
                 self._file.execute(statement, values)
@@ -396,7 +396,7 @@ class Journal(JournalReader):
             self.altered.append(f"the file cannot be written any more ({error})")
 
     def _is_ours(self, whole: bool) -> bool:
-        """Whether the file holds what was written; says what does not. ``whole``: every row is looked at."""
+        """Return whether the file holds what was written, and note deviations. ``whole``: check every row."""
         self._lock.renew()
         now = database.stamps(self.path)
         is_there, has_log = (
@@ -427,7 +427,7 @@ class Journal(JournalReader):
 
 
 def _dump(value: Any) -> str:
-    """A value as JSON that can be stored."""
+    """Return a value as JSON that can be stored."""
     try:
         text = json.dumps(to_data(value), ensure_ascii=False, default=str)
         text.encode()

@@ -1,4 +1,4 @@
-"""A journal as all read it: what the campaign was, its plan, its outcomes, and what earlier ones found."""
+"""A reader of the journal: the campaign, its plan, its outcomes, and earlier ones."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ NONE_YET_KEY = "journal:none yet"
 
 
 class JournalReader:
-    """Read the record of a campaign; use as a context manager.
+    """A reader of the record of a campaign; use as a context manager.
 
     Every method raises JournalError when the file cannot be read.
 
@@ -74,13 +74,13 @@ class JournalReader:
         self.close()
 
     def close(self) -> None:
-        """Close the file; the lock of a writer is given back."""
+        """Close the file, and release a writer's lock."""
         self._copy.close()
 
     # What the campaign was and how it ended
 
     def meta(self) -> dict[str, Any]:
-        """What the campaign said about itself."""
+        """Return the campaign's description of itself."""
         found = {}
         for key, text in self._rows("SELECT key, value FROM meta"):
             if isinstance(key, str) and not key.startswith("journal:"):
@@ -113,27 +113,27 @@ class JournalReader:
     # The baseline and the plan
 
     def tests(self) -> list[BaselineTest]:
-        """The tests of the baseline in the order they were added."""
+        """Return the tests of the baseline in the order they were added."""
         return self._all("test", BaselineTest)
 
     def controls(self) -> list[ControlEnd]:
-        """The controls in the order they were added."""
+        """Return the controls in the order they were added."""
         return self._all("control", ControlEnd)
 
     def mutants(self) -> list[Mutant]:
-        """The planned mutants by number."""
+        """Return the planned mutants by number."""
         return sorted(self._all("mutant", Mutant), key=lambda one: one.number)
 
     def left_out(self) -> list[LeftOut]:
-        """What the plan leaves out, in its order."""
+        """Return the mutants that the plan leaves out, in its order."""
         return self._all("left_out", LeftOut)
 
     def source(self, file: str) -> str | None:
-        """The text of a mutated file at the time of the campaign, or None if it was not written down."""
+        """Return the text of a mutated file at the time of the campaign; None if it was not recorded."""
         return self._one("source", file, records.text_in)
 
     def original(self) -> KeptBaseline | None:
-        """The runs of the original that are kept; None if there are none."""
+        """Return the runs of the original that are kept; None if there are none."""
         head, runs = None, []
         for task, data, events in self._rows("SELECT task, data, events FROM original ORDER BY rowid"):
             with self._checked("original", task):
@@ -148,7 +148,7 @@ class JournalReader:
     # Outcomes
 
     def outcomes(self) -> list[Outcome]:
-        """The last outcome of each (mutant, round), in the order they came."""
+        """Return the last outcome of each (mutant, round), in the order they came."""
         return self._all("outcome", Outcome, f"WHERE rowid IN ({LAST}) ORDER BY rowid")
 
     def rounds_known(self) -> dict[str, int]:
@@ -156,17 +156,17 @@ class JournalReader:
         return dict(self._rows("SELECT mutant, count(DISTINCT round) FROM outcome GROUP BY mutant"))
 
     def reused(self) -> set[tuple[str, int]]:
-        """The mutants and rounds whose outcomes were taken over from an earlier campaign."""
+        """Return the mutants and rounds whose outcomes were taken over from an earlier campaign."""
         return set(self._rows(f"SELECT mutant, round FROM outcome WHERE reused AND rowid IN ({LAST})"))
 
     # Earlier campaigns
 
     def kept(self) -> dict[tuple[str, int], Kept]:
-        """The last outcome of each mutant and round that earlier campaigns found, if it can be reused."""
+        """Return the last reusable outcome of each mutant and round from earlier campaigns."""
         return self._kept_in("kept", "1")
 
     def found(self) -> dict[tuple[str, int], Kept]:
-        """Return the kept outcomes and those that the last campaign itself found or knew."""
+        """Return the kept outcomes and those that the last campaign itself found or reused."""
         return self.kept() | self._kept_in("outcome", f"rowid IN ({LAST})")
 
     def row(self, mutant: str, round: int) -> Kept | None:
@@ -198,20 +198,20 @@ class JournalReader:
         return found
 
     def kept_outcomes(self) -> list[Outcome]:
-        """All that earlier campaigns found, also what cannot be reused."""
+        """Return all outcomes of earlier campaigns, even those that cannot be reused."""
         return self._all("kept", Outcome)
 
     def known(self) -> list[tuple[Mutant, bool]]:
-        """Mutants of earlier campaigns, and whether something has changed since that they depend on."""
+        """Return mutants of earlier campaigns, and whether something that they depend on has changed."""
         outdated = {name for (name,) in self._rows("SELECT id FROM known WHERE outdated != 0")}
         return [(one, one.id in outdated) for one in self._all("known", Mutant)]
 
     def parts(self, digest: str) -> dict[str, str] | None:
-        """What a digest in a key stands for, or None if that is not known any more."""
+        """Return the content behind a digest in a key; None if it is no longer stored."""
         return self._one("parts", digest, lambda text: from_data(dict[str, str], records.load(text)))
 
     def text(self, digest: str) -> bytes | None:
-        """What stood in a Python file with this digest, or None if that is not known any more."""
+        """Return the content of a Python file with this digest; None if it is no longer stored."""
         return self._one("text", digest, lambda data: bytes(memoryview(data)))
 
     # Rows
@@ -222,12 +222,12 @@ class JournalReader:
         return bool(self._rows("SELECT 1 FROM meta WHERE key = ?", NONE_YET_KEY))
 
     def _rows(self, statement: str, *values: Any) -> list[Any]:
-        """What a question is answered with."""
+        """Return the rows that a statement selects."""
         with database.guarded(self.path):
             return self._copy.execute(statement, database.stored(values)).fetchall()
 
     def _all(self, table: str, kind: type[T], which: str = "ORDER BY rowid") -> list[T]:
-        """The objects that the rows of a table hold."""
+        """Return the objects that the rows of a table hold."""
         found = []
         for row in self._rows(f"SELECT * FROM {table} {which}"):
             with self._checked(table, *row):
@@ -235,7 +235,7 @@ class JournalReader:
         return found
 
     def _one(self, table: str, name: str, read: Callable[[Any], T]) -> T | None:
-        """What a table of names and values has for a name; None if nothing, or what cannot be."""
+        """Return the value of a name in a table of names and values; None if it is missing or invalid."""
         key, value = columns()[table]
         with self._checked(table, name):
             for (found,) in self._rows(f"SELECT {value} FROM {table} WHERE {key} = ?", name):
@@ -244,7 +244,7 @@ class JournalReader:
 
     @contextmanager
     def _checked(self, table: str, *values: Any) -> Iterator[None]:
-        """Leave a row that holds what cannot be, and go on with the next; the first values name it."""
+        """Skip an invalid row and continue with the next; the row's first values name it."""
         try:
             yield
         except UNFIT:
@@ -252,7 +252,7 @@ class JournalReader:
 
 
 def kept_original(path: Path) -> KeptBaseline | None:
-    """The runs of the original that a journal keeps; None if there is none, or it cannot be used."""
+    """Return the runs of the original that a journal keeps; None if there are none or it is unusable."""
     with suppress(JournalError), JournalReader.open(path, of_campaign=False) as journal:
         return journal.original()
     return None

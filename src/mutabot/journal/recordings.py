@@ -30,7 +30,7 @@ ORIGINAL = ""
 
 
 class Rank(IntEnum):
-    """What goes last when room is needed."""
+    """The order in which recordings are removed when room is needed."""
 
     OTHER = 0
     SURVIVOR = 1
@@ -38,7 +38,7 @@ class Rank(IntEnum):
 
 
 class Recordings:
-    """The file, opened; use as a context manager. Every method raises JournalError when it cannot be used.
+    """The opened file of recordings; use as a context manager. All methods raise JournalError on failure.
 
     Attributes:
         path: the file.
@@ -54,8 +54,9 @@ class Recordings:
 
     @classmethod
     def to_write(cls, journal: Path, limit: int) -> Recordings:
-        """Those of this journal, to add to; the file is made if there is none, or something else is in
-        its place in Mutabot's own folder.
+        """Open the recordings of this journal for writing.
+
+        The file is made if there is none, or something else is in its place in Mutabot's own folder.
 
         Args:
             limit: bytes that all recordings together may take.
@@ -93,7 +94,7 @@ class Recordings:
 
     @classmethod
     def to_read(cls, journal: Path, *, copied: bool = False) -> Recordings | None:
-        """Open the recordings of a journal to read; None if there are none. ``copied``: a copy of them."""
+        """Open the recordings of a journal to read; None if there are none. ``copied``: open a copy."""
         path = recordings_path(journal)
         if not os.path.lexists(path):
             return None
@@ -121,11 +122,11 @@ class Recordings:
         self._connection.close()
 
     def forget(self, mutant: str, round: int) -> None:
-        """Drop what is there of a mutant, or of the original, in a round."""
+        """Remove the recordings of a mutant, or of the original, in a round."""
         self._delete("mutant = ? AND round = ?", mutant, round)
 
     def add(self, mutant: str, round: int, test: str, rank: Rank, data: bytes) -> bool:
-        """Add a recording, removing ones of lower rank if needed. Returns whether there was room."""
+        """Add a recording, removing ones of lower rank if needed. Return whether there was room."""
         if self.used + len(data) > self._limit and not self._make_room(rank, len(data)):
             self.dropped += 1
             return False
@@ -150,14 +151,14 @@ class Recordings:
         return bytes(rows[0][0]) if rows else None
 
     def pairs(self) -> list[tuple[str, int]]:
-        """The mutants and rounds of which there are any; ``ORIGINAL`` stands for the original."""
+        """Return the mutants and rounds that have recordings; ``ORIGINAL`` stands for the original."""
         return [
             (str(mutant), int(round))
             for mutant, round in self._rows("SELECT DISTINCT mutant, round FROM recording")
         ]
 
     def of(self, mutant: str, round: int) -> list[tuple[str, Rank, bytes]]:
-        """Test, rank and data of each recording of a mutant in a round."""
+        """Return test, rank and data of each recording of a mutant in a round."""
         rows = self._rows(
             "SELECT test, rank, data FROM recording WHERE mutant = ? AND round = ?", mutant, round
         )
@@ -176,7 +177,7 @@ class Recordings:
             done.update(own)
 
     def keep_only(self, mutants: set[str]) -> None:
-        """Drop those of all other mutants."""
+        """Remove the recordings of all other mutants."""
         for (mutant,) in self._rows("SELECT DISTINCT mutant FROM recording WHERE mutant != ''"):
             if mutant not in mutants:
                 self._delete("mutant = ?", mutant)
@@ -211,7 +212,7 @@ _KINDS = {stat.S_IFLNK: "a link", stat.S_IFDIR: "a folder", stat.S_IFIFO: "a pip
 
 
 def _what_is_there(path: Path) -> str:
-    """Return what kind of thing, other than a plain file, has the name of the file; empty if none."""
+    """Return the kind of file that has the file's name but is no plain file; empty if none."""
     for suffix in BESIDE:
         name = path.with_name(path.name + suffix)
         kind = stat.S_IFMT(name.lstat().st_mode) if os.path.lexists(name) else stat.S_IFREG
@@ -221,11 +222,11 @@ def _what_is_there(path: Path) -> str:
 
 
 def _remove(path: Path) -> None:
-    """Make room for the file; of a link the link alone."""
+    """Remove a file or folder to make room; of a link only the link."""
     for suffix in BESIDE:
         clear(path.with_name(path.name + suffix))
 
 
 def _is_foreign(error: sqlite3.DatabaseError) -> bool:
-    """Whether a file is not an SQLite database, is damaged, or has other tables."""
+    """Return whether a file is not an SQLite database, is damaged, or has other tables."""
     return any(words in str(error) for words in ("not a database", "malformed", "no such column"))

@@ -1,4 +1,4 @@
-"""What journals hold beside mutants and outcomes, as plain data."""
+"""Plain data that journals hold beside mutants and outcomes."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ ACCEPTED = "accepted"
 
 @frozen
 class Reaching:
-    """Which tests reach which sites, in any round of the baseline.
+    """The sites that tests reach in any round of the baseline.
 
     Attributes:
         tests: node ids.
@@ -53,7 +53,7 @@ class Reaching:
     sites: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
 
     def at(self, site: str) -> tuple[str, ...]:
-        """The tests that reach a site."""
+        """Return the tests that reach a site."""
         return tuple(self.tests[index] for index in sorted(set(self.sites.get(site, ()))))
 
 
@@ -81,7 +81,7 @@ class UntestedCall:
 
 @frozen
 class Untested:
-    """What no test reaches of the program, in any round.
+    """The parts of the program that no test reaches in any round.
 
     Attributes:
         calls: number of calls of operations, those that are in doubt left out.
@@ -123,7 +123,7 @@ class Untested:
 
     @property
     def named(self) -> dict[str, tuple[str, ...]]:
-        """What no test reaches, by name, under what it is."""
+        """What no test reaches, by name, grouped by kind."""
         calls, doubtful = (
             tuple(one.words for one in those) for those in (self.unreached_calls, self.doubtful_calls)
         )
@@ -174,7 +174,7 @@ class OriginalRun:
 
 @frozen
 class KeptBaseline:
-    """The runs of the original that a campaign was begun with.
+    """The runs of the original with which a campaign began.
 
     Attributes:
         depends: what they depend on, as a digest.
@@ -256,13 +256,13 @@ class Drawing:
     strata: tuple[Stratum, ...]
 
     def stratum(self, family: str, role: str) -> Stratum | None:
-        """The stratum of a family in a role."""
+        """Return the stratum of a family in a role."""
         return next((one for one in self.strata if (one.family, one.role) == (family, role)), None)
 
 
 @frozen
 class Since:
-    """What a campaign ran of what has changed since a revision; counts are of mutants in rounds.
+    """The mutants that a campaign ran of those changed since a revision; counts are of mutants in rounds.
 
     Attributes:
         ref, commit: the revision as it was named, and its commit.
@@ -299,7 +299,7 @@ class Budgeted:
 
 @frozen
 class ShardOf:
-    """Which part of its plan a campaign has run.
+    """The part of its plan that a campaign has run.
 
     Attributes:
         number: 1-based number of the shard.
@@ -321,7 +321,7 @@ class ShardOf:
 
 @frozen
 class Disagreement:
-    """An outcome that came out otherwise in a fresh process.
+    """An outcome that changed in a fresh process.
 
     Attributes:
         mutant, number: id and number of the mutant.
@@ -338,7 +338,7 @@ class Disagreement:
 
 @frozen
 class Verification:
-    """What ``--verify`` found.
+    """The results of ``--verify``.
 
     Attributes:
         wanted: how many outcomes were to be looked at.
@@ -352,7 +352,7 @@ class Verification:
 
     @property
     def agreed(self) -> int:
-        """How many came out the same."""
+        """The number of outcomes that did not change."""
         return self.checked - len(self.disagreements)
 
 
@@ -374,7 +374,7 @@ class Flaky:
         return len(self.tests) / self.known if self.known else 0.0
 
     def text(self, limit: float) -> str:
-        """Why this is too much."""
+        """Return why there are too many flaky tests."""
         shown = "".join(f"\n  {line}" for line in self.tests[:10])
         more = f"\n  … and {len(self.tests) - 10} more" if len(self.tests) > 10 else ""
         counts = f"{len(self.tests)} of {self.known} tests cannot be relied on ({self.share:.0%})"
@@ -382,7 +382,7 @@ class Flaky:
 
 
 def run_short(outcomes: Iterable[Outcome], seed: int) -> list[Outcome]:
-    """Outcomes found without some tests, also if confirmed by the whole suite since, in random order.
+    """Return outcomes found without some tests, even if confirmed by the whole suite since, in random order.
 
     The order depends on the seed and each outcome's mutant and round only, so the first of them are a random
     sample, whatever becomes of the others.
@@ -398,7 +398,7 @@ LET_THROUGH = frozenset({Verdict.SURVIVED, Verdict.REFUSED})
 
 
 def is_wrong(outcome: Outcome) -> bool:
-    """Whether the whole suite has noticed a mutant that was let through without some tests."""
+    """Return whether the whole suite noticed a mutant that survived without some tests."""
     return bool(outcome.confirmed) and outcome.verdict not in LET_THROUGH | _NOTHING
 
 
@@ -438,13 +438,13 @@ class Repeated:
 
     @property
     def left(self) -> int:
-        """How many were not run once more."""
+        """The number of outcomes that were not repeated."""
         return self.outcomes - self.repeated
 
 
 @frozen
 class Repeats:
-    """What is known from repeats about false kills and false survivors.
+    """What repeats show about false kills and false survivors.
 
     Attributes:
         doubted: kills that may be chance.
@@ -513,7 +513,7 @@ _LATEST = 1e11
 
 
 def load(text: Any) -> Any:
-    """What a text says as JSON, if it says what our own JSON can."""
+    """Return the value of a JSON text, if mutabot's own JSON can have it."""
     if not isinstance(text, str) or len(text) > _LONGEST:
         raise TypeError
     value = json.loads(text)
@@ -526,7 +526,7 @@ def load(text: Any) -> Any:
 
 
 def _refuse_excess(value: Any, depth: int) -> None:
-    """Refuse what is nested too deeply, and numbers that nothing can be computed with."""
+    """Raise ValueError for data nested too deeply, and for numbers that cannot be computed with."""
     kind = type(value)
     if kind is int:
         float(value)
@@ -563,14 +563,14 @@ def fact(key: str, value: Any) -> Any:
 
 
 def round_in(value: Any) -> int:
-    """The number of a round, or of a repetition."""
+    """Return the number of a round or repetition, checked."""
     if not isinstance(value, int) or not 0 <= value < MOST_ROUNDS:
         raise ValueError
     return value
 
 
 def text_in(value: Any) -> str:
-    """A text of a column."""
+    """Return a text of a column, checked."""
     if not isinstance(value, str):
         raise TypeError
     value.encode()  # there are no halves of characters in it
@@ -582,7 +582,7 @@ _REPEATED = ("id", "mutant", "round", "verdict", "task")
 
 
 def held(kind: type[T], row: Mapping[str, Any]) -> T:
-    """The object of a class whose JSON a row holds, if the other columns say the same of it."""
+    """Return the object whose JSON a row holds, if the row's other columns agree with it."""
     found = from_data(kind, load(row["data"]))
     if any(getattr(found, name) != row[name] for name in _REPEATED if name in row):
         raise ValueError

@@ -26,13 +26,13 @@ class FrontEnd(Protocol):
         """How its files end, such as ``.py``, in lower case; capital letters in a file's name are equal."""
 
     def text_of(self, content: bytes) -> str:
-        """The text of a file, by the encoding that the language has.
+        """Return the text of a file, decoded as the language requires.
 
         Raises SyntaxError or ValueError for a file that it cannot read.
         """
 
     def names(self, source: str) -> Mapping[Extent, tuple[str, int]]:
-        """Names of all that may be a site in a file: a text, and an occurrence.
+        """Return names of all possible sites in a file: a text, and its occurrence.
 
         A site's id has both. The text is what is called, as written, on one line and not too long; the
         occurrence is the 1-based number among those with this text in this function. Extents are those of
@@ -42,10 +42,10 @@ class FrontEnd(Protocol):
         """
 
     def file_of(self, frame: FrameType) -> str | None:
-        """The file of this language that a frame carries out; None if it is no frame of its own."""
+        """Return the file of this language that a frame executes; None if the frame executes none."""
 
     def position_of(self, frame: FrameType) -> tuple[Extent, str]:
-        """Where the call stands that such a frame is making: its extent, and the name of its function.
+        """Return the position of the call that such a frame is making: its extent, and its function's name.
 
         An extent is the first line (1-based), first column, last line and last column (0-based, in UTF-8
         bytes). The language says what a function is called.

@@ -1,4 +1,4 @@
-"""Python: where calls stand, from the running instruction and from the source."""
+"""The front end for Python: positions of calls, from the running instruction and from the source."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ class Python:
     suffixes = (".py",)
 
     def text_of(self, content: bytes) -> str:
-        """The text of a file, by its encoding declaration and with newlines as Python reads them."""
+        """Return the text of a file, by its encoding declaration and with newlines as Python reads them."""
         return decode_source(content)
 
     def names(self, source: str) -> Mapping[Extent, tuple[str, int]]:
-        """Names of all expressions: a call by the text of its callee, all others by their own.
+        """Return names of all expressions: a call by the text of its callee, all others by their own.
 
         What a ``for`` or ``with`` does by itself has the place of the whole statement up to Python 3.12.
         """
@@ -48,15 +48,15 @@ class Python:
         return names
 
     def file_of(self, frame: FrameType) -> str | None:
-        """The file that the frame's code stands in: every frame is one of Python."""
+        """Return the file of the frame's code; every frame is one of Python."""
         return frame.f_code.co_filename
 
     def position_of(self, frame: FrameType) -> tuple[Extent, str]:
-        """The place of the instruction that is running."""
+        """Return the position of the running instruction."""
         return _position(frame.f_code, frame.f_lasti)
 
     def definition_of(self, code: CodeType) -> tuple[Extent, str]:
-        """The place of a function's definition: its first line, which is that of its first decorator."""
+        """Return the position of a function's definition: its first line, or that of its first decorator."""
         first = code.co_firstlineno
         return ((first, 0, first, 0), code.co_qualname)
 
@@ -65,7 +65,7 @@ FRONT_END = Python()
 
 
 def unused_calls(source: str) -> frozenset[Extent]:
-    """Calls whose result is discarded: each is a statement by itself, or is awaited in one.
+    """Return the calls whose result is discarded: each is a statement by itself, or is awaited in one.
 
     Raises SyntaxError or ValueError for a file that cannot be read.
     """
@@ -75,12 +75,12 @@ def unused_calls(source: str) -> frozenset[Extent]:
 
 
 def extent_of(node: ast.expr | ast.stmt) -> Extent:
-    """Where a node stands."""
+    """Return the extent of a node in the source."""
     return (node.lineno, node.col_offset, node.end_lineno or node.lineno, node.end_col_offset or 0)
 
 
 def head_size(body: Sequence[ast.stmt]) -> int:
-    """How many statements must stay first in a body: the docstring and imports from ``__future__``."""
+    """Return how many statements must stay first in a body: docstring and imports from ``__future__``."""
     has_text = bool(body) and isinstance(body[0], ast.Expr) and isinstance(body[0].value, ast.Constant)
     size = int(has_text)
     while size < len(body) and getattr(body[size], "module", None) == "__future__":
@@ -89,7 +89,7 @@ def head_size(body: Sequence[ast.stmt]) -> int:
 
 
 def placed(made: _Node, place: ast.AST) -> _Node:
-    """A new node at the position of another; parts that have a position keep it."""
+    """Return a new node at the position of another; parts that have a position keep it."""
     ast.copy_location(made, place)
     for part in ast.iter_child_nodes(made):
         if isinstance(part, ast.expr | ast.stmt | ast.ExceptHandler) and not hasattr(part, "lineno"):
@@ -104,7 +104,7 @@ def _position(code: CodeType, instruction: int) -> tuple[Extent, str]:
 
 
 def function_of(code: CodeType) -> str:
-    """The function that code stands in: comprehensions are part of the one around them."""
+    """Return the function that contains the code; comprehensions are part of the function around them."""
     function = code.co_qualname
     for suffix in _COMPREHENSIONS:
         function = function.removesuffix(suffix)
@@ -112,7 +112,7 @@ def function_of(code: CodeType) -> str:
 
 
 def _definition(node: ast.FunctionDef | ast.AsyncFunctionDef) -> Extent:
-    """What ``definition_of`` says of the function's code: the interpreter counts from the first decorator."""
+    """Return what ``definition_of`` returns for the function's code."""
     first = min([node.lineno, *(one.lineno for one in node.decorator_list)])
     return (first, 0, first, 0)
 
@@ -133,7 +133,7 @@ def _scopes(tree: ast.Module) -> list[ast.AST]:
 
 
 def _expressions(scope: ast.AST) -> list[ast.expr]:
-    """Expressions of a function, class or module, bar those of functions and classes inside it.
+    """Return the expressions of a function, class or module, except those of functions and classes inside.
 
     Decorators and default arguments run in the scope around the function they belong to.
     """
@@ -156,7 +156,7 @@ def _own(scope: ast.AST) -> list[ast.AST]:
 
 
 def outer_of(node: ast.AST) -> list[ast.AST]:
-    """The parts of a function or class that are evaluated in the scope around it."""
+    """Return the parts of a function or class that are evaluated in the scope around it."""
     if isinstance(node, ast.ClassDef):
         return [*node.decorator_list, *node.bases, *(keyword.value for keyword in node.keywords)]
     if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):

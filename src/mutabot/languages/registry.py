@@ -1,4 +1,4 @@
-"""The languages of robot programs that there are: Python, and those of packages."""
+"""The available languages of robot programs: Python, and those of packages."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 
 @cache
 def _by_language() -> Mapping[str, FrontEnd]:
-    """The front ends by the names of their languages, in the order in which they are asked."""
+    """Return the front ends by the names of their languages, in the order in which they are tried."""
     return {**{name: part.load() for name, part in brought("languages").items()}, "python": FRONT_END}
 
 
 @cache
 def front_ends() -> tuple[FrontEnd, ...]:
-    """All front ends; Python is last, since an interpreter's frames are Python's as well.
+    """Return all front ends; Python is last, since an interpreter's frames are Python's as well.
 
     Raises ExtensionError for one of a package that cannot be loaded.
     """
@@ -31,7 +31,7 @@ def front_ends() -> tuple[FrontEnd, ...]:
 
 
 def language_of(file: str) -> str | None:
-    """The name of a file's language, by its suffix; None for unknown suffixes.
+    """Return the name of a file's language, by its suffix; None for unknown suffixes.
 
     Raises ExtensionError for a language of a package that cannot be loaded.
     """
@@ -41,7 +41,7 @@ def language_of(file: str) -> str | None:
 
 @cache
 def languages_of(root: Path, program: tuple[str, ...]) -> frozenset[str]:
-    """The names of a program's languages beside Python. ``program``: files and folders, relative to ``root``.
+    """Return the names of a program's languages beside Python.
 
     Raises ExtensionError for a language of a package that cannot be loaded.
     """
@@ -50,13 +50,13 @@ def languages_of(root: Path, program: tuple[str, ...]) -> frozenset[str]:
 
 
 def front_end_of(file: str) -> FrontEnd:
-    """The front end for a file, by its suffix; Python's for unknown suffixes."""
+    """Return the front end for a file, by its suffix; Python's for unknown suffixes."""
     name = file.lower()
     return next((one for one in front_ends() if name.endswith(one.suffixes)), front_ends()[-1])
 
 
 def program_files(root: Path, program: Iterable[str]) -> list[str]:
-    """The program's files among the configured files and folders, relative to ``root``, each once."""
+    """Return the program's files among the configured files and folders, relative to ``root``, each once."""
     suffixes = tuple(suffix for one in front_ends() for suffix in one.suffixes)
     files: dict[str, None] = {}
     for name in program:

@@ -1,4 +1,4 @@
-"""Plain data: what mutabot talks about, without any input or output.
+"""Plain data types of mutabot, without any input or output.
 
 The names below are loaded when they are first used: a process below the tests needs few of them.
 """

@@ -28,12 +28,12 @@ FATAL_CONTROL = "mutabot.runtime.active_fault:FatalControl"
 
 
 def at_text(place: int, index: int) -> Key:
-    """A place of the program text, where this alternative is about to differ from the original, or may."""
+    """Return the key of a place in the program text where this alternative may differ from the original."""
     return (TEXT, place, index)
 
 
 def at_test(test: str) -> Key:
-    """The start of a test, before its fixtures."""
+    """Return the key of the start of a test, before its fixtures."""
     return (TEST, test)
 
 
@@ -91,19 +91,19 @@ class Activation:
 
     @staticmethod
     def nth(number: int, key: Key) -> Key:
-        """Return the key of the time of this number, from 1, at which another key is reached in a test."""
+        """Return the key of the n-th time that another key is reached in a test; ``number`` is n, from 1."""
         return (NTH, number, *key)
 
     @classmethod
     def of_call(cls, place: Place) -> Activation:
-        """The activation of a mutant of the calls at a place."""
+        """Return the activation of a mutant of the calls at a place."""
         key = cls.at_call(place.site.span, place.operation, place.pattern)
         own = cls(CALL_FAULT, keys=(key,), awaits=cls.AT_ONCE)
         return cls(CALL_FAULT, keys=(key,), awaits=cls.AT_ONCE, identity=own, fatal=own)
 
     @classmethod
     def of_text(cls, place: int, index: int) -> Activation:
-        """The activation of an alternative in the program text, by its place's number and its index there."""
+        """Return the activation of an alternative, by its place's number and its index there."""
         own, identity, fatal = (
             cls(TEXT_FAULT, (place, one), (at_text(place, one),), cls.AT_ONCE)
             for one in (index, IDENTITY, FATAL)

@@ -29,7 +29,7 @@ _FUTURES = (("asyncio", "Task"), ("asyncio", "Future"), ("concurrent.futures", "
 
 
 def future_class(value: Any) -> str | None:
-    """The kind of a future; None if the value is not a future."""
+    """Return the kind of a future; None if the value is not a future."""
     for module, name in _FUTURES:
         kind = getattr(sys.modules.get(module), name, None)
         own = type(value)
@@ -86,7 +86,7 @@ class NotKeptError(ValueError):
 
 
 def keep(value: Any, here: Mapping[str, Any], handles: Collection[str] = ()) -> Any:
-    """An answer as JSON-like data.
+    """Return an answer as JSON-like data.
 
     Args:
         value: what the command returned.
@@ -99,7 +99,7 @@ def keep(value: Any, here: Mapping[str, Any], handles: Collection[str] = ()) -> 
 
 
 def restore(data: Any, here: Mapping[str, Any]) -> Any:
-    """A fresh object for data that ``keep`` has made; ``{"call": name}`` is asked of the user's function.
+    """Return a fresh object for data that ``keep`` has made; ``{"call": name}`` calls the user's function.
 
     Raises LookupError if a class or function is no longer there, or an argument is not given.
     """
@@ -191,7 +191,7 @@ def _array(kind: str, shape: list[int], content: str) -> Any:
 
 
 def _is_all_state(value: Any) -> bool:
-    """Return whether an object consists of its attributes alone, so that making another has no effect."""
+    """Return whether an object consists of its attributes alone, so that constructing it has no effect."""
     kind = type(value)
     for name in _OWN_WAYS:
         own = getattr(kind, name, None)
@@ -205,7 +205,7 @@ def _is_all_state(value: Any) -> bool:
 
 
 def _does_the_same(kind: type[Any], method: Any) -> bool:
-    """Frozen dataclasses with slots, and messages of ROS 1, have methods that do what is done here."""
+    """Return whether a class's pickle method does the same as this module, as that of ROS 1 messages does."""
     made_by = getattr(method, "__module__", None)
     return made_by in _OF_ROS_1 or (is_dataclass(kind) and made_by == "dataclasses")
 
@@ -230,7 +230,7 @@ def _object(name: str, attributes: dict[str, Any], slots: dict[str, Any], here: 
 
 
 def _constant(value: Any) -> str | None:
-    """The name of a constant of its module or class, which programs compare with ``is``; else None."""
+    """Return the name of a constant of its module or class, which programs compare with ``is``; else None."""
     kind = type(value)
     module = sys.modules.get(kind.__module__)
     for owner, prefix in ((module, f"{kind.__module__}:"), (kind, f"{class_name(kind)}.")):
@@ -241,7 +241,7 @@ def _constant(value: Any) -> str | None:
 
 
 def _name_of(kind: type[Any]) -> str:
-    """The class as ``module:Name``. Raises NotKeptError if it cannot be found by it."""
+    """Return a class as ``module:Name``. Raises NotKeptError if it cannot be found by that name."""
     name = class_name(kind)
     try:
         found = _named(name)
@@ -253,7 +253,7 @@ def _name_of(kind: type[Any]) -> str:
 
 
 def _named(name: str) -> Any:
-    """What ``module:qualified.name`` means. Raises LookupError."""
+    """Return the object at ``module:qualified.name``. Raises LookupError."""
     module, _, qualname = name.partition(":")
     try:
         found: Any = sys.modules.get(module) or importlib.import_module(module)

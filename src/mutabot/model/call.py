@@ -32,11 +32,11 @@ class CallFault(StrEnum):
 
 
 class Unchanged(Exception):  # noqa: N818  # no error: a reason
-    """Why an operator leaves a call, or what it reads, as it is."""
+    """Raised if an operator leaves a call, or what it reads, unchanged; the text says why."""
 
 
 def _nobody(why: str) -> Callable[..., Any]:
-    """Stands where nothing answers a question of an operator's."""
+    """Return a placeholder for a function that is not available, which raises LookupError with a reason."""
 
     def raises(*_: object) -> Any:
         raise LookupError(why)
@@ -53,7 +53,7 @@ NO_DEFER = _nobody("nothing here can make a call later")
 
 @dataclass(frozen=True, slots=True)
 class Reply:
-    """What an operation answered, with the values it reads.
+    """The answer of an operation, with the values it reads.
 
     A message to a callback (see ``Form.comes_by_itself``) may also come later, several times or not at all.
     An answer that the program waits for may come later or not at all.
@@ -85,7 +85,7 @@ class Reply:
         return replace(self, away=why)
 
     def later(self, seconds: float) -> Reply:
-        """Return a copy of the reply that comes later by this time."""
+        """Return a copy of the reply that comes later by this time (s)."""
         return replace(self, late=self.late + seconds)
 
     def never(self) -> Reply:
@@ -102,12 +102,12 @@ class Reply:
 
     @property
     def parts(self) -> tuple[Reply, ...]:
-        """All that the program gets, in this order."""
+        """All replies that the program gets, in this order."""
         return (*(() if self.lost else (self,)), *(part for one in self.more for part in one.parts))
 
     @property
     def comes_as_usual(self) -> bool:
-        """Whether the program gets it once and at once."""
+        """Whether the program gets it exactly once and without delay."""
         return not (self.late or self.lost or self.more or self.error)
 
 
@@ -157,14 +157,14 @@ class Call:
 
     @property
     def is_command(self) -> bool:
-        """Whether the robot is made to do something."""
+        """Whether the call makes the robot do something."""
         if self.pattern is not None and self.pattern.command is not None:
             return self.pattern.command
         return self.operation.command
 
     @property
     def idle_reply(self) -> Reply:
-        """What the command answers while the robot does nothing. Raises LookupError if that is not known."""
+        """The command's answer if the robot does nothing. Raises LookupError if that is not known."""
         if self.idle is None:
             raise LookupError(f"no answer is known for leaving out {self.operation.name}; give one by `idle`")
         return self.idle
@@ -174,7 +174,7 @@ class Call:
         return replace(self, values={**self.values, quantity.name: value})
 
     def with_call_fault(self, call_fault: CallFault, seconds: float = 0.0) -> Call:
-        """Return the same call with a fault of the middleware."""
+        """Return a copy of the call with a fault of the middleware."""
         return replace(self, call_faults={**self.call_faults, call_fault: seconds})
 
     def as_is(self, why: str) -> Call:
@@ -182,7 +182,7 @@ class Call:
         return replace(self, away=why)
 
     def opposite(self) -> Call:
-        """The call of the opposite operation or text command, with the same values."""
+        """Return the call of the opposite operation or text command, with the same values."""
         return replace(self, reversed=not self.reversed)
 
 
@@ -203,6 +203,6 @@ DEFAULT_SEED = 1
 
 
 def derive(*parts: object) -> int:
-    """A whole number of 32 bits that depends on all parts and on nothing else."""
+    """Return a whole number of 32 bits that depends on all parts and on nothing else."""
     text = "\x1f".join(str(part) for part in parts)
     return int.from_bytes(hashlib.blake2b(text.encode(), digest_size=4).digest(), "big")

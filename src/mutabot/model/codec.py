@@ -25,12 +25,12 @@ _PLAIN = frozenset({str, int, float, bool, type(None)})
 
 
 def is_plain(value: Any) -> bool:
-    """Whether a value is of a type that JSON has: None, a truth value, a number or a text."""
+    """Return whether a value is of a scalar type of JSON: None, a truth value, a number or a text."""
     return type(value) in _PLAIN
 
 
 def to_data(value: Any) -> Any:
-    """JSON-like data for a dataclass, enum, container or plain value. Fields equal to None are left out."""
+    """Convert a dataclass, enum, container or plain value to JSON-like data. None fields are left out."""
     kind: Any = type(value)
     if kind in _PLAIN:
         return value
@@ -47,14 +47,14 @@ def to_data(value: Any) -> Any:
 
 
 def shallow(value: Any) -> dict[str, Any]:
-    """The fields of a dataclass that are not None, with their values unchanged."""
+    """Return the fields of a dataclass that are not None, with their values unchanged."""
     kind: Any = type(value)
     names = _names(kind) or ()
     return {name: item for name in names if (item := getattr(value, name)) is not None}
 
 
 def sparse(value: Any) -> dict[str, Any]:
-    """The fields of a dataclass that are neither None nor as by default."""
+    """Return the fields of a dataclass that are neither None nor equal to their defaults."""
     found = {}
     kind: Any = type(value)
     for name, default, is_made in _defaults(kind):
@@ -77,12 +77,12 @@ def _defaults(kind: type[Any]) -> tuple[tuple[str, Any, bool], ...]:
 
 @cache
 def _names(kind: type[Any]) -> tuple[str, ...] | None:
-    """The fields of a dataclass; None for any other type."""
+    """Return the fields of a dataclass; None for any other type."""
     return tuple(field.name for field in fields(kind)) if is_dataclass(kind) else None
 
 
 def from_data(kind: type[T], data: Any) -> T:
-    """The value of type ``kind`` that ``to_data`` turned into ``data``.
+    """Return the value of type ``kind`` that ``to_data`` turned into ``data``.
 
     Raises TypeError, ValueError, KeyError or OverflowError for data that does not fit: what another process
     says may be anything.
@@ -94,7 +94,7 @@ def from_data(kind: type[T], data: Any) -> T:
 
 @cache
 def _decoder(kind: Any) -> Decoder:
-    """What turns data into a value of a type. Made once for each: lines come by the hundred thousand."""
+    """Return a function that decodes values of a type; cached, as there are many lines to decode."""
     origin, arguments = get_origin(kind), get_args(kind)
     if origin in (Union, types.UnionType):
         options = [option for option in arguments if option is not type(None)]
@@ -156,7 +156,7 @@ def _dataclass_decoder(kind: Any) -> Decoder:
 
 @cache
 def _fields(kind: type[Any]) -> tuple[dict[str, Decoder], tuple[str, ...]]:
-    """The decoders of all fields, and those without a default that may be None: they are left out then."""
+    """Return the decoders of all fields, and the names of those without a default that may be None."""
     hints = get_type_hints(kind)
     decoders = {name: _decoder(hint) for name, hint in hints.items()}
     left_out = tuple(
@@ -181,7 +181,7 @@ _SURROGATE = "\\ud"
 
 
 def printable(text: str) -> str:
-    """Write what is no character as ``\\udcff``; return any other text unchanged."""
+    """Return a text with lone surrogates written as ``\udcff``; any other text is returned unchanged."""
     try:
         text.encode()
     except UnicodeEncodeError:
@@ -190,7 +190,7 @@ def printable(text: str) -> str:
 
 
 def to_json(value: Any, default: Callable[[Any], Any]) -> bytes:
-    """A value as JSON in ASCII that any reader can take, dataclasses without what is as by default.
+    """Return a value as ASCII JSON that any reader can parse; fields equal to their defaults are left out.
 
     ``default`` gives data for what neither JSON nor ``to_data`` knows.
     """
@@ -213,7 +213,7 @@ def to_json(value: Any, default: Callable[[Any], Any]) -> bytes:
 
 
 def is_too_deep(text: bytes) -> bool:
-    """Whether JSON is nested deeper than anything that ``to_json`` writes."""
+    """Return whether JSON is nested deeper than anything that ``to_json`` writes."""
     if text.count(b"[") + text.count(b"{") <= MOST_DEPTH:
         return False
     # to leave texts out takes long, and brackets in texts are rare
@@ -221,7 +221,7 @@ def is_too_deep(text: bytes) -> bool:
 
 
 def _is_closed(text: bytes) -> bool:
-    """Whether all brackets close each other, on no more levels than there may be."""
+    """Return whether all brackets close each other, within the permitted depth."""
     brackets = text.translate(None, _NO_BRACKETS)
     for _ in range(MOST_DEPTH + 1):
         if not brackets:
@@ -231,13 +231,13 @@ def _is_closed(text: bytes) -> bool:
 
 
 def _is_fine(text: str) -> bool:
-    """Whether JSON needs no second look, which takes far longer."""
+    """Return whether a text is certainly valid JSON, so that the slow check is not needed."""
     is_short = len(text) <= MOST_CHARACTERS or f'"{_WHOLE}"' in text
     return is_short and _SURROGATE not in text and not is_too_deep(text.encode())
 
 
 def storable(value: Any, default: Callable[[Any], Any] = repr, depth: int = 0) -> Any:
-    """JSON-like data of a value, with all that is endless cut, and with texts that are ``printable``."""
+    """Return JSON-like data of a value, with endless structures cut, and with ``printable`` texts."""
     kind = type(value)
     if value is None or kind is bool or kind is float:
         return value

@@ -35,7 +35,7 @@ _PLAINLY: tuple[tuple[type[Any], Callable[[Any], Any]], ...] = (
 
 
 def is_of_numpy(value: Any) -> bool:
-    """Whether it is an array or a scalar of numpy, which may not be there at all."""
+    """Return whether a value is an array or a scalar of numpy, without importing numpy."""
     numpy = sys.modules.get("numpy")
     kind = type(value)
     array_kind, scalar_kind = getattr(numpy, "ndarray", None), getattr(numpy, "generic", None)
@@ -45,14 +45,14 @@ def is_of_numpy(value: Any) -> bool:
 
 
 def is_textual(value: Any) -> bool:
-    """Whether it is a moment, a decimal or a fraction of the standard library; nothing is imported for it."""
+    """Return whether a value is a date, time, decimal or fraction, without importing their modules."""
     kind = type(value)
     module = kind.__module__
     return module in _TEXTUAL and getattr(sys.modules.get(module), kind.__name__, None) is kind
 
 
 def _is_exact(value: Any) -> bool:
-    """Whether it is an exact number, which cannot be combined with the floats that operators draw."""
+    """Return whether a value is a decimal or fraction, which cannot be combined with operators' floats."""
     return type(value).__name__ in ("Decimal", "Fraction") and is_textual(value)
 
 
@@ -98,7 +98,7 @@ def _items(value: Any, base: Any, depth: int) -> Any:
 
 
 def in_place_of(before: Any, value: Any) -> Any:
-    """A value in the class of what stood in its place, if that can be made of it; else the value itself."""
+    """Return a value in the class of the value it replaces, if possible; otherwise the value itself."""
     kind = type(before)
     if type(value) in (list, tuple) and issubclass(kind, type(value)):
         return _sequence(before, value)
@@ -114,7 +114,7 @@ def in_place_of(before: Any, value: Any) -> Any:
 
 
 def _as_float(value: Any) -> Any:
-    """A decimal or fraction as operators see it; ``UNKNOWN`` if it is too large, or signals."""
+    """Return a decimal or fraction as operators see it; ``UNKNOWN`` if it is too large, or signals."""
     try:
         return float(value)
     except (OverflowError, ValueError):
@@ -142,7 +142,7 @@ def _sequence(before: Any, value: Any) -> Any:
 
 
 def _made(make: Callable[[Any], Any], value: Any, given: Any) -> Any:
-    """What a class makes of what it is given; the value itself if it does not take that."""
+    """Return what a class makes of a value; the value itself if the class does not accept it."""
     try:
         return make(given)
     except Exception:  # a class of the user's may do anything
@@ -150,7 +150,7 @@ def _made(make: Callable[[Any], Any], value: Any, given: Any) -> Any:
 
 
 def fields_of(value: Any) -> dict[str, Any] | None:
-    """The stored fields of a dataclass or named tuple; None for anything else."""
+    """Return the stored fields of a dataclass or named tuple; None for anything else."""
     kind: Any = type(value)
     if issubclass(kind, tuple):
         names = getattr(kind, "_fields", None)
@@ -179,7 +179,7 @@ def _in_slot(kind: type[Any], value: Any, name: str) -> Any:
 
 
 def items_of(value: Any) -> dict[Any, Any] | list[Any] | None:
-    """The items of a plain container; None for anything else."""
+    """Return the items of a plain container; None for anything else."""
     kind = type(value)
     if kind in _MAPPINGS:
         return dict(value)

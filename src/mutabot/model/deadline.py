@@ -1,4 +1,4 @@
-"""Limits of time for a process and all below it, and whether they are used up.
+"""Time limits for a process and all below it, and whether they are used up.
 
 A process that computes is ended by its processor time, which other processes on the machine do not change.
 One that waits uses none: the wall clock ends it, without the time in which it wanted a processor and had
@@ -25,7 +25,7 @@ _LEAST = 0.2
 
 @frozen
 class Limit:
-    """What a process may take.
+    """The limits of a process: wall-clock and processor time.
 
     Attributes:
         wall: seconds by the clock on the wall.
@@ -74,7 +74,7 @@ class Deadline:
         self.until = self.used.began + (least if self.is_counted else min(_FIRST, least))
 
     def is_over(self, process: int) -> bool:
-        """Whether a process has used its time. Call it at ``until``, which it updates."""
+        """Return whether a process has used up its time. Call it at ``until``, which it updates."""
         if not self.is_counted:
             self.is_counted, self.used = True, TimeUsed.from_now(below([process]))
             self.until = self.used.began + self.limit.least
@@ -91,7 +91,7 @@ class Deadline:
         return True
 
     def _left(self, wall: float, processor: float) -> float:
-        """Seconds left in both budgets; in that of processor time for a process that uses it."""
+        """Return the seconds left in both budgets, wall-clock and processor time."""
         most = self.limit.processor or 0.0
         computes = processor < most / 2 and self.used.age < min(_COMPUTING, MOST) * self.limit.wall
         return processor if computes else min(wall, processor)

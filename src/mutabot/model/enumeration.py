@@ -1,4 +1,4 @@
-"""Members of enumerations, of Python's and of pybind11's.
+"""Members of enumerations, Python's and pybind11's.
 
 A vocabulary names a member by its name, by its number or other value, or as it prints (``Mode.AUTO``).
 """
@@ -18,7 +18,7 @@ _MOST = 12
 
 
 def is_member(value: Any) -> bool:
-    """Whether a value is a member of an enumeration."""
+    """Return whether a value is a member of an enumeration."""
     kind: Any = type(value)
     return issubclass(kind, Enum) or _is_of_pybind11(kind)
 
@@ -35,7 +35,7 @@ def _is_of_pybind11(kind: Any) -> bool:
 
 
 def member_of(kind: type[Any], written: Any) -> Any | None:
-    """The member of an enumeration that is written so; None if it has none."""
+    """Return the member of an enumeration that is written so; None if it has none."""
     members: Mapping[str, Any] = getattr(kind, "__members__", {})
     if isinstance(written, str) and written in members:
         return members[written]
@@ -51,7 +51,7 @@ def name_of(member: Any) -> str:
 
 
 def written_of(member: Any, values: Sequence[Any]) -> Any:
-    """Which of a vocabulary's values stands for a member; its name if none does.
+    """Return which of a vocabulary's values denotes a member; its name if none does.
 
     Raises PathError if its enumeration has no member for one of the values, or one member for two of them.
     """
@@ -82,7 +82,7 @@ def _is_value(member: Any, written: Any) -> bool:
 
 
 def _combined(kind: type[Any], members: Mapping[str, Any], written: Any) -> Any | None:
-    """Several flags at once, by their names (``READ|WRITE``) or their number."""
+    """Return several flags at once, by their names (``READ|WRITE``) or their number."""
     if isinstance(written, str):
         names = [name.strip() for name in written.split("|")]
         known = all(name in members for name in names)

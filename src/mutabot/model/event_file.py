@@ -36,7 +36,7 @@ def sealed(event: Event, number: int, name: str, key: str, default: Callable[[An
 
 
 def unsealed(line: bytes, name: str, key: str) -> tuple[int, Event]:
-    """The number of an event and the event itself. Raises ValueError for what is no line of this file."""
+    """Return the number of an event and the event. Raises ValueError if it is no valid line of this file."""
     mark, _, rest = line.partition(b" ")
     digits, _, text = rest.partition(b" ")
     try:
@@ -51,14 +51,14 @@ def unsealed(line: bytes, name: str, key: str) -> tuple[int, Event]:
 
 
 def seal(text: bytes, number: int, name: str, key: str) -> bytes:
-    """Return the digest that is written before an event, which is given as JSON."""
+    """Return the digest that is written before an event given as JSON."""
     sealing = blake2b(f"{name} {number} ".encode(), key=key.encode(), digest_size=_DIGITS // 2)
     sealing.update(text)
     return sealing.hexdigest().encode()
 
 
 class EventReader:
-    """Read the events that one process has written so far.
+    """A reader of the events that one process has written so far.
 
     Args:
         path: the file.
@@ -79,7 +79,7 @@ class EventReader:
         self._next = 1
 
     def read(self, *, is_last: bool = False) -> list[Event]:
-        """The events that are new; ``is_last``: its process is gone, so that what is torn is lost."""
+        """Return the new events; ``is_last`` means that the process is gone, so incomplete lines are lost."""
         found: list[Event] = []
         try:
             file = open_file(self._path, os.O_RDONLY)

@@ -1,4 +1,4 @@
-"""Events that the processes of a job report, each in its own file, see ``event_file``.
+"""The events that the processes of a job report, each process in its own file.
 
 The test process, its forks and the processes below the tests report the same kinds. Times are those of
 ``time.monotonic``, which all processes share. The end of a test is also what the journal keeps
@@ -133,7 +133,7 @@ class TestEnd(Event):
 
     @property
     def lasting(self) -> str:
-        """The outcome, as far as equal runs must agree on it: what may fail may also pass."""
+        """The outcome on which equal runs must agree; a test that may fail may also pass."""
         return "xfailed" if self.outcome == "xpassed" else self.outcome
 
     @property
@@ -196,7 +196,7 @@ class Watched(Event):
 
 @frozen
 class Acted(Event):
-    """The mutant is at work: proof that mutated code ran.
+    """The mutant has changed something: proof that mutated code ran.
 
     Attributes:
         test: the test; empty for a mutant of the program text before any test began.
@@ -222,7 +222,7 @@ class PlacesReached(Event):
 
 @frozen
 class TextsSeen(Event):
-    """What a recording saw of the program text, over all tests.
+    """What a recording observed in the program text, over all tests.
 
     Attributes:
         imported: files that were imported, relative to the root.
@@ -235,7 +235,7 @@ class TextsSeen(Event):
 
 @frozen
 class NotInstrumented(Event):
-    """A file whose mutants cannot run, because it was imported without its alternatives."""
+    """A file was imported without its alternatives, so its mutants cannot run."""
 
     file: str
     reason: str
@@ -251,7 +251,7 @@ class KnownLater(Event):
 
 @frozen
 class CallsAsked(Event):
-    """Which calls of the program were asked about where they are written, over all tests.
+    """The places where calls of the program were intercepted in the text, over all tests.
 
     Attributes:
         files: files whose calls of an operation's name are asked about, relative to the root.
@@ -285,7 +285,7 @@ class ForkTestEnd(Event):
 
 @frozen
 class ForkSessionEnd(Event):
-    """A fork has gone to the end of the session.
+    """A fork has reached the end of the session.
 
     Attributes:
         mutants: ids of the mutants it was.
@@ -304,7 +304,7 @@ class ForkSessionEnd(Event):
 
 @frozen
 class ForkDied(Event):
-    """A fork ended without saying how its test ended.
+    """A fork ended without reporting how its test ended.
 
     Attributes:
         mutant: id of the mutant it was.
@@ -344,7 +344,7 @@ class ForkEnded(Event):
 
 @frozen
 class Unforked(Event):
-    """These mutants need a process of their own: it was not safe to fork at the first hit in this test.
+    """It was not safe to fork these mutants at their first hit in this test; they need own processes.
 
     The test is empty before any.
     """
@@ -356,7 +356,7 @@ class Unforked(Event):
 
 @frozen
 class Undiverged(Event):
-    """Mutants of the program text that a fork parent reached in a test, always with the original's value.
+    """A fork parent reached these mutants of the program text, always with the original's value.
 
     The fork parent itself has run this test for them.
 
@@ -371,7 +371,7 @@ class Undiverged(Event):
 
 @frozen
 class TestControls(Event):
-    """A test of the original has ended in which mutants were forked.
+    """A test of the original has ended in which control forks were made.
 
     Attributes:
         test: the test.
@@ -384,7 +384,7 @@ class TestControls(Event):
 
 @frozen
 class TokensHeld(Event):
-    """How many tokens a fork parent and its forks hold: what the pool gets back if the parent dies."""
+    """The number of tokens that a fork parent and its forks hold, to be returned if the parent dies."""
 
     held: int
 
@@ -409,7 +409,7 @@ class Problem(Event):
 
 @frozen
 class Remark(Event):
-    """Something about the vocabulary that the user should know; the program can be tested all the same.
+    """Something about the vocabulary that the user should know and that is no error.
 
     Attributes:
         source: where the vocabulary says so.
@@ -427,7 +427,7 @@ class Remark(Event):
 
 @frozen
 class Serving(Event):
-    """A fork server has collected its tests and waits for jobs; or it does not, for a ``reason``.
+    """A fork server has collected its tests and waits for jobs, or cannot serve for a ``reason``.
 
     ``copy``: the process that it has forked for the job that came last.
     """
@@ -488,7 +488,7 @@ class Noted(Event):
 
 @frozen
 class Did(Event):
-    """What the mutant did since the last time: counts are to be added up.
+    """What the mutant did since the last report; counts are to be added up.
 
     Attributes:
         test: the test that runs.
@@ -509,7 +509,7 @@ class Did(Event):
 
 @frozen
 class Used(Event):
-    """The time that the process has used in the running test; the last event counts.
+    """The time that the process has used in the running test; only the last event counts.
 
     ``exceeded`` names the limit that was exceeded, ``guarded`` the command that a guard kept from the robot.
     """
@@ -540,7 +540,7 @@ class Raised(Event):
 
 @frozen
 class Found(Event):
-    """Targets of the vocabulary, modules that it names, and nodes, that the process has."""
+    """Targets of the vocabulary, its modules, and nodes that exist in the process."""
 
     targets: tuple[str, ...] = ()
     modules: tuple[str, ...] = ()
@@ -556,7 +556,7 @@ class Signalled(Event):
 
 @frozen
 class SessionEnd(Event):
-    """The process ends in an orderly way: the last of its events.
+    """The process ends in an orderly way; this is its last event.
 
     Attributes:
         exit_status: pytest's exit status; 0 for a process below the tests.
@@ -576,7 +576,7 @@ class SessionEnd(Event):
 
 @frozen
 class Untrusted(Event):
-    """What a process reports cannot be relied on: said of it by whoever reads its events.
+    """The events of a process are unreliable; added by their reader, not by the process.
 
     Attributes:
         reason: in words.
@@ -590,12 +590,12 @@ EVENTS: dict[str, type[Event]] = {kind.__name__: kind for kind in Event.__subcla
 
 
 def event_to_data(event: Event) -> dict[str, Any]:
-    """JSON-like data of an event, with its type."""
+    """Return JSON-like data of an event, with its type."""
     return {"type": type(event).__name__, **to_data(event)}
 
 
 def event_from_data(data: dict[str, Any]) -> Event:
-    """The event in such data.
+    """Return the event in such data.
 
     Raises KeyError for a type that is not known, TypeError or ValueError for data that does not fit it.
     """

@@ -58,7 +58,7 @@ def copy_file(path: str | os.PathLike[str], target: str | os.PathLike[str]) -> N
 
 
 def _parts(descriptor: int) -> Iterator[tuple[int, int]]:
-    """The parts of a file that hold anything."""
+    """Yield the parts of a file that hold anything."""
     end = 0
     with suppress(OSError):  # there is nothing beyond
         while True:

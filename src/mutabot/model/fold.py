@@ -25,7 +25,7 @@ _PATIENCE, _PAUSE = 1.0, 0.002
 
 @dataclass(slots=True)
 class ChildRecord:
-    """A process below the tests, and its events.
+    """A process below the tests, with its events.
 
     Attributes:
         began: what it is.
@@ -55,7 +55,7 @@ class ChildRecord:
 
     @property
     def name(self) -> str:
-        """What people know it by: its node, or the file that it runs."""
+        """The process's name in messages: its node, or the file that it runs."""
         if self.nodes:
             return self.nodes[0]
         arguments = [one for one in self.began.command[1:] if not one.startswith("-")]
@@ -63,7 +63,7 @@ class ChildRecord:
 
     @property
     def origin(self) -> str:
-        """How it came to be."""
+        """How the process was started."""
         return events.FORKED if self.began.forked else events.STARTED
 
     def add(self, event: events.Event) -> None:
@@ -96,7 +96,7 @@ class ChildRecord:
                 self.ended = True
 
     def forget(self) -> None:
-        """The test is over."""
+        """Forget the events of the test, which is over."""
         for told in (self.called, self.noted, self.did, self.places):
             told.clear()
         self.used, self.exceeded, self.guarded = None, None, None
@@ -105,7 +105,7 @@ class ChildRecord:
 
 
 def is_alive(pid: int) -> bool:
-    """Whether a process is there, and more than what its parent has not asked for."""
+    """Return whether a process runs, rather than being a zombie that awaits its parent."""
     try:
         with open(f"/proc/{pid}/stat", encoding="ascii", errors="replace") as file:
             return file.read().rpartition(")")[2].split()[0] not in "ZX"
@@ -114,7 +114,7 @@ def is_alive(pid: int) -> bool:
 
 
 class Children:
-    """The processes below a test process, by their files.
+    """The processes below a test process, by their files of events.
 
     The tests know the folder, and so does whatever they start: files may be gone or damaged.
 
@@ -136,7 +136,7 @@ class Children:
         self._readers: dict[str, EventReader] = {}
 
     def read(self) -> list[events.Event]:
-        """Sort in what is new, and return it."""
+        """Read the new events, sort them in, and return them."""
         found: list[events.Event] = []
         for name in [*self._readers, *(name for name in self._names() if name not in self._readers)]:
             for event in self._new_in(name):
@@ -165,7 +165,7 @@ class Children:
         return [file for file in files if file.endswith(SUFFIX) and file[0].isdigit()]
 
     def _new_in(self, name: str) -> list[events.Event]:
-        """Return the new events of a process, which may be in the middle of writing another."""
+        """Return the new events of a process, which may still be writing the last one."""
         path = os.path.join(self._folder, name)
         reader = self._readers.setdefault(name, EventReader(path, self._key))
         found = reader.read()
@@ -194,14 +194,14 @@ class Children:
 
 
 def acted_in(records: Collection[ChildRecord]) -> list[str]:
-    """Tests in which a process below the tests says that the mutant changed something."""
+    """Return the tests in which a process below them reports that the mutant changed something."""
     return list(dict.fromkeys(test for record in records for test in record.acted))
 
 
 def fold_fork(
     seen: Sequence[events.Event], exit_code: int, died: events.ForkDied | None, below: Collection[str] = ()
 ) -> list[events.Event]:
-    """The events of a fork that has ended, completed by its parent's report of how it ended.
+    """Return the events of a fork that has ended, completed by its parent's report of how it ended.
 
     ``below``: tests in which the mutant changed something in a process below it.
     """
@@ -219,7 +219,7 @@ def fold_fork(
 
 @frozen
 class Known:
-    """What only the test process knows of a test and the processes below it.
+    """Facts about a test and the processes below it that only the test process knows.
 
     Attributes:
         job: its job.
@@ -275,7 +275,7 @@ def _with_calls(end: events.TestEnd, records: Sequence[ChildRecord], known: Know
 
 
 def _with_deeds(end: events.TestEnd, records: Sequence[ChildRecord]) -> events.TestEnd:
-    """What the mutant did in all processes together."""
+    """Return the end of a test with what the mutant did in all processes."""
     did = [each for one in records for each in one.did]
     if not did:
         return end
@@ -299,7 +299,7 @@ def _with_deeds(end: events.TestEnd, records: Sequence[ChildRecord]) -> events.T
 
 
 def _with_ends(end: events.TestEnd, records: Sequence[ChildRecord], known: Known) -> events.TestEnd:
-    """Add what the ends of the processes decide about the test."""
+    """Return the end of a test, adjusted for how the processes below it ended."""
     raised = [one.raised for one in records if one.raised is not None]
     failure = end.failure or next((one.failure for one in raised if one.failure is not None), None)
     exceeded = next((one.exceeded for one in records if one.exceeded is not None), None)
@@ -323,7 +323,7 @@ def _with_ends(end: events.TestEnd, records: Sequence[ChildRecord], known: Known
 
 
 def _lost(end: events.TestEnd, records: Sequence[ChildRecord], known: Known) -> str | None:
-    """Why a failed test says nothing about the mutant, or None."""
+    """Return why a failed test shows nothing about the mutant; None if it does."""
     for one in records:
         code = known.codes.get(one.began.pid)
         is_killed = code is not None and code < 0 and -code not in OWN_FAULT
@@ -338,6 +338,6 @@ def _lost(end: events.TestEnd, records: Sequence[ChildRecord], known: Known) -> 
 
 
 def _was_signalled(record: ChildRecord, known: Known) -> bool:
-    """Whether the tests, or a process below them, sent it a signal."""
+    """Return whether the tests, or a process below them, sent the process a signal."""
     pid, group = record.began.pid, record.began.group
     return not {pid, -pid, -group, ANYBODY}.isdisjoint(known.signalled)

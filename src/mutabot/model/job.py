@@ -30,7 +30,7 @@ PIPE_VARIABLE = "MUTABOT_PIPE"
 
 @frozen
 class RefusedAt:
-    """Calls at one site that the robot refuses in the original, in one test.
+    """The calls at one site that the robot refuses in the original, in one test.
 
     Attributes:
         span, operation, pattern: the site, and what is called there.
@@ -70,7 +70,7 @@ class Forking:
 
 @frozen
 class Pictures:
-    """Which test is filmed.
+    """The test that is filmed, and the file of its pictures.
 
     Attributes:
         test: its node id.
@@ -157,12 +157,12 @@ class Job:
 
     @property
     def is_of_text(self) -> bool:
-        """Return whether the job concerns the program text alone, without calls, a clock or other faults."""
+        """Whether the job concerns the program text alone, without calls, a clock or other faults."""
         is_of_text = all(one.reference == TEXT_FAULT for one in self.active.values())
         return is_of_text and not (self.vocabulary.operations or self.vocabulary.clock)
 
     def below(self, mutant: Mutant, activation: Activation) -> Job:
-        """The job of the processes below a fork that is this mutant, which all read it: what they need."""
+        """Return the job of the processes below a fork that is this mutant."""
         text = self.instrumentation.only(activation.places) if self.instrumentation is not None else None
         slim = replace(
             self, mutant=mutant, active={mutant.id: activation}, forking=None, instrumentation=text,
@@ -189,7 +189,7 @@ STOP = "stop"
 
 
 def job_file(home: str | os.PathLike[str]) -> str:
-    """Where the job of the worker with this folder is. A text: pathlib takes long to load.
+    """Return the path of the job of the worker with this folder.
 
     It is where processes below the worker look for it: a fork has that folder to itself.
     """
@@ -203,14 +203,14 @@ def write_job(home: str | os.PathLike[str], job: Job) -> None:
 
 
 def read_job(home: str | os.PathLike[str]) -> Job:
-    """The job of the worker with this folder."""
+    """Return the job of the worker with this folder."""
     job: Job = loads(read_file(job_file(home)))
     return job
 
 
 @frozen
 class Idle:
-    """Answers of a command at one place in the baseline, by test.
+    """The answers of a command at one place in the baseline, by test.
 
     Attributes:
         answers: the different answers, as data that ``answer.restore`` understands.
@@ -226,21 +226,21 @@ class Idle:
 
     @staticmethod
     def key(round: int, test: str) -> str:
-        """A test in a round, 0-based."""
+        """Return a test in a round, 0-based."""
         return f"{round} {test}"
 
     @classmethod
     def of(cls, data: Any) -> Idle:
-        """The answers in a mutant's ``idle``; a plain value there is the only answer."""
+        """Return the answers in a mutant's ``idle``; a plain value there is the only answer."""
         return cls((data,)) if is_plain(data) else from_data(cls, data)
 
     def data(self) -> Any:
-        """The answers as a mutant carries them."""
+        """Return the answers as data that a mutant carries."""
         single = len(self.answers) == 1 and not self.varying and is_plain(self.answers[0])
         return self.answers[0] if single else to_data(self)
 
     def in_round(self, round: int) -> Any:
-        """The answers as far as they count in a round."""
+        """Return the answers that count in a round."""
         here = {key: number for key, number in self.of_test.items() if key.startswith(f"{round} ")}
         used = sorted({0, *here.values()})
         return [
@@ -250,10 +250,10 @@ class Idle:
         ]
 
     def first(self, round: int, test: str) -> Any:
-        """The data of the first answer in a test."""
+        """Return the data of the first answer in a test."""
         return self.answers[self.of_test.get(self.key(round, test), 0)]
 
     def is_varying(self, round: int, test: str) -> bool:
-        """Return whether answers differed within a test; for an unknown test, whether they did in any."""
+        """Return whether answers differed within a test; for an unknown test, within any test."""
         key = self.key(round, test)
         return key in self.varying if key in self.of_test else bool(self.varying)

@@ -1,4 +1,4 @@
-"""The parent of a worker: what the worker leaves running ends with it, also if it became a daemon.
+"""The supervisor of a worker: it ends what the worker leaves running, daemons included.
 
 A process whose parent is gone goes to the nearest process above that takes orphans, which is this one. So
 neither a session of its own nor an empty environment lets a process escape, and the tests, when they wait for
@@ -34,7 +34,7 @@ _SIGNALS = {signal.SIGCHLD, signal.SIGTERM, signal.SIGHUP}
 
 
 def main() -> NoReturn:
-    """Run a worker: arguments are the number of the controller and the worker's command line."""
+    """Run a worker; the arguments are the controller's number and the worker's command line."""
     controller, command = int(sys.argv[1]), sys.argv[2:]
     guard(os.path.dirname(os.path.dirname(os.environ[_JOB])), controller)
     os.setsid()
@@ -82,7 +82,7 @@ def _keep(worker: int, folder: str, controller: int) -> NoReturn:
 
 
 def _reap(worker: int) -> int | None:
-    """Take note of all that have ended; the status of the worker if it has."""
+    """Reap all children that have ended. Return the status of the worker if it is among them."""
     found = None
     with suppress(ChildProcessError):
         while (ended := os.waitpid(-1, os.WNOHANG))[0]:
@@ -99,7 +99,7 @@ def _end(worker: int) -> int:
 
 
 def _still_there() -> list[int]:
-    """The processes that are there a moment after the worker's end."""
+    """Return the processes that still run a moment after the worker's end."""
     until = time.monotonic() + _GRACE
     while (found := _children()) and time.monotonic() < until:
         time.sleep(_PAUSE)
@@ -143,7 +143,7 @@ def name_of(pid: int) -> str:
 
 
 def _leave(status: int) -> NoReturn:
-    """End as the worker has ended."""
+    """End in the same way as the worker."""
     code = os.waitstatus_to_exitcode(status)
     if code >= 0:
         os._exit(code)

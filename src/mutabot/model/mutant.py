@@ -1,4 +1,4 @@
-"""Mutants: a fault at a site, the moments at which it acts, and alternatives in the program text.
+"""Mutants: a fault at a site, when it acts, and alternatives in the program text.
 
 Without a moment a mutant acts at each call of its site. In a control loop no robot has such a fault: a policy
 that is wrong at 300 of 300 steps is noticed by every test. Alternatives are made where the program text is
@@ -21,7 +21,7 @@ from mutabot.model.notation import Notation
 
 
 class When(StrEnum):
-    """The kinds of moments, by the words that select them."""
+    """The kinds of moments, by the keywords that select them."""
 
     #: at the n-th call of a test alone
     NTH = "nth"
@@ -53,7 +53,7 @@ _TEXTS: Mapping[When, tuple[str, str]] = {
 
 @frozen
 class Moment:
-    """At which calls a mutant acts.
+    """The calls at which a mutant acts.
 
     Attributes:
         when: the kind of moment.
@@ -70,7 +70,7 @@ class Moment:
 
     @classmethod
     def parse(cls, text: str) -> Moment:
-        """A moment as configuration and command line write it: ``3``, ``from 10``, ``once``, ``2-2.5 s``.
+        """Parse a moment as a configuration writes it: ``3``, ``from 10``, ``once``, ``2-2.5 s``.
 
         Raises ValueError, which says what would be right.
         """
@@ -95,21 +95,21 @@ class Moment:
 
     @property
     def text(self) -> str:
-        """The moment as it is written."""
+        """The moment as configuration and command line write it."""
         return _TEXTS[self.when][0].format(first=self.first, last=self.last)
 
     @property
     def words(self) -> str:
-        """The moment in a sentence about what the mutant does."""
+        """The moment as part of a sentence about what the mutant does."""
         return _TEXTS[self.when][1].format(first=self.first, last=self.last)
 
     @property
     def asks_time(self) -> bool:
-        """Whether it needs a clock."""
+        """Whether the moment needs a clock."""
         return self.when is When.BETWEEN
 
     def drawn(self, round: int, test: str, seed: int) -> Moment:
-        """Return the moment for a test: a call that is to be drawn is drawn, from ``seed`` alone.
+        """Return the moment for a test, with a random call drawn from ``seed`` alone.
 
         A test in which the baseline made no such call has none.
         """
@@ -121,7 +121,7 @@ class Moment:
         return replace(self, first=float(Random(seed).randint(1, calls)) if calls else 0.0)
 
     def holds(self, call: int, time: float | None) -> bool:
-        """Whether a call is meant: the ``call``-th of its site in the test, at ``time`` (s, if known)."""
+        """Return whether the mutant acts at the ``call``-th call of its site, at ``time`` (s, if known)."""
         if self.when is When.BETWEEN:
             return time is not None and self.first <= time < self.last
         return call >= self.first if self.when is When.FROM else call == self.first
@@ -160,7 +160,7 @@ class Span:
 
 @frozen(refuses=True, order=True)
 class Site:
-    """Where a fault acts: mostly a call expression in the source.
+    """Where a fault acts: usually a call expression in the source.
 
     Attributes:
         span: its exact place.
@@ -179,12 +179,12 @@ class Site:
 
     @classmethod
     def of_parameter(cls, owner: str, name: str) -> Site:
-        """A parameter, which stands nowhere in the program text: ``of_parameter("world", "gravity")``."""
+        """Return the site of a parameter, outside the program text: ``of_parameter("world", "gravity")``."""
         return cls(Span(owner, 0, 0, 0, 0, ""), name, 0, Role.PROGRAM)
 
     @classmethod
     def of_patch(cls, name: str, hunks: Iterable[tuple[str, Extent]]) -> Site:
-        """Several places of one fault, in one file or in several; these may be files of data, too.
+        """Return the site of a fault in several places, in one file or in several, which may be data files.
 
         Args:
             name: of the patch, which the first of its files has once.
@@ -200,7 +200,7 @@ class Site:
 
     @classmethod
     def in_program(cls, file: str, extent: Extent, function: str, text: str, occurrence: int = 1) -> Site:
-        """An expression, a statement or a line of the program.
+        """Return the site of an expression, a statement or a line of the program.
 
         Args:
             file: path relative to the project's root, with forward slashes.
@@ -213,12 +213,12 @@ class Site:
 
     @property
     def is_in_file(self) -> bool:
-        """Whether it stands in a file: a parameter does not."""
+        """Whether the site is in a file; parameters are not."""
         return self.span.line > 0
 
     @property
     def spans(self) -> tuple[Span, ...]:
-        """All its places."""
+        """All places of the site."""
         return (self.span, *self.other_spans)
 
     @property
@@ -319,12 +319,12 @@ class Place:
 
     @classmethod
     def of(cls, mutant: Mutant) -> Place:
-        """Where a mutant acts."""
+        """Return the place at which a mutant acts."""
         return cls(mutant.site, mutant.operation, mutant.pattern)
 
     @property
     def key(self) -> str:
-        """Return a text for the place that is equal in all processes."""
+        """A text that is equal for equal places in all processes."""
         span = self.site.span
         columns = f"{span.line}:{span.column}-{span.end_line}:{span.end_column}"
         return f"{span.file}:{columns} {self.operation} {self.pattern or ''}".rstrip()
@@ -336,7 +336,7 @@ _LINE = re.compile(r"(.+):(\d{1,9}(?:-\d{1,9})?)")
 
 
 def fits(pattern: str, mutant: Mutant) -> bool:
-    """Whether a word of ``--only`` or ``--skip`` means this mutant."""
+    """Return whether a word of ``--only`` or ``--skip`` matches this mutant."""
     if means_numbers(pattern):
         return any(mutant.number in _range(part) for part in pattern.split(","))
     line = line_of(pattern)
@@ -349,7 +349,7 @@ def fits(pattern: str, mutant: Mutant) -> bool:
 
 
 def _is_in(pattern: str, span: Span) -> bool:
-    """Whether a word is a line of a span, its file or one of its folders."""
+    """Return whether a word is a line of a span, its file or one of its folders."""
     lines = (f"{span.file}:{number}" for number in range(span.line, span.end_line + 1))
     return (
         is_like(pattern, span.file)
@@ -359,35 +359,35 @@ def _is_in(pattern: str, span: Span) -> bool:
 
 
 def means_numbers(pattern: str) -> bool:
-    """Whether a word means numbers of mutants."""
+    """Return whether a word consists of mutants' numbers."""
     return _NUMBERS.fullmatch(pattern) is not None
 
 
 def numbers_in(pattern: str) -> Iterator[int]:
-    """The numbers that ``3,16-20`` means, in its order."""
+    """Yield the numbers in ``3,16-20``, in order."""
     return (number for part in pattern.split(",") for number in _range(part))
 
 
 def line_of(pattern: str) -> tuple[str, range] | None:
-    """The file and the lines that a word means; None if it means something else."""
+    """Return the file and the lines that a word names; None if it is no ``file:line``."""
     line = _LINE.fullmatch(pattern)
     return (line[1], _range(line[2])) if line is not None else None
 
 
 def _range(text: str) -> range:
-    """The numbers that ``7`` or ``3-7`` means."""
+    """Return the numbers in ``7`` or ``3-7``."""
     first, _, last = text.partition("-")
     return range(int(first), int(last or first) + 1)
 
 
 def _is_at(span: Span, file: str, lines: range) -> bool:
-    """Whether a span is in these lines of a file, whose first folders may be left out."""
+    """Return whether a span is in these lines of a file, whose first folders may be left out."""
     is_here = is_like(file, span.file) or span.file.endswith("/" + file.removeprefix("…/"))
     return is_here and span.line < lines.stop and span.end_line >= lines.start
 
 
 def is_like(pattern: str, text: str) -> bool:
-    """Whether a text fits a pattern, in which ``*`` and ``?`` are wild and brackets are just brackets.
+    """Return whether a text matches a pattern in which only ``*`` and ``?`` are special.
 
     What stands between stars is looked for once, from left to right: no pattern takes long.
     """
@@ -408,7 +408,7 @@ def is_like(pattern: str, text: str) -> bool:
 
 @lru_cache(maxsize=1024)
 def _fixed(part: str) -> re.Pattern[str]:
-    """A part of a pattern without stars."""
+    """Return the regular expression for a part of a pattern without stars."""
     return re.compile("".join("." if sign == "?" else re.escape(sign) for sign in part), re.DOTALL)
 
 
@@ -433,13 +433,13 @@ _FITTING: Mapping[str, frozenset[str]] = {
 
 
 def fits_kinds(need: str, kinds: Iterable[str]) -> bool:
-    """Whether a value of one of these kinds fits what an alternative needs."""
+    """Return whether a value of one of these kinds fits what an alternative needs."""
     return not _FITTING.get(need, frozenset()).isdisjoint(kinds)
 
 
 @frozen
 class Alternative:
-    """One other reading of a place.
+    """Another expression or statement in the place of the original.
 
     Attributes:
         operator: name of the operator that makes it.
@@ -463,11 +463,11 @@ class Alternative:
 
     @staticmethod
     def kept_name(index: int) -> str:
-        """The name that stands in a template for a part of the original that is kept: ``TextPlace.kept``."""
+        """Return the name in a template that is replaced by a part of the original: ``TextPlace.kept``."""
         return f"__kept_{index}__"
 
     def fits(self, kinds: Iterable[str]) -> bool:
-        """Whether it takes a value of one of these kinds, as sightings of the original have them."""
+        """Return whether it takes a value of one of these kinds, which the original had."""
         return fits_kinds(self.needs, kinds) if self.needs else True
 
 
@@ -501,7 +501,7 @@ class TextPlace:
 
     @property
     def extent(self) -> Extent:
-        """Where it stands in its file."""
+        """The extent of the place in its file."""
         span = self.span
         return (span.line, span.column, span.end_line, span.end_column)
 
@@ -513,7 +513,7 @@ class TextPlace:
 
 @frozen
 class ProgramText:
-    """A program file and the places in it.
+    """A program file and its places.
 
     Attributes:
         file: path relative to the project's root, with forward slashes.
@@ -532,7 +532,7 @@ class ProgramText:
     def of(
         cls, file: str, content: bytes, places: Iterable[TextPlace], declared: Mapping[str, tuple[str, ...]]
     ) -> ProgramText:
-        """The text of a file with this content."""
+        """Return the text of a file with this content."""
         from mutabot.model.source_units import digest  # noqa: PLC0415  # slow, and only planning needs it
 
         return cls(file, digest(content), tuple(places), declared)
@@ -540,7 +540,7 @@ class ProgramText:
 
 @frozen
 class Instrumentation:
-    """What to put into the program while it is imported.
+    """What is put into the program while it is imported.
 
     Attributes:
         texts: the files and the places in them; fewer places cost less.
@@ -561,7 +561,7 @@ class Instrumentation:
 
 @frozen
 class Sighting:
-    """What the baseline saw at a place.
+    """What the baseline observed at a place.
 
     Attributes:
         place: number of the place.
@@ -577,7 +577,7 @@ class Sighting:
     variables: tuple[str, ...] = ()
 
     def with_others(self, other: Sighting) -> Sighting:
-        """What two sessions saw: all kinds, and the variables that both saw."""
+        """Return the merged observations of two sessions: all kinds, and the variables that both have."""
         kinds = tuple(sorted({*self.kinds, *other.kinds}))
         variables = tuple(name for name in self.variables if name in other.variables)
         return Sighting(self.place, self.hits + other.hits, kinds, variables)

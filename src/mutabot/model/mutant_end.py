@@ -27,7 +27,7 @@ class MutantEnd:
 
     @property
     def state(self) -> str:
-        """What it is counted as: its verdict, or *accepted*."""
+        """The state that it is counted as: its verdict, or *accepted*."""
         verdict = self.outcome.verdict
         is_let_through = verdict in (Verdict.SURVIVED, Verdict.NOT_COVERED)
         return "accepted" if is_let_through and self.acceptance is not None else str(verdict)

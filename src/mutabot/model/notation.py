@@ -1,4 +1,4 @@
-"""Text commands both ways: reading values out of a command and printing a command with new ones.
+"""Notations of text commands, for reading values from a command and writing a command with new ones.
 
 A notation is written like a format string: ``lift/{height:g}``. Literal text must match exactly; each
 field takes what its type allows. A changed number keeps the look of the one it replaces: decimals,
@@ -37,7 +37,7 @@ class Field:
 
     @property
     def expression(self) -> str:
-        """Regular expression for what the field takes."""
+        """Regular expression of the field."""
         return {"d": _INTEGER, "g": _NUMBER, "s": _WORD}[self.kind]
 
 
@@ -68,21 +68,21 @@ class Notation:
         return "".join(part if isinstance(part, str) else f"{{{part.name}}}" for part in self.parts)
 
     def read(self, message: str) -> dict[str, Any] | None:
-        """The fields' values if the message is this command, else None."""
+        """Return the fields' values if the message is this command, else None."""
         match = _expression(self).fullmatch(message)
         if match is None:
             return None
         return {field.name: _value(field, match[field.name]) for field in self.fields}
 
     def looks(self, message: str) -> dict[str, str]:
-        """The fields as the message writes them; nothing if the message is another command."""
+        """Return the fields as the message writes them; empty if the message is another command."""
         match = _expression(self).fullmatch(message)
         return match.groupdict() if match is not None else {}
 
     def write(
         self, values: Mapping[str, Any], *, like: str | None = None, looks: Mapping[str, str] | None = None
     ) -> str:
-        """The command with these values.
+        """Return the command with these values.
 
         ``like`` is a message of this notation whose look is kept; ``looks`` gives the looks of the fields
         where they come from a message of another notation, such as the opposite one.

@@ -1,4 +1,4 @@
-"""The job of a run that is only watched, and the files in which its processes write what they saw."""
+"""The job of an observed run, and the files to which its processes write their observations."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ JOB, SEEN, TESTS = "observation.json", ".seen.json", "tests"
 
 @frozen
 class ObservationJob:
-    """A run that is only watched.
+    """An observed run, without any mutant.
 
     Attributes:
         root: absolute path of the project.

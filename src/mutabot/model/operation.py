@@ -15,7 +15,7 @@ from mutabot.model.quantity import Kind, Quantity
 
 
 class Form(StrEnum):
-    """What is done under a name, and between which sides.
+    """The kinds of use of a name on a middleware, such as publishing, with their two sides.
 
     Those that *write* have an argument that holds all of it, called ``message``, ``request`` or ``goal``;
     what those that *read* bring is the result. Forms that set something up (a publisher, a timer) have
@@ -53,12 +53,12 @@ class Form(StrEnum):
 
     @property
     def comes_by_itself(self) -> bool:
-        """Whether it is given to a callback, or waited for: it may come late, twice or never."""
+        """Whether it arrives by a callback or is waited for, so that it may come late, twice or never."""
         return self in (Form.RECEIVE, Form.FEEDBACK, Form.TICK)
 
     @property
     def settings(self) -> tuple[Quantity, ...]:
-        """What is written where something is set up, or a parameter read: no vocabulary describes it."""
+        """The quantities that are written in setting something up, which no vocabulary describes."""
         if self is Form.PARAMETER:
             return (_DEFAULT,)
         return tuple(one for one in _SETTINGS if one.name in SETTING_UP.get(self, ()))
@@ -94,7 +94,7 @@ _DEFAULT = Quantity("default", Path("default"), Kind.SETTING)
 
 @frozen
 class Named:
-    """An operation that is known by its name on a middleware.
+    """The identity of an operation that has a name on a middleware.
 
     Attributes:
         form: what is done.
@@ -116,20 +116,20 @@ class Named:
 
     @classmethod
     def of(cls, target: str) -> Named:
-        """What a target says, as ``target`` gives it; the type is not in it."""
+        """Parse a target, as ``target`` gives it; it lacks the type."""
         rest, _, node = target.partition(" of ")
         form, _, name = rest.partition(" ")
         return cls(Form(form), name, node or None)
 
     def fits(self, form: Form, name: str, node: str | None) -> bool:
-        """Whether something that is done in a node under a resolved name is meant."""
+        """Return whether a use under a resolved name in a node is this operation."""
         if form is not self.form or not fnmatchcase(name, self.name):
             return False
         return self.node is None or (node is not None and fnmatchcase(node, self.node))
 
 
 def named_of(target: str) -> Named | None:
-    """What a target says; None for one that is no name on a middleware."""
+    """Parse the target of a name on a middleware; return None for any other target."""
     return Named.of(target) if target.partition(" ")[0] in tuple(Form) and " " in target else None
 
 
@@ -139,7 +139,7 @@ ENDINGS = ("ABORTED", "REJECTED", "CANCELED")
 
 @frozen
 class Refused:
-    """How the answer to a command, or a message that follows it, says that the robot refuses it.
+    """How a command's answer, or a message after it, shows that the robot refuses it.
 
     Attributes:
         path: into the result, or into the message of the topic; ``""`` is the whole.
@@ -154,7 +154,7 @@ class Refused:
 
     @property
     def parsed(self) -> Path:
-        """The path, read."""
+        """The path, parsed."""
         return _parsed(self.path)
 
 
@@ -288,13 +288,13 @@ class Operation:
     def under_name(
         cls, form: Form, name: str, arguments: tuple[Quantity, ...] = (), result: tuple[Quantity, ...] = ()
     ) -> Operation:
-        """What is done under a name on a middleware; a message, request or goal that is sent is a command."""
+        """Make an operation under a name on a middleware; a sent message, request or goal is a command."""
         named = Named(form, name)
         return cls(named.target, arguments, result, command=form in WRITTEN, kind="messages", named=named)
 
     @property
     def form(self) -> Form | None:
-        """What is done under its name; None for what has none."""
+        """The kind of use of its name; None if it has no name on a middleware."""
         return self.named.form if self.named is not None else None
 
     def by_numbers(self) -> Operation:
@@ -330,7 +330,7 @@ class Operation:
 
     @property
     def described(self) -> dict[str, str]:
-        """The arguments that the vocabulary speaks of, and the key that does."""
+        """The names of the described arguments, each with the key that describes it."""
         found = {quantity.path.root or "": f"arguments.{quantity.name}" for quantity in self.arguments}
         for pattern in self.patterns:
             fields = pattern.fields
@@ -366,17 +366,17 @@ class Operation:
         return tuple(dict.fromkeys(name for name in (self.opposite, *of_cases) if name is not None))
 
     def is_field(self, quantity: Quantity) -> bool:
-        """Whether a quantity lies in the message, request, goal or answer, and is no other argument."""
+        """Return whether a quantity is in the message, request, goal or answer, and is no other argument."""
         root = quantity.path.root
         return root is None or (self.named is not None and root == WRITTEN.get(self.named.form))
 
     @property
     def told_as_refused(self) -> tuple[Refused, ...]:
-        """All ways in which the robot says by data that it refuses any of its calls."""
+        """All ways in which the robot reports, by data, that it refuses any of its calls."""
         return (*self.refused, *(one for pattern in self.patterns for one in pattern.refused))
 
     def pattern(self, text: str | None) -> Pattern | None:
-        """The pattern with this notation, or None."""
+        """Return the pattern with this notation, or None."""
         return next((pattern for pattern in self.patterns if pattern.text == text), None)
 
 
@@ -402,14 +402,14 @@ class Clock:
 
 
 def owner_of(target: str) -> str:
-    """What a callable lies in, as ``module:Name``; empty for what its module has itself."""
+    """Return the owner of a callable, as ``module:Name``; empty for a module's own functions."""
     owner = target.rpartition(".")[0]
     return owner if ":" in owner else ""
 
 
 @frozen
 class Wait:
-    """How the program's time is let pass.
+    """How the program's time can be advanced.
 
     Attributes:
         target: callable that takes one number and returns when so much time has passed, as
@@ -424,7 +424,7 @@ class Wait:
 
 @frozen
 class Probe:
-    """A reading that mutabot takes along the way and at the end of a test, to compare worlds.
+    """A reading that mutabot takes during a test and at its end, to compare worlds.
 
     Attributes:
         target: callable without arguments, or a value, as ``module:qualified.name``. A method, property or
@@ -441,7 +441,7 @@ class Probe:
 
 @frozen
 class Vocabulary:
-    """Everything the vocabulary files say, put together.
+    """The merged content of the vocabulary files.
 
     Attributes:
         operations: the robot API.
@@ -462,7 +462,7 @@ class Vocabulary:
     wait: Wait | None = None
 
     def operation(self, target: str) -> Operation | None:
-        """The operation with this target, or None."""
+        """Return the operation with this target, or None."""
         return next((operation for operation in self.operations if operation.target == target), None)
 
     def quantity(self, target: str, pattern: str | None, name: str | None) -> Quantity | None:

@@ -51,7 +51,7 @@ KILLED = frozenset({Verdict.KILLED, Verdict.TIMEOUT})
 
 @frozen
 class Check:
-    """One check that a test makes.
+    """A check in a test.
 
     Attributes:
         place: ``file:line`` of it.
@@ -120,7 +120,7 @@ class Apart:
 
     @property
     def deviation(self) -> float:
-        """What cannot be mere delay, in units of the original's spread."""
+        """The deviation that delay alone cannot explain, in units of the original's spread."""
         return max(self.of_end, deviation_of(self.aside or 0.0, self.aside_spread, self.tolerance))
 
     @property
@@ -130,13 +130,13 @@ class Apart:
 
     @property
     def is_delay(self) -> bool:
-        """Whether it may have gone the same way at other times."""
+        """Whether it may have taken the same path at other times."""
         return max(self.final, self.aside or 0.0) <= self.tolerance
 
 
 @frozen
 class Measurement:
-    """What was measured of one motion or contact, as the mutant and as the original.
+    """A measurement of one motion or contact, as the mutant and as the original.
 
     Attributes:
         name: what was measured, such as ``release height``.
@@ -197,20 +197,20 @@ class Diverged:
 
     @property
     def deviation(self) -> float:
-        """How far the world was from the original's at most, in units of the original's spread."""
+        """The greatest distance of the world from the original's, in units of the original's spread."""
         found = [one.deviation for one in self.apart] + [one.deviation for one in self.measurements]
         return max(found, default=0.0)
 
     @property
     def rank(self) -> tuple[bool, bool, bool, float]:
-        """Highest for what says most about a mutant: a stable test whose world differs, and how far."""
+        """The sort key of a difference; the highest is that of a stable test whose world differs most."""
         is_stable = not self.scatters
         return bool(self.story) and is_stable, bool(self.story), is_stable, self.deviation
 
 
 @frozen
 class Compared:
-    """How much of a mutant's tests was compared with the original's.
+    """The amounts of data in a mutant's tests that were compared with the original's.
 
     Attributes:
         calls: calls of operations.
@@ -224,7 +224,7 @@ class Compared:
 
     @classmethod
     def together(cls, parts: Iterable[Compared]) -> Compared:
-        """Add up what was compared in several tests."""
+        """Return the sum of what was compared in several tests."""
         parts = list(parts)
         return cls(
             sum(part.calls for part in parts),
@@ -346,12 +346,12 @@ class Outcome:
 
     @property
     def told(self) -> Diverged | None:
-        """The test that says most about it, whose story reports show; None if no recording differs."""
+        """The most telling difference in recordings, whose story reports show; None if there is none."""
         return max(self.diverged, key=lambda one: one.rank, default=None)
 
     @property
     def deviation(self) -> float | None:
-        """How far it was from the original at most, in units of the original's spread; None if not known.
+        """The greatest distance from the original, in units of the original's spread; None if not known.
 
         What was recorded of the world says more than probes do, and tests whose end is stable more than
         others.
@@ -365,7 +365,7 @@ class Outcome:
 
 
 def added(counts: Iterable[Mapping[str, int]]) -> dict[str, int]:
-    """Counts by name, put together."""
+    """Return the sum of counts by name."""
     total: dict[str, int] = {}
     for one in counts:
         for name, count in one.items():
@@ -415,18 +415,18 @@ _ACCIDENTAL = (
 
 
 def same_end(first: Outcome, second: Outcome) -> bool:
-    """Whether two outcomes are the same in verdict, in what noticed it, in the test and in the message."""
+    """Return whether two outcomes have the same verdict, cause, test and message."""
     return _end(first) == _end(second)
 
 
 def in_words(outcome: Outcome) -> str:
-    """How a mutant ended: ``killed by check in tests/test_box.py::test_arrives: assert 1 == 2``."""
+    """Return how a mutant ended: ``killed by check in tests/test_box.py::test_arrives: assert 1 == 2``."""
     is_told = bool((outcome.message or "").strip())
     return f"{end_in_words(outcome)}: {first_line(outcome.message)}" if is_told else end_in_words(outcome)
 
 
 def first_line(text: str | None) -> str:
-    """The first line of a message, or a text for an empty message."""
+    """Return the first line of a message, or a placeholder for an empty message."""
     lines = (text or "").strip().splitlines()
     return lines[0] if lines else "no message"
 
@@ -439,7 +439,7 @@ def end_in_words(outcome: Outcome) -> str:
 
 
 def without_accidents(message: str | None) -> str | None:
-    """A message without what differs between equal runs in different processes."""
+    """Return a message without parts that differ between equal runs in different processes."""
     for pattern, text in _ACCIDENTAL if message is not None else ():
         message = pattern.sub(text, message or "")
     return message

@@ -46,13 +46,13 @@ class Step:
 
     @property
     def key(self) -> Any:
-        """What stands in the brackets, as Python would use it."""
+        """The content of the brackets, as Python would use it."""
         return slice(*self.bounds) if self.bounds is not None else self.item
 
 
 @frozen
 class Path:
-    """Where a value lies inside an object; without steps it is the object itself.
+    """The location of a value inside an object; without steps, the object itself.
 
     Attributes:
         root: the argument's (or text field's) name a path starts at; None for a path into a result.
@@ -90,7 +90,7 @@ class Path:
         return cls(root, tuple(steps))
 
     def get(self, value: Any) -> Any:
-        """The value at the end of the steps, starting at ``value``.
+        """Return the value at the end of the steps, starting at ``value``.
 
         Raises PathError if a step does not fit.
         """
@@ -99,7 +99,7 @@ class Path:
         return value
 
     def put(self, value: Any, new: Any) -> Any:
-        """A copy of ``value`` in which the end of the path holds ``new``.
+        """Return a copy of ``value`` in which the end of the path holds ``new``.
 
         Raises PathError if a step does not fit or an object on the way cannot be copied and changed.
         """
@@ -161,7 +161,7 @@ def _read_step(match: re.Match[str], text: str) -> Step:
 
 
 def known_steps(value: Any) -> list[str]:
-    """The steps that could be taken from ``value``, for error messages."""
+    """Return the steps that could be taken from ``value``, for error messages."""
     try:
         return _known_steps(value)
     except Exception:  # as above
@@ -214,7 +214,7 @@ def _copy_for_item(value: Any, inner: Any) -> Any:
 
 
 def _numbers(value: Any) -> Iterator[Any]:
-    """The numbers in a number, array or nested sequence."""
+    """Yield the numbers in a number, array or nested sequence."""
     for item in getattr(value, "flat", value if isinstance(value, list | tuple) else (value,)):
         if isinstance(item, list | tuple):
             yield from _numbers(item)
@@ -238,7 +238,7 @@ def _with_attribute(value: Any, name: str, inner: Any) -> Any:
 
 
 def _stored_as(value: Any, name: str) -> str:
-    """The attribute behind a property that only shows it, such as ``_value``; else the name itself."""
+    """Return the attribute in which a property stores its value, such as ``_value``; else the name itself."""
     if isinstance(getattr(type(value), name, None), property):
         shown = getattr(value, name)
         hidden = (f"_{name}", *(f"_{base.__name__.lstrip('_')}__{name}" for base in type(value).__mro__))

@@ -1,4 +1,4 @@
-"""Measure how much time a process has used on a shared machine.
+"""Measure how much time processes have used on a shared machine.
 
 Time for which its tasks waited for a processor does not count. So a limit of wall clock means the same on a
 busy machine as on a quiet one, as far as the kernel keeps accounts: a task that waits for a message asks for
@@ -21,7 +21,7 @@ _PRESSURE = "/proc/pressure/cpu"
 
 @frozen
 class Account:
-    """What a task has had until now.
+    """The time that a task has used until now.
 
     Attributes:
         ran: seconds on a processor.
@@ -37,7 +37,7 @@ Accounts = Mapping[int, Account] | None
 
 
 def accounts_of(processes: Iterable[int]) -> Accounts:
-    """The accounts of all tasks of these processes, of those that are there."""
+    """Return the accounts of all tasks of those of these processes that exist."""
     if not _are_kept():
         return None
     found = {}
@@ -63,12 +63,12 @@ def below(roots: Iterable[int]) -> set[int]:
 
 @cache
 def _are_listed() -> bool:
-    """Whether the kernel lists the children of a task: to look for them takes long if many processes run."""
+    """Return whether the kernel lists the children of a task, as searching for them is slow."""
     return os.path.exists("/proc/thread-self/children")  # noqa: PTH110  # pathlib takes long to load
 
 
 def _children_of(pid: int, nothing: Iterable[int]) -> Iterable[int]:
-    """The children of all tasks of a process."""
+    """Return the children of all tasks of a process."""
     found = list(nothing)
     for task in _names(f"/proc/{pid}/task"):
         with suppress(OSError, ValueError):
@@ -77,7 +77,7 @@ def _children_of(pid: int, nothing: Iterable[int]) -> Iterable[int]:
 
 
 def _all_children() -> dict[int, list[int]]:
-    """The children of every process that has any."""
+    """Return the children of every process that has any."""
     found: dict[int, list[int]] = {}
     for name in _names("/proc"):
         if name.isdigit():
@@ -113,7 +113,7 @@ def shortage() -> float | None:
 
 
 def is_crowded() -> bool:
-    """Whether more tasks want to run right now, or did in the last minute, than there are processors."""
+    """Return whether more tasks want to run, now or in the last minute, than there are processors."""
     processors = len(os.sched_getaffinity(0))
     with suppress(OSError, ValueError, IndexError):
         line = next(line for line in _read("/proc/stat").splitlines() if line.startswith("procs_running"))
@@ -124,7 +124,7 @@ def is_crowded() -> bool:
 
 @cache
 def _are_kept() -> bool:
-    """Whether the kernel keeps accounts: this very process must have run."""
+    """Return whether the kernel keeps accounts: it must have one for this process."""
     with suppress(OSError, IndexError, ValueError):
         return int(_read("/proc/self/schedstat").split()[0]) > 0
     return False
@@ -150,7 +150,7 @@ _NONE = Account(0.0, 0.0)
 
 @frozen
 class TimeUsed:
-    """What there was when the time of a process began.
+    """The time that processes have used since a start time.
 
     Attributes:
         began: the moment (``time.monotonic``).
@@ -164,18 +164,18 @@ class TimeUsed:
 
     @classmethod
     def from_now(cls, processes: Iterable[int] = ()) -> TimeUsed:
-        """The time of these processes begins; that of any other begins with its start."""
+        """Return the accounts of these processes from now on; later processes count from their start."""
         return cls(monotonic(), accounts_of(processes), shortage())
 
     @property
     def age(self) -> float:
-        """Seconds since then."""
+        """Seconds since the start time."""
         return monotonic() - self.began
 
     def remaining(
         self, wall: float, processor: float | None, processes: Iterable[int]
     ) -> tuple[float, float | None]:
-        """Seconds left in the budgets of wall clock and processor time if processes are not delayed further.
+        """Return the seconds left in the budgets of wall-clock and processor time without further delay.
 
         0 or less: used up. The wall clock is also used up once ``MOST`` times its budget has passed.
         """
@@ -185,7 +185,7 @@ class TimeUsed:
         return left, None if processor is None else processor - ran
 
     def hindrance(self, processes: Iterable[int] = ()) -> str | None:
-        """Why the time limit is inconclusive, or None if the machine was quiet enough."""
+        """Return why the time limit is inconclusive, or None if the machine was quiet enough."""
         passed = self.age
         _, queued = self._had(processes)
         if min(queued, passed) >= _QUEUED * passed:
@@ -198,7 +198,7 @@ class TimeUsed:
         return f"processors were short for {min(1.0, short):.0%} of the time" if short >= _SHORT else None
 
     def _had(self, processes: Iterable[int]) -> tuple[float, float]:
-        """Return the seconds that their tasks spent on a processor, and waiting for one."""
+        """Return the seconds that the processes' tasks spent on a processor, and waiting for one."""
         roots = list(processes)
         found = accounts_of(below(roots)) if roots else None
         if not found:

@@ -1,4 +1,4 @@
-"""Quantities: the meaning of one argument or of one part of a result, and which of its values are the same.
+"""Quantities: the meaning of an argument or of a part of a result, and when two values are the same.
 
 Orientations may be attributes of an object, as the ``x``, ``y``, ``z`` and ``w`` of a message's quaternion
 are. A stamp of ROS 2 has ``sec`` and ``nanosec``, one of ROS 1 ``secs`` and ``nsecs``. Seconds since 1970
@@ -102,12 +102,12 @@ class Kind(StrEnum):
 
     @property
     def is_measured(self) -> bool:
-        """Whether its values are numbers on a scale, with a unit."""
+        """Whether its values are numbers on a scale with a unit."""
         return self in MEASURED
 
     @property
     def is_whole(self) -> bool:
-        """Whether its values are orientations as a whole."""
+        """Whether its values are complete orientations."""
         return self in WHOLE
 
 
@@ -154,7 +154,7 @@ DIMENSIONS: dict[Kind, frozenset[Dimension]] = {
 
 
 def measures_of(kind: Kind) -> tuple[Dimension, ...]:
-    """What faults in a quantity of this kind measure: an orientation as a whole is off by an angle."""
+    """Return the dimensions of faults in a quantity of this kind; orientations have faults in angles."""
     return (Dimension.ANGLE,) if kind in WHOLE else tuple(DIMENSIONS.get(kind, ()))
 
 
@@ -219,7 +219,7 @@ class Quantity:
         return self.of(self.path.get(start))
 
     def of(self, value: Any) -> Value:
-        """Convert what is at the end of its path to a value: a stamp's seconds, an orientation's numbers.
+        """Return the value at the end of its path, with stamps in seconds and orientations as numbers.
 
         A member of an enumeration is what ``values`` write for it. ``data.UNKNOWN`` if nobody may look into
         it. Raises PathError.
@@ -234,7 +234,7 @@ class Quantity:
         return data_of(value)
 
     def put(self, start: Any, value: Value) -> Any:
-        """A copy of what its path starts at, with another value, or None. Raises PathError.
+        """Return a copy of the start of its path, with another value or None put in.
 
         The value is of the class of what was there, such as a decimal, where that can be.
         """
@@ -252,7 +252,7 @@ class Quantity:
 
     @property
     def _parts(self) -> str:
-        """The names of the parts of an orientation, where these are attributes."""
+        """The names of an orientation's parts, if they are attributes."""
         return "xyz" if self.kind is Kind.ROTATION_VECTOR else (self.order or "").lower()
 
     @property
@@ -261,7 +261,7 @@ class Quantity:
         return self.kind in MEASURED
 
     def allows(self, value: Value) -> bool:
-        """Whether the robot API would take this value, as far as the vocabulary says."""
+        """Return whether the robot API accepts this value, as far as the vocabulary describes that."""
         if self.values is not None and value not in self.values:
             return False
         if self.range is not None:
@@ -278,17 +278,17 @@ class Quantity:
 
     @property
     def is_whole(self) -> bool:
-        """Whether its value is an orientation as a whole."""
+        """Whether its value is a complete orientation."""
         return self.kind in WHOLE
 
     @property
     def is_numeric(self) -> bool:
-        """Whether its values are numbers of which operators make others, one or several."""
+        """Whether its values are one or several numbers that operators can change."""
         return self.values is None and self.kind in DIMENSIONS and not self.is_whole
 
     @property
     def full_turn(self) -> float | None:
-        """A full turn in its unit, where that makes no difference; None for all else, joints included."""
+        """A full turn in its unit, if a full turn makes no difference; None otherwise, also for joints."""
         is_joint = self.axis is not None and self.axis.startswith("j")
         is_target = self.kind is Kind.ROTATION and self.mode is Mode.TO
         if is_joint or not (is_target or self.kind in (Kind.ORIENTATION, Kind.ANGLE)):
@@ -296,7 +296,7 @@ class Quantity:
         return self.from_unit(2.0 * math.pi, "rad")
 
     def orientation(self, value: Value) -> Quaternion | None:
-        """The orientation that a value means, as a unit quaternion; None if it means none."""
+        """Return a value's orientation as a unit quaternion; None if it is no orientation."""
         if not self.is_whole:
             return None
         return to_quaternion(
@@ -304,33 +304,33 @@ class Quantity:
         )
 
     def numbers(self, orientation: Quaternion) -> list[float]:
-        """An orientation as this quantity writes it."""
+        """Return an orientation in the notation of this quantity."""
         return to_values(orientation, self.kind, self.order, lambda angle: self.from_unit(angle, "rad"))
 
     def from_unit(self, value: float, unit: str) -> float:
-        """``value`` in ``unit``, expressed in this quantity's own unit."""
+        """Return ``value``, given in ``unit``, in this quantity's own unit."""
         return convert(value, unit, self.unit) if self.unit is not None else value
 
     def to_unit(self, value: float, unit: str) -> float:
-        """``value`` in this quantity's own unit, expressed in ``unit``."""
+        """Return ``value``, given in this quantity's own unit, in ``unit``."""
         return convert(value, self.unit, unit) if self.unit is not None else value
 
     @property
     def ends(self) -> tuple[Value, Value] | None:
-        """Its two values, or the ends of its range; None for any other."""
+        """Its two values, or the ends of its range; None for other quantities."""
         if self.values is not None:
             return (self.values[0], self.values[1]) if len(self.values) == 2 else None
         return self.range or self.clip
 
     def other_end(self, value: Value) -> Value | None:
-        """The other of its two ends, as open for close; None if the value is neither of them."""
+        """Return the other of its two end values, as open for close; None if the value is neither."""
         ends, value = self.ends, self.clipped(value)
         if ends is None or value is None or value not in ends:
             return None
         return ends[1] if value == ends[0] else ends[0]
 
     def is_same(self, one: Value, other: Value) -> bool:
-        """Whether the robot, or the program that reads it, cannot tell two values apart.
+        """Return whether neither the robot nor the program can distinguish two values.
 
         Orientations as a whole are the same if the angle between them is none, in whichever writing; targets
         of rotations modulo a full turn; numbers, and the parts of vectors, up to the rounding of
@@ -354,7 +354,7 @@ class Quantity:
     def rotated(
         self, value: Value, change: Callable[[Quaternion], Quaternion], least: float = _SAME_ORIENTATION
     ) -> Value | None:
-        """Another orientation, written like ``value``; None if that means none.
+        """Return an orientation rotated by ``change``, in the same notation; None if it is no orientation.
 
         Args:
             value: the orientation, in this quantity's writing.
@@ -371,12 +371,12 @@ class Quantity:
         return self.map_numbers(value, lambda _: next(parts) + 0.0)  # no −0
 
     def inverted(self, value: Value) -> Value | None:
-        """The inverse rotation, written like ``value``; ``value`` itself where both are the same."""
+        """Return the inverse rotation in the same notation; ``value`` itself if both are the same."""
         return self.rotated(value, lambda orientation: orientation.inverse, _TURNED_ROUND)
 
     @staticmethod
     def is_scalar(value: Value) -> bool:
-        """Whether a value is a single number: numpy's scalars are, truth values are not."""
+        """Return whether a value is a single number, including numpy's scalars, but not a truth value."""
         if isinstance(value, bool) or type(value).__name__ in ("bool_", "bool"):
             return False
         return isinstance(value, int | float) or (
@@ -406,14 +406,14 @@ class Quantity:
 
     @property
     def label(self) -> str:
-        """How descriptions call it: its axis where it has one, and its name."""
+        """The name in descriptions: its axis, if any, and its name."""
         name = self.name.lstrip(".")
         if self.axis is None or self.axis in _NAMES.split(name):
             return name
         return f"{name} ({self.axis})"
 
     def text(self, value: Value, digits: int = 6) -> str:
-        """A value as reports print it, with its unit."""
+        """Return a value as reports print it, with its unit."""
         if self.is_whole and isinstance(value, list | tuple):
             parts = [f"{part:.{digits}g}" if isinstance(part, int | float) else str(part) for part in value]
             return f"({', '.join(parts)}){f' {self.unit}' if self.unit else ''}"
@@ -423,7 +423,7 @@ class Quantity:
         return f"{number} {self.unit}" if self.unit not in (None, "fraction") else number
 
     def texts(self, one: Value, other: Value) -> tuple[str, str]:
-        """Two values as reports print them side by side."""
+        """Return two values as reports print them side by side."""
         return distinct_texts(one, other, self.text, 6)
 
 
@@ -439,7 +439,7 @@ def distinct_texts(
 
 
 def is_reading_of(reading: Quantity, written: Quantity) -> bool:
-    """Return whether a reading gives the start of a commanded motion: same axis, no other frame.
+    """Return whether a reading gives the start of a commanded motion: same axis and compatible frame.
 
     The target that was sent last tells it as well.
     """
@@ -455,12 +455,12 @@ def is_reading_of(reading: Quantity, written: Quantity) -> bool:
 
 
 def is_number(value: Any) -> bool:
-    """Whether a value is a number; booleans are not."""
+    """Return whether a value is a number; booleans are not."""
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def holds_number(value: Any) -> bool:
-    """Return whether a recorded value is or holds a number; foreign number types are recorded as texts."""
+    """Return whether a recorded value is or contains a number; foreign number types are recorded as texts."""
     if isinstance(value, list | tuple):
         return any(map(holds_number, value))
     if isinstance(value, str):
@@ -473,7 +473,7 @@ def holds_number(value: Any) -> bool:
 
 
 def value_text(value: Any, digits: int = 4) -> str:
-    """A value as divergence lines print it."""
+    """Return a value as divergence lines print it."""
     if value is None:
         return "nothing"
     if is_number(value):
@@ -488,7 +488,7 @@ def value_text(value: Any, digits: int = 4) -> str:
 
 
 def same(one: Value, other: Value) -> bool:
-    """Whether two values are equal; arrays by their elements, not-a-number equal to itself.
+    """Return whether two values are equal; arrays by their elements, NaN equal to itself.
 
     A difference that is but rounding of the computation is none: no robot could show it.
     """
@@ -515,7 +515,7 @@ def numbers_of(value: Any, names: Sequence[str]) -> Any:
 
 
 def with_numbers(value: Any, names: Sequence[str], numbers: Any) -> Any:
-    """A copy of such an object with other numbers; in place of anything else, the numbers themselves.
+    """Return a copy of an object with other numbers in these attributes.
 
     Raises PathError if it cannot be copied and changed.
     """
@@ -538,14 +538,14 @@ _NANOSECOND = 1e-9
 
 
 def are_same(quantities: Iterable[Quantity], one: Mapping[str, Value], other: Mapping[str, Value]) -> bool:
-    """Whether the robot, or the program, cannot tell the values of two calls apart, by quantities' names."""
+    """Return whether neither the robot nor the program can distinguish the values of two calls."""
     return one.keys() == other.keys() and not changes(quantities, other, one)
 
 
 def changes(
     quantities: Iterable[Quantity], before: Mapping[str, Value], after: Mapping[str, Value]
 ) -> dict[str, Value]:
-    """The values of a call that are others than before, or were not there."""
+    """Return the values of a call that are new or differ from ``before``."""
     is_same = {quantity.name: quantity.is_same for quantity in quantities}
     return {
         name: value
@@ -578,7 +578,7 @@ def _is_rounding(quantity: Quantity, one: float, other: float) -> bool:
 
 
 def _is_full_turn(quantity: Quantity, one: float, other: float) -> bool:
-    """Whether the targets of a rotation lie a full turn apart, or several."""
+    """Return whether the targets of a rotation lie one or several full turns apart."""
     turn = _turn_of_target(quantity)
     if turn is None or abs(one - other) < 0.5 * turn:
         return False
@@ -586,7 +586,7 @@ def _is_full_turn(quantity: Quantity, one: float, other: float) -> bool:
 
 
 def _turn_of_target(quantity: Quantity) -> float | None:
-    """A full turn, where it makes no difference to the robot which of two targets it is sent.
+    """Return a full turn if the robot treats targets that lie a full turn apart as the same.
 
     A program that reads an angle may well tell 180 from −180 degrees. A joint tells them apart as well, and
     so does whatever has a range of more than one turn: it winds.

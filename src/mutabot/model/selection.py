@@ -22,7 +22,7 @@ def select(
     *,
     left_out: Iterable[LeftOut] = (),
 ) -> list[Mutant]:
-    """The mutants that ``only`` and ``skip`` leave, in the order of their numbers.
+    """Return the mutants that match ``only`` and not ``skip``, in the order of their numbers.
 
     Numbers are those of the plan, whatever is selected:
     all commands call a mutant by the same. ``only`` and ``skip`` take ids (also with ``*`` and
@@ -40,7 +40,7 @@ def select(
 
 
 def _from_file(file: Path, mutants: Sequence[Mutant], set_aside: Sequence[str]) -> set[str]:
-    """The mutants that a selection file names. Raises SelectionError."""
+    """Return the mutants that a selection file names. Raises SelectionError."""
     patterns = _patterns(file, {*(mutant.id for mutant in mutants), *set_aside})
     return _fitting(patterns, mutants, set_aside, str(file), lambda word, mutant: is_like(word, mutant.id))
 
@@ -52,7 +52,7 @@ def _fitting(
     source: str,
     fits_one: Callable[[str, Mutant], bool] = fits,
 ) -> set[str]:
-    """The ids of the mutants that words name. Raises SelectionError for words that fit nothing."""
+    """Return the ids of the mutants that match words. Raises SelectionError for words without a match."""
     ids = {mutant.id for mutant in mutants}
     found: set[str] = set()
     unknown = []
@@ -95,7 +95,7 @@ def _names(mutants: Sequence[Mutant]) -> list[str]:
 
 
 def nothing_fits(source: str, unknown: Sequence[str], known: Sequence[str]) -> SelectionError:
-    """The error for words that fit no mutant, with the nearest that is known to do."""
+    """Return the error for words that match no mutant, with the nearest known word."""
     lines = []
     for pattern in unknown:
         nearest = nearest_name(pattern, known) or nearest_name(pattern.partition(":")[0], known)

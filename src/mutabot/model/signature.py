@@ -1,4 +1,4 @@
-"""Signatures as a vocabulary writes them, for callables without one: ``(body, joints, mode=0, …)``.
+"""Parse signatures in a vocabulary, for callables without one: ``(body, joints, mode=0, …)``.
 
 ``…`` (or ``...``) stands for what is not said: as the last item for any further arguments, as a default for
 one that is not known.
@@ -21,7 +21,7 @@ _FORM = 'write it as in Python, such as "(body, joints, speed=0.5, …)"'
 
 @lru_cache(maxsize=256)
 def parse_signature(text: str) -> Signature:
-    """The signature in such a text, without ``self``. A default that is not known is ``...``.
+    """Parse such a signature, without ``self``. A default that is not known is ``...``.
 
     Raises ValueError, saying what is wrong.
     """
@@ -67,7 +67,7 @@ def _arguments(text: str) -> ast.arguments:
 
 
 def _with_rest(text: str) -> str:
-    """The text with an ellipsis at its end written as Python would."""
+    """Return the text with a final ellipsis written as ``*args, **kwargs``."""
     inside, bracket, after = text.rpartition(")")
     start, dots, end = inside.rpartition("...")
     before = start.rstrip()

@@ -1,4 +1,4 @@
-"""Units of a Python file: each function by itself, and its module level, which is the rest.
+"""Units of a Python file: each function, and the module level, which is the rest.
 
 The runtime records which units are executed, by the lines of their ``def``; the controller compares what the
 units say. A unit says its syntax tree, without positions, comments and layout.
@@ -37,7 +37,7 @@ _TEXT = {
 
 
 def digest(text: bytes) -> str:
-    """A short text that other program text hardly has."""
+    """Return a digest of a text, short and practically unique."""
     return blake2b(text, digest_size=12).hexdigest()
 
 
@@ -80,7 +80,7 @@ NodeExtent = tuple[int, ...]
 
 
 def is_test_file(name: str) -> bool:
-    """Whether pytest looks for tests in a file of this name."""
+    """Return whether pytest looks for tests in a file of this name."""
     last = os.path.basename(name)
     return last.endswith(".py") and (last.startswith("test_") or last.endswith("_test.py"))
 
@@ -91,7 +91,7 @@ def is_unit(node: ast.AST) -> bool:
 
 
 def functions_of(tree: ast.AST, prefix: str = "") -> Iterator[tuple[str, FunctionNode]]:
-    """The functions of a module and its classes that are units, with their qualified names."""
+    """Yield the functions of a module and its classes that are units, with their qualified names."""
     for node in ast.iter_child_nodes(tree):
         if isinstance(node, FunctionNode):
             if is_unit(node):
@@ -103,7 +103,7 @@ def functions_of(tree: ast.AST, prefix: str = "") -> Iterator[tuple[str, Functio
 
 
 def last_name(node: ast.AST) -> str:
-    """The last part of the name of what is called or read; empty if it has none."""
+    """Return the last part of the name of an expression; empty if it has none."""
     if isinstance(node, ast.Call):
         return last_name(node.func)
     return node.attr if isinstance(node, ast.Attribute) else node.id if isinstance(node, ast.Name) else ""
@@ -114,14 +114,14 @@ def _is_plain(decorator: ast.expr) -> bool:
 
 
 def _is_mark(decorator: ast.expr) -> bool:
-    """Whether this is a mark of pytest's with arguments that are computed without a call."""
+    """Return whether a decorator is a mark of pytest's, with arguments computed without a call."""
     calls = [one for one in ast.walk(decorator) if isinstance(one, ast.Call)]
     is_mark = ast.unparse(decorator).startswith(("pytest.mark.", "mark."))
     return is_mark and all(one is decorator or last_name(one) == "param" for one in calls)
 
 
 class _Units(NamedTuple):
-    """What is known of the units of a file.
+    """The units of a file, with their lines and digests.
 
     Attributes:
         lines: their lines, by name, as executed units are told.
@@ -135,7 +135,7 @@ class _Units(NamedTuple):
 
 
 class File:
-    """What stands in a Python file.
+    """The content of a Python file.
 
     Args:
         name: its path relative to the project.
@@ -147,12 +147,12 @@ class File:
 
     @cached_property
     def digest(self) -> str:
-        """The text, as a digest."""
+        """The digest of the text."""
         return digest(self._text)
 
     @cached_property
     def _units(self) -> _Units | None:
-        """What is asked of its units; None if it cannot be parsed. Trees need a hundred times its memory."""
+        """The units; None if the file cannot be parsed. Trees, a hundred times larger, are not kept."""
         nodes = self._nodes()
         if nodes is None:
             return None
@@ -164,7 +164,7 @@ class File:
         )
 
     def _nodes(self) -> dict[str, ast.AST] | None:
-        """Its units by name, the module level by the empty name; None if it cannot be parsed."""
+        """Return the units' nodes by name, the module level by ""; None if it cannot be parsed."""
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
@@ -187,16 +187,16 @@ class File:
 
     @cached_property
     def said(self) -> Mapping[str, str]:
-        """What each unit says, as a digest, by its name; of a file that cannot be parsed, the text."""
+        """The digests of the units by name; of a file that cannot be parsed, that of the text."""
         return {"": self.digest} if self._units is None else self._units.said
 
     @property
     def is_quiet(self) -> bool:
-        """Whether nothing happens when it is imported but that names are given to what is plain."""
+        """Whether importing the file does nothing but give names to plain values."""
         return self._units is not None and self._units.is_quiet
 
     def names_at(self, lines: tuple[int, ...]) -> set[str] | None:
-        """The names of the units at these lines; None if the whole text counts."""
+        """Return the names of the units at these lines; None if the whole text counts."""
         if self._units is None or WHOLE in lines:
             return None
         by_line = {line: name for name, line in self._units.lines.items()}
@@ -204,13 +204,13 @@ class File:
         return None if None in found else {name for name in found if name is not None}
 
     def lines_of(self, names: Iterable[str] | None) -> tuple[int, ...]:
-        """The lines by which these units are recorded; None: the whole text."""
+        """Return the line numbers by which these units are recorded; None is the whole text."""
         if self._units is None or names is None:
             return (WHOLE,)
         return tuple(sorted(map(self._units.lines.__getitem__, names)))
 
     def shown(self, name: str) -> str:
-        """Return a unit as text: ``place() in sorting.py``."""
+        """Return a unit's name with its file: ``place() in sorting.py``."""
         return f"{name.partition('#')[0]}() in {self.name}" if name else f"module level of {self.name}"
 
     def moves_to(self, new: File) -> dict[NodeExtent, NodeExtent | None]:
@@ -254,7 +254,7 @@ def _extent(node: ast.AST) -> NodeExtent:
 
 
 class _ModuleLevel(ast.NodeTransformer):
-    """Leaves of functions what happens when the module is imported.
+    """Removes from functions everything that does not happen when the module is imported.
 
     Of tests it leaves nothing: pytest alone looks for them, and which tests there are is compared elsewhere.
     """

@@ -1,4 +1,4 @@
-"""Decisions of a user about mutants: to accept a survivor, or not to run a mutant.
+"""A user's decisions about mutants: to accept a survivor, or to exclude a mutant.
 
 A decision names one mutant by its id, or some by file, operator and text of the line. The line is compared as
 well where an id is given: ids count equal calls of a function, so another one before it moves them.
@@ -19,7 +19,7 @@ LinesOf = Callable[[str], Sequence[str]]
 
 
 class Action(StrEnum):
-    """What becomes of the mutants."""
+    """What is done with the mutants."""
 
     ACCEPT = "accept"
     EXCLUDE = "exclude"
@@ -27,7 +27,7 @@ class Action(StrEnum):
 
 @frozen
 class Suppression:
-    """One decision. A mutant has to meet everything that is given.
+    """A decision. A mutant has to match all given fields.
 
     Attributes:
         action: what becomes of the mutants.
@@ -54,16 +54,16 @@ class Suppression:
     in_source: bool = False
 
     def fits(self, mutant: Mutant, lines: LinesOf) -> bool:
-        """Whether a mutant is meant; ``lines`` are those of a file."""
+        """Return whether a mutant matches; ``lines`` are those of a file."""
         places = self._places(mutant)
         return any(not self.line or self._has_line(span, lines(span.file)) for span in places)
 
     def names(self, mutant: Mutant) -> bool:
-        """Whether the decision names the mutant, whatever its line says."""
+        """Return whether the decision names the mutant, regardless of its line's text."""
         return bool(self._places(mutant))
 
     def _places(self, mutant: Mutant) -> list[Span]:
-        """The places of the mutant that the decision means; none if it means another mutant."""
+        """Return the places of the mutant that the decision names; none if it names another mutant."""
         is_other = self.id not in ("", mutant.id)
         if is_other or (self.operator and not is_like(self.operator, mutant.operator)):
             return []
@@ -75,12 +75,12 @@ class Suppression:
         return is_there and (not self.file or is_like(self.file, span.file))
 
     def _has_line(self, span: Span, lines: Sequence[str]) -> bool:
-        """Whether one of the lines that a place takes has the text."""
+        """Return whether one of the lines of a place has the text."""
         return any(is_like(self.line, text.strip()) for text in lines[max(0, span.line - 1) : span.end_line])
 
     @property
     def words(self) -> str:
-        """What it names: ``reverse in mission.py:22``."""
+        """The mutants that it names, as a text: ``reverse in mission.py:22``."""
         if self.id:
             return self.id
         what = self.operator or "mutants"
@@ -90,7 +90,7 @@ class Suppression:
 
 @frozen
 class Acceptance:
-    """Why a survivor is accepted.
+    """The reason and the date of accepting a survivor.
 
     Attributes:
         why: the reason.
@@ -107,7 +107,7 @@ class Acceptance:
 
 @frozen
 class Accepted:
-    """What a campaign knows of accepted survivors.
+    """The accepted survivors of a campaign.
 
     Attributes:
         mutants: by the ids of mutants that are accepted if they survive.
@@ -119,5 +119,5 @@ class Accepted:
 
 
 def first_fitting(suppressions: Iterable[Suppression], mutant: Mutant, lines: LinesOf) -> Suppression | None:
-    """The first decision that means a mutant; None if there is none."""
+    """Return the first decision that matches a mutant; None if there is none."""
     return next((one for one in suppressions if one.fits(mutant, lines)), None)

@@ -94,12 +94,12 @@ def units_of(dimensions: Collection[Dimension]) -> tuple[str, ...]:
 
 
 def dimension_of(unit: str) -> Dimension:
-    """The dimension a unit measures. Raises KeyError for an unknown unit."""
+    """Return the dimension a unit measures. Raises KeyError for an unknown unit."""
     return UNITS[unit].dimension
 
 
 def convert(value: float, unit: str, to: str) -> float:
-    """``value`` given in ``unit``, expressed in ``to``.
+    """Return ``value``, given in ``unit``, in the unit ``to``.
 
     Raises ValueError when the two units measure different things. A conversion between equal units
     returns the value untouched, so that nothing is rounded without need.
@@ -138,7 +138,7 @@ class Quaternion(NamedTuple):
 
     @property
     def inverse(self) -> Quaternion:
-        """The rotation back."""
+        """The inverse rotation."""
         return Quaternion(self.w, -self.x, -self.y, -self.z)
 
     def after(self, first: Quaternion) -> Quaternion:
@@ -153,12 +153,12 @@ class Quaternion(NamedTuple):
         )
 
     def distance(self, other: Quaternion) -> float:
-        """Angle between two orientations, in radians: 0 to π."""
+        """Return the angle between two orientations, in radians: 0 to π."""
         w, x, y, z = self.inverse.after(other)
         return 2.0 * math.atan2(math.hypot(x, y, z), abs(w))
 
     def rotated(self, vector: Sequence[float]) -> tuple[float, float, float]:
-        """A vector of three numbers, rotated."""
+        """Return a vector of three numbers, rotated."""
         x, y, z = vector
         _, *parts = self.after(Quaternion(0.0, x, y, z)).after(self.inverse)
         return parts[0], parts[1], parts[2]
@@ -171,14 +171,14 @@ _LOCKED = 1e-7
 
 
 def is_euler_order(text: str) -> bool:
-    """Whether these are axes of Euler angles: ``xyz`` if the axes stay, ``XYZ`` if they turn along."""
+    """Return whether a text is an order of Euler angles: ``xyz`` for fixed axes, ``XYZ`` for turning ones."""
     axes = text.lower()
     same_case = text in (axes, axes.upper())
     return len(axes) == 3 and set(axes) <= set("xyz") and same_case and all(a != b for a, b in pairwise(axes))
 
 
 def from_rotation_vector(vector: Sequence[float]) -> Quaternion:
-    """The rotation about a vector by its length, in radians."""
+    """Return the rotation about a vector by its length, in radians."""
     angle = math.hypot(*vector)
     if angle == 0.0:
         return Quaternion(1.0, 0.0, 0.0, 0.0)
@@ -187,14 +187,14 @@ def from_rotation_vector(vector: Sequence[float]) -> Quaternion:
 
 
 def to_rotation_vector(rotation: Quaternion) -> list[float]:
-    """The rotation vector of up to half a turn, in radians."""
+    """Return the rotation vector of up to half a turn, in radians."""
     w, *axis = rotation if rotation[0] >= 0 else tuple(-part for part in rotation)
     size = math.hypot(*axis)
     return [part * 2.0 * math.atan2(size, w) / size for part in axis] if size > 0 else [0.0, 0.0, 0.0]
 
 
 def from_euler(angles: Sequence[float], order: str) -> Quaternion:
-    """The rotation about three axes, in radians, in the order in which they are written."""
+    """Return the rotation about three axes, in radians, in the order in which they are written."""
     found = Quaternion(1.0, 0.0, 0.0, 0.0)
     for axis, angle in zip(order, angles, strict=True):
         turn = from_rotation_vector([angle * (name == axis.lower()) for name in "xyz"])
@@ -203,7 +203,7 @@ def from_euler(angles: Sequence[float], order: str) -> Quaternion:
 
 
 def to_euler(rotation: Quaternion, order: str) -> list[float]:
-    """Euler angles of a rotation, in radians; where two axes fall together the third angle is zero."""
+    """Return Euler angles of a rotation, in radians; if two axes coincide, the third angle is zero."""
     turning = order.isupper()
     i, j, k = (1 + "xyz".index(axis) for axis in (reversed(order.lower()) if turning else order))
     proper = i == k
@@ -226,14 +226,14 @@ def to_euler(rotation: Quaternion, order: str) -> list[float]:
 
 
 def apart(first: float, second: float, turn: float) -> float:
-    """How far two angles about the same axis are apart, where a full ``turn`` makes no difference."""
+    """Return how far two angles about the same axis are apart, modulo a full ``turn``."""
     return abs(math.remainder(first - second, turn))
 
 
 def to_quaternion(
     values: Any, kind: str, order: str | None, radians: Callable[[float], float]
 ) -> Quaternion | None:
-    """The unit quaternion of an orientation as an API writes it; None if the numbers are no orientation.
+    """Return the unit quaternion of an orientation in an API's notation; None if it is no orientation.
 
     Args:
         values: the numbers.
@@ -258,7 +258,7 @@ def to_quaternion(
 def to_values(
     rotation: Quaternion, kind: str, order: str | None, angle: Callable[[float], float]
 ) -> list[float]:
-    """An orientation as an API writes it; ``angle`` turns radians into its unit."""
+    """Return an orientation in an API's notation; ``angle`` turns radians into its unit."""
     if kind == "rotation_vector":
         return [angle(part) for part in to_rotation_vector(rotation)]
     if kind == "euler":

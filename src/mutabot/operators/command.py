@@ -1,4 +1,4 @@
-"""The shape of operators that do something with a call as a whole, and the two controls of every campaign."""
+"""The base of operators that act on a call as a whole, and the two controls of every campaign."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _CALLED = {
 
 
 class CommandOperator(Operator):
-    """Acts on whole calls: on commands, unless ``fits`` says otherwise.
+    """The base class of operators on whole calls: on commands, unless ``fits`` says otherwise.
 
     Class attributes:
         fault: the fault in words, with ``{what}`` for what is sent and ``{variant}`` for the variant.
@@ -48,14 +48,14 @@ class CommandOperator(Operator):
 
     @abstractmethod
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
-        """The mutant at work. Raises Unchanged, before it proceeds, to leave the call alone."""
+        """Perform the mutated call. Raises Unchanged, before it proceeds, to leave the call alone."""
 
     def fits(self, whole: Subject) -> bool:
-        """Whether it has something to do with this call."""
+        """Return whether the operator can act on this call."""
         return whole.is_command
 
     def magnitudes(self, whole: Subject) -> Magnitudes | None:
-        """How big the fault is to be, a mutant each; None for one without a size, which may have variants."""
+        """Return the magnitudes of the fault, one for each mutant; None for a fault without sizes."""
         return None
 
     def subjects(self, whole: Subject) -> Iterator[Subject]:
@@ -81,7 +81,7 @@ class CommandOperator(Operator):
         return self.words(subject)
 
     def words(self, subject: Subject, **more: str) -> str:
-        """``fault``, filled in."""
+        """Return ``fault`` with its placeholders filled in."""
         form = subject.operation.form
         what = _CALLED.get(form, "call") if form is not None else "call"
         return self.fault.format(what=what, variant=subject.variant, **more)

@@ -1,4 +1,4 @@
-"""Operations on which worked examples show several operators."""
+"""Operations that the worked examples of several operators share."""
 
 from __future__ import annotations
 

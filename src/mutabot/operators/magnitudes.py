@@ -1,4 +1,4 @@
-"""How big faults with a size are: a mutant for each magnitude of a ladder.
+"""The magnitudes of graded faults: a mutant for each magnitude of a ladder.
 
 Where a vocabulary names none, these are the 1-2-5 series over a range with a reason. Lengths begin at 1 mm,
 ten times the pose repeatability that makers of small arms state by ISO 9283 (0.02 to 0.1 mm): below, the
@@ -35,12 +35,12 @@ class Magnitudes:
     steps: tuple[float, ...]
 
     def of(self, subject: Subject, direction: str = "") -> Iterator[Subject]:
-        """The subject, once for each magnitude in one direction."""
+        """Return the subject, once for each magnitude in one direction."""
         return (subject.of_size(size, self.unit, direction) for size in self.steps)
 
 
 def series(first: float, count: int) -> tuple[float, ...]:
-    """So many numbers of the 1-2-5 series from ``first`` on, which is 1, 2 or 5 times a power of ten."""
+    """Return ``count`` numbers of the 1-2-5 series, beginning with ``first``."""
     decade = 10.0 ** math.floor(math.log10(first) + 1e-9)
     at = (1, 2, 5).index(round(first / decade))
     numbers = ((1, 2, 5)[n % 3] * 10 ** (n // 3) * decade for n in range(at, at + count))
@@ -74,7 +74,7 @@ _PER_SECOND = 0.1
 
 
 def own_ladder(quantity: Quantity) -> Magnitudes | None:
-    """The magnitudes of faults in the quantity's own measure; None if none are defined for it."""
+    """Return the magnitudes of faults in the quantity's own measure; None if none are defined for it."""
     # orientations as a whole are angles; plain numbers have no measure
     unit = "rad" if quantity.is_whole else quantity.unit
     measure = dimension_of(unit) if unit is not None else None
@@ -87,7 +87,7 @@ def own_ladder(quantity: Quantity) -> Magnitudes | None:
 
 
 def ladder_in(quantity: Quantity | None, measure: Dimension) -> Magnitudes:
-    """The magnitudes of faults measured in time, or as a share of the value."""
+    """Return the magnitudes of faults measured in time, or as a share of the value."""
     told = _told(quantity) if quantity is not None else None
     if told is not None and told.unit is not None and dimension_of(told.unit) is measure:
         return told
@@ -95,7 +95,7 @@ def ladder_in(quantity: Quantity | None, measure: Dimension) -> Magnitudes:
 
 
 def per_second(quantity: Quantity) -> Magnitudes | None:
-    """The magnitudes of faults that grow with time, per second."""
+    """Return the magnitudes of faults that grow with time, per second."""
     own = own_ladder(quantity)
     if own is None:
         return None
@@ -103,7 +103,7 @@ def per_second(quantity: Quantity) -> Magnitudes | None:
 
 
 def _told(quantity: Quantity) -> Magnitudes | None:
-    """What the vocabulary says."""
+    """Return the ladder in the vocabulary; None if it has none."""
     if quantity.ladder is None:
         return None
     return Magnitudes(quantity.ladder_unit or quantity.unit, quantity.ladder)

@@ -1,4 +1,4 @@
-"""The contract of a mutation operator, and what it knows when it is at work.
+"""The contract of a mutation operator, and the context in which it acts.
 
 An operator is one class, and nothing else has to be edited: the registries find it. A file holds those of one
 kind of fault. What every operator declares, whatever it acts on, says ``Rule``.
@@ -50,7 +50,7 @@ _PARAGRAPHS = {"Where": "where", "Stands for": "rationale", "Published": "publis
 
 
 class Rule(ABC):
-    """What operators of all kinds declare.
+    """The base class of operators of all kinds, with their declarations.
 
     Class attributes:
         name: how ids, reports and selections call it.
@@ -95,12 +95,12 @@ class Rule(ABC):
                 setattr(cls, name, text.rstrip(".") if name == "where" else text)
 
     def takes_all_calls(self) -> bool:
-        """Whether what it does to a call depends on earlier ones, so that no moment can be asked of it."""
+        """Return whether the effect on a call depends on earlier ones, so that no moment can be asked for."""
         return False
 
 
 class Need(Enum):
-    """What an operator requires. Where it is missing, the plan leaves its mutants out, with the reason."""
+    """Requirements of an operator. If one is not met, the plan leaves its mutants out, with the reason."""
 
     #: where a written quantity is now (``call.current``): the vocabulary names a reading that tells
     PLACE = auto()
@@ -146,19 +146,19 @@ class Subject:
 
     @property
     def required_quantity(self) -> Quantity:
-        """The quantity; an operator on values never gets a subject without one."""
+        """The quantity, which operators on values always have."""
         assert self.quantity is not None
         return self.quantity
 
     def given(self, values: Mapping[str, Value], name: str) -> Value:
-        """A value of a call, by the name of its quantity. Raises Unchanged if the call does not give it."""
+        """Return the value of the quantity called ``name``. Raises Unchanged if the call does not give it."""
         if name not in values:
             raise Unchanged(self.why_missing)
         return values[name]
 
     @property
     def why_missing(self) -> str:
-        """Why an operator leaves a call alone, or what it reads, that is without its value."""
+        """Why a call that lacks a value is left unchanged."""
         return f"the call {'passes' if self.is_written else 'returns'} no plain value here"
 
     def of_size(self, magnitude: float, unit: str | None, direction: str = "") -> Subject:
@@ -178,17 +178,17 @@ class Subject:
 
     @property
     def is_written(self) -> bool:
-        """Whether the quantity is one that the call writes."""
+        """Whether the call writes the quantity."""
         return self.quantity in self.written
 
     @property
     def side(self) -> tuple[Quantity, ...]:
-        """The quantities of the side on which the quantity stands."""
+        """The quantities that the call writes if it writes the quantity, otherwise those that it reads."""
         return self.written if self.is_written else self.read
 
     @property
     def is_command(self) -> bool:
-        """Whether the robot does something when the call is made."""
+        """Whether the call makes the robot do something."""
         if self.pattern is not None and self.pattern.command is not None:
             return self.pattern.command
         if self.pattern is not None and self.pattern.result and not self.pattern.arguments:
@@ -197,7 +197,7 @@ class Subject:
 
     @property
     def current(self) -> str | None:
-        """The operation that tells where the robot is now; None if the vocabulary names none."""
+        """The operation that reads the robot's current position; None if the vocabulary names none."""
         own = self.pattern.current if self.pattern is not None else None
         return own or self.operation.current
 
@@ -257,7 +257,7 @@ class Example:
     def changed(
         cls, operation: Operation, before: Any, after: Any, variant: str = "", **more: Any
     ) -> Example:
-        """A value that the operator changes: as the program writes or the robot answers it, and the new one.
+        """Return an example of a changed value: as it is written or answered, and the new one.
 
         The first quantity of the operation is meant, or that named ``quantity``; with
         ``size=("+", 20.0, "mm")`` the fault has a magnitude. ``before``, ``after`` and each of ``earlier``
@@ -273,7 +273,7 @@ class Example:
     def unchanged(
         cls, operation: Operation, before: Any, away: str, variant: str = "", **more: Any
     ) -> Example:
-        """A value that the operator leaves alone, and why; else as ``changed``."""
+        """Return an example of a value that the operator leaves alone, and why; else as ``changed``."""
         subject = _subject(operation, variant, more)
         more["values" if subject.is_written else "replied"] = _values(subject, before)
         return cls(subject, away=away, **more)
@@ -290,7 +290,7 @@ class Example:
         then: tuple[Any, ...] = (),
         **more: Any,
     ) -> Example:
-        """A call on which the operator acts as a whole.
+        """Return an example of a call on which the operator acts as a whole.
 
         Of a call that writes, ``value`` is what it writes, and ``after`` what each call writes that reaches
         the robot. Of one that reads, they are what the robot answers, and what the program gets, if it gets
@@ -352,34 +352,34 @@ class Operator(Rule):
     calls: ClassVar[int] = 1
 
     def takes_all_calls(self) -> bool:
-        """Whether it needs a memory of the calls of a test."""
+        """Return whether it needs to remember the calls of a test."""
         return Need.MEMORY in self.needs
 
     def needs_of(self, subject: Subject) -> frozenset[Need]:
-        """What it asks for at this subject."""
+        """Return the requirements at this subject."""
         return self.needs
 
     def only_reads(self, subject: Subject) -> bool:
-        """Whether all it changes is a value that the program reads, without effect where that is unused."""
+        """Return whether it only changes values that the program reads, without effect if they are unused."""
         return (
             subject.quantity is not None and subject.quantity in subject.read and Need.WAIT not in self.needs
         )
 
     def is_chance(self, subject: Subject) -> bool:
-        """Whether the calls at which it acts are random, and so cannot be known beforehand."""
+        """Return whether it acts at random calls, which cannot be known beforehand."""
         return self.by_chance
 
     def least_calls(self, subject: Subject) -> int:
-        """How many calls it takes to be what it is; it is left out where the tests make fewer."""
+        """Return how many calls a test must make for the operator to have an effect."""
         return self.calls
 
     @abstractmethod
     def subjects(self, whole: Subject) -> Iterable[Subject]:
-        """Where it could act in a call; ``whole`` is the call as a whole: its operation and text command."""
+        """Return the subjects in a call; ``whole`` is the call as a whole: its operation and text command."""
 
     @abstractmethod
     def middleware(self, subject: Subject, random: Random) -> Middleware:
-        """The mutant at work: ``mutated(call, proceed) -> reply``.
+        """Return the mutant as a coroutine: ``mutated(call, proceed) -> reply``.
 
         Must pass the call on unchanged where the changed value would not be one the robot API takes, and
         says why, for the reports: ``await proceed(call.as_is("…"))``, or ``reply.as_is("…")`` for a reading.
@@ -388,7 +388,7 @@ class Operator(Rule):
 
     @abstractmethod
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
-        """One line that an engineer recognises.
+        """Describe the fault in a line that an engineer recognises.
 
         ``before`` and ``after`` are values seen in the baseline and what they would become; None where
         that cannot be known beforehand.
@@ -396,14 +396,14 @@ class Operator(Rule):
 
 
 def with_operation(variant: str, target: str) -> str:
-    """The variant that tells two operations of one site apart which have quantities of the same name."""
+    """Return a variant that distinguishes two operations of one site with quantities of the same name."""
     return "+".join(part for part in (variant, target.partition(":")[2] or target) if part)
 
 
 def subject_of(
     rule: Operator, operation: Operation, pattern: Pattern | None, quantity: str | None, variant: str
 ) -> Subject:
-    """What the operator acts on in a mutant of this quantity and variant, as the operator itself says it.
+    """Return what the operator acts on in a mutant of this quantity and variant.
 
     The variant may have become one ``with_operation``. Controls act where they are put.
     """
@@ -424,7 +424,7 @@ _BITS = 64
 
 @dataclass(slots=True)
 class Context:
-    """One mutant at work in one test.
+    """The context of one mutant in one test.
 
     Attributes:
         subject: what it acts on.
@@ -456,7 +456,7 @@ class Context:
             del self.call
 
     def draw(self) -> Random:
-        """The call's own generator; a new one each time.
+        """Return a new copy of the call's own random generator.
 
         It is keyed by the mutant's own seed, in which are campaign, round, test and site, and by the number
         of the call. From a stream a program that reads once more would shift all later draws, and one
@@ -468,7 +468,7 @@ class Context:
         return Random(f"{self._key}:{self.number}")
 
     def by_chance(self) -> None:
-        """Raises Unchanged unless chance wants this call; the option is how likely that is."""
+        """Raise Unchanged at random; an option of the operator is the probability of acting."""
         if self.draw().random() >= self.option:
             raise Unchanged("not drawn for this call")
 

@@ -1,4 +1,4 @@
-"""Running an operator's middleware around a call, and telling whether it changed anything.
+"""Run an operator's middleware around a call, and record whether it changed anything.
 
 Middleware is written as a coroutine function. Around a plain operation nothing ever suspends, so one
 ``send`` runs it to its end; around an async operation it is awaited like any other coroutine.
@@ -19,7 +19,7 @@ T = TypeVar("T")
 
 
 class Carried(BaseException):
-    """Carries an exception that a coroutine must not see: it turns StopIteration into RuntimeError."""
+    """Wraps an exception that a coroutine must not see: it turns StopIteration into RuntimeError."""
 
     def __init__(self, error: BaseException) -> None:
         super().__init__(error)
@@ -27,7 +27,7 @@ class Carried(BaseException):
 
 
 def run(coroutine: Coroutine[Any, Any, T], *, operator: str) -> T:
-    """The result of a coroutine that never suspends.
+    """Return the result of a coroutine that never suspends.
 
     Raises OperatorError if it does suspend: the operator awaited something other than ``proceed``
     or ``call.current``.
@@ -54,7 +54,7 @@ def run(coroutine: Coroutine[Any, Any, T], *, operator: str) -> T:
 
 @dataclass(slots=True)
 class CallRecord:
-    """What happened while one call went through a mutant.
+    """The record of one call that went through a mutant.
 
     Attributes:
         call: the original call.
@@ -76,17 +76,17 @@ class CallRecord:
 
     @property
     def waited(self) -> float:
-        """Seconds of the program's time that the mutant let pass."""
+        """The seconds of the program's time that the mutant waited."""
         return sum(self.waits)
 
     @property
     def acted(self) -> bool:
-        """Whether the mutant changed anything that the robot or the program could notice, or will."""
+        """Whether the mutant changed anything noticeable to the robot or the program, now or later."""
         return self.acted_at_once or bool(self.deferred)
 
     @property
     def acted_at_once(self) -> bool:
-        """Whether it acted at once, without what is only done later."""
+        """Whether it acted immediately, not counting actions that are done later."""
         return self.changed_command or self.changed_reading or self.waited > 0.0
 
     @property
@@ -130,7 +130,7 @@ class CallRecord:
 
 
 def recording(passage: CallRecord, proceed: Proceed) -> Proceed:
-    """``proceed`` that notes in ``passage`` what goes through it."""
+    """Return ``proceed`` with a record of the calls that go through it in ``passage``."""
 
     async def noted(call: Call) -> Reply:
         passage.performed.append(call)
@@ -178,7 +178,7 @@ def rehearse(
     refusal: Exception | None = None,
     operator: str,
 ) -> CallRecord:
-    """Send a recorded call through a mutant, with a robot that always answers ``replied``.
+    """Run a recorded call through a mutant, with a robot that always answers ``replied``.
 
     ``payload`` stands for what is in the reply beside the values: it is unlike any other object.
     ``refusal``: what the robot raises instead of answering, if it does.

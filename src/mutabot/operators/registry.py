@@ -1,4 +1,4 @@
-"""Finding operators on calls by name: the built-in ones, and those that packages bring."""
+"""Find operators on calls by name: the built-in ones, and those of packages."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ _ORDER = ("motions", "commands", "readings", "graded")
 
 
 def built_in() -> list[str]:
-    """Names of mutabot's own operators that make mutants, in the order of the documentation."""
+    """Return names of mutabot's own operators that make mutants, in the order of the documentation."""
     return [rule.name for module in _modules() for rule in _of_module(module)]
 
 
 def names() -> list[str]:
-    """Names of all operators that make mutants, built-in ones first.
+    """Return names of all operators that make mutants, built-in ones first.
 
     Raises OperatorError or ExtensionError when two operators want the same name: it would not be clear whose
     mutants are whose.
@@ -43,7 +43,7 @@ def names() -> list[str]:
 
 
 def load_all() -> list[Operator]:
-    """All operators that make mutants. Raises OperatorError for one of a package that is of no use."""
+    """Return all operators that make mutants. Raises OperatorError for an invalid one of a package."""
     return [operator(name) for name in names()]
 
 
@@ -56,7 +56,7 @@ def preload(wanted: Iterable[str] | None = None) -> None:
 
 @cache
 def operator(name: str) -> Operator:
-    """The operator of this name.
+    """Return the operator of this name.
 
     Raises OperatorError if there is none, or if one does not keep the contract.
     """
@@ -77,7 +77,7 @@ def operator(name: str) -> Operator:
 
 @cache
 def _modules() -> dict[str, str]:
-    """The text of each module in the folder of operators, by its name: nothing is loaded for it.
+    """Return the text of each module in the folder of operators, by its name: nothing is loaded for it.
 
     An operator is in a module whose text has its name in quotes, so that workers load no other.
     """
@@ -89,17 +89,17 @@ def _modules() -> dict[str, str]:
 
 @cache
 def _of_module(module: str) -> list[Operator]:
-    """The operators that a module holds."""
+    """Return the operators in a module."""
     return [kind() for kind in classes_in(import_module(module), Operator)]
 
 
 def modules_in(folder: Path) -> list[str]:
-    """Names of the modules in a folder, bar those that begin with ``_``; none of them is loaded."""
+    """Return the names of the modules in a folder, except those that begin with ``_``; none is loaded."""
     return sorted(file.stem for file in folder.glob("*.py") if not file.name.startswith("_"))
 
 
 def classes_in(module: ModuleType, base: type[Any]) -> list[type[Any]]:
-    """The concrete subclasses of ``base`` that a module itself defines, in the order of its text.
+    """Return the concrete subclasses of ``base`` that a module itself defines, in the order of its text.
 
     None whose name begins with ``_``: that is what several of them have in common.
     """

@@ -1,4 +1,4 @@
-"""The shape of operators that change values of one call, written or read."""
+"""The base of operators that change values that a call writes or reads."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _SAME = "the value would stay the same"
 
 
 class ValueOperator(Operator):
-    """Changes the value of a quantity that a call writes or reads.
+    """The base class of operators that change the value of a quantity of a call.
 
     One that changes several values of a call has ``subjects`` and ``changes`` of its own, and no ``change``.
     Raises TypeError, when it is made, for one that has neither.
@@ -47,23 +47,23 @@ class ValueOperator(Operator):
             raise TypeError(f"operator {self.name!r} defines neither change nor changes")
 
     def change(self, value: Value, context: Context) -> Value | None:
-        """The new value, or None if not applicable. Raises Unchanged to leave the value alone."""
+        """Return the new value, or None if not applicable. Raises Unchanged to leave the value alone."""
         raise NotImplementedError
 
     def fits(self, quantity: Quantity, whole: Subject) -> bool:
-        """Whether the operator has something to say about this quantity of a call."""
+        """Return whether the operator can act on this quantity of a call."""
         return quantity.kind in self.kinds
 
     def variants_of(self, quantity: Quantity) -> Iterable[str]:
-        """The variants for a quantity."""
+        """Return the variants for a quantity."""
         return self.variants
 
     def magnitudes(self, quantity: Quantity) -> Magnitudes | None:
-        """How big the fault is to be, a mutant each; None for one without a size, which may have variants."""
+        """Return the magnitudes of the fault, one for each mutant; None for a fault without sizes."""
         return None
 
     def directions_of(self, quantity: Quantity) -> Iterable[str]:
-        """The directions for a quantity."""
+        """Return the directions for a quantity."""
         return self.directions
 
     def subjects(self, whole: Subject) -> Iterable[Subject]:
@@ -81,7 +81,7 @@ class ValueOperator(Operator):
                 yield from ladder.of(subject, direction)
 
     async def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
-        """The values that are others than before, by quantity. Raises Unchanged to leave the call alone.
+        """Return the values that change, by quantity. Raises Unchanged to leave the call alone.
 
         ``values`` are those of the side on which the subject's quantity stands. What it may await is
         ``context.call.current``.
@@ -110,7 +110,7 @@ class ValueOperator(Operator):
         return f"reads {quantity.label} {' instead of '.join(quantity.texts(after, before))}"
 
     def _why_unchanged(self, quantity: Quantity, before: Value, after: Value | None) -> str:
-        """Why a new value is not put in place of another one; empty if it can be."""
+        """Return why a new value is not put in place of another one; empty if it can be."""
         if self.takes_any:
             return _SAME if quantity.is_same(after, before) else ""
         if after is None:
@@ -128,7 +128,7 @@ class ValueOperator(Operator):
     async def _changed(
         self, one: CallOrReply, call: Call, context: Context, known: Mapping[str, Quantity]
     ) -> CallOrReply:
-        """The call, or the reply to it, with the new values in it; ``known`` are the quantities there."""
+        """Return the call or reply with the new values; ``known`` are its quantities."""
         context.call = call  # others may have been made while this one waited for its reply
         try:
             changed = await self.changes(one.values, context)
@@ -144,7 +144,7 @@ class ValueOperator(Operator):
 
 
 def _allowed(quantity: Quantity, value: Value) -> bool:
-    """Whether the robot API takes the value, or each component of a vector."""
+    """Return whether the robot API takes the value, or each component of a vector."""
     if hasattr(value, "__len__") and not isinstance(value, str | bytes):
         return all(quantity.allows(item) for item in value)
     return quantity.allows(value)

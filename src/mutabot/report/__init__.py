@@ -1,1 +1,1 @@
-"""Reports: one file per format. They only read the journal."""
+"""Reports: one file per format, which only reads the journal."""

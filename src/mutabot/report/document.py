@@ -1,4 +1,4 @@
-"""The results document: all facts of a campaign as JSON; docs/results.schema.json says what is in it.
+"""The results document: all facts of a campaign as JSON, described by docs/results.schema.json.
 
 Reports are functions of ``results.results.Results``, which holds the same facts.
 """
@@ -47,7 +47,7 @@ def finite(value: Any, number: Callable[[float], float] = float) -> Any:
 
 
 def document(results: Results) -> dict[str, Any]:
-    """The results document. Packages add sections: functions of the same results."""
+    """Return the results document, with sections by packages."""
     return {
         "format": FORMAT,
         **data_of.facts(results, "state finished=is_complete attempt"),
@@ -72,7 +72,7 @@ def _section(part: ExtensionPart, results: Results) -> Any:
 
 
 def accepting_data(results: Results) -> dict[str, Any]:
-    """Return the accepted survivors, and decisions about mutants that have no effect any more."""
+    """Return the accepted survivors, and decisions that no longer have an effect."""
     return {
         "survivors": [
             data_of.facts(one, "number=mutant.number id=mutant.id *acceptance") for one in results.accepted
@@ -84,7 +84,7 @@ def accepting_data(results: Results) -> dict[str, Any]:
 def shown_data(
     result: MutantResult, source: Callable[[str], str | None], suggestion: Suggestion | None
 ) -> dict[str, Any]:
-    """Return one mutant with its source, its story, the checks that ran, and what was suggested.
+    """Return the data of one mutant: its source, its story, the checks that ran, and its suggestion.
 
     Args:
         source: the text of a file, or None if it is not known.
@@ -103,7 +103,7 @@ def shown_data(
 
 
 def replayed(mutant: Mutant, rounds: Iterable[records.Replayed]) -> dict[str, Any]:
-    """One mutant that was run again, beside its outcomes in the journal."""
+    """Return the re-runs of a mutant beside its outcomes in the journal."""
     return {**data_of.facts(mutant, "id number"), "rounds": data_of(list(rounds))}
 
 

@@ -1,4 +1,4 @@
-"""The contract of a format: a function that makes a text of a campaign.
+"""The contract of a format: a function that returns a text about a campaign.
 
 A format is the function ``make`` of a file in ``report/formats``; it has the file's name, with hyphens. It is
 found there, and nothing else has to be edited. Packages bring others (``extensions.Extension``). What it is
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @frozen
 class Material:
-    """What a format is made from.
+    """The input of a format.
 
     Attributes:
         campaign: the campaign, fit for any report.
@@ -36,11 +36,11 @@ class Material:
     prefix: str = ""
 
     def path(self, file: str) -> str:
-        """A file of the project, relative to the repository."""
+        """Return a file of the project, relative to the repository."""
         return f"{self.prefix}/{file}" if self.prefix else file
 
     def place(self, span: Span, length: Callable[[str], int] = len) -> FilePlace:
-        """Where a span is. ``length`` counts the characters of a part of a line."""
+        """Return the position of a span in its file; ``length`` is the count of characters within a line."""
         return place_of(span, self.campaign.source(span.file), length)
 
 
@@ -67,12 +67,12 @@ class FilePlace:
 
 
 def utf16(text: str) -> int:
-    """Length in UTF-16 code units, as programs in JavaScript and SARIF count."""
+    """Return the length of a text in UTF-16 code units, as JavaScript and SARIF count."""
     return len(text.encode("utf-16-le", errors="replace")) // 2
 
 
 def place_of(span: Span, source: str | None, length: Callable[[str], int] = len) -> FilePlace:
-    """The place of a span. ``length`` counts the characters of a part of a line.
+    """Return the position of a span in its source; ``length`` is the count of characters within a line.
 
     Other tools know no place without a line: what does not stand in the text is told at the first one.
     """
@@ -93,12 +93,12 @@ def _prefix(line: str, column: int) -> str:
 
 
 def names() -> list[str]:
-    """The names of all formats."""
+    """Return the names of all formats."""
     return sorted([*_own(), *brought("formats", _own())])
 
 
 def format_of(name: str) -> Format:
-    """The format of this name. Raises UsageError, with the nearest name, if there is none."""
+    """Return the format of this name. Raises UsageError, with the nearest name, if there is none."""
     if name in _own():
         module = importlib.import_module(f"{__package__}.formats.{name.replace('-', '_')}")
         return module.make  # type: ignore[no-any-return]

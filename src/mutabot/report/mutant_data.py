@@ -1,4 +1,4 @@
-"""What formats of a line per mutant say of a mutant, and of a campaign in their last line."""
+"""Data of a mutant for formats with a line per mutant, and of the campaign for their last line."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _DATA_OF = Encoder({Span: SPAN})
 
 
 def mutant_data(result: MutantResult) -> dict[str, Any]:
-    """Return what is said of a mutant: its state, where and what it is, and why it has this state."""
+    """Return a mutant's data: its state with the reason, its place and its description."""
     deciding = next((one for one in result.outcomes if one.test is not None), None)
     return {
         "status": state_of(result),
@@ -40,12 +40,12 @@ def mutant_data(result: MutantResult) -> dict[str, Any]:
 def lines_of(
     results: Results, mutant_line: Callable[[MutantResult], str], end_line: Callable[[Results], str]
 ) -> str:
-    """Return a report that has a line per mutant, and a last one about the campaign."""
+    """Return a report with a line per mutant, and a last one about the campaign."""
     return "".join(f"{line}\n" for line in (*map(mutant_line, results.mutants), end_line(results)))
 
 
 def end_data(results: Results) -> dict[str, Any]:
-    """Return what is said of a campaign."""
+    """Return the data about the campaign."""
     return {
         "state": results.state,
         "mutants": dict(Counter(map(state_of, results.mutants))),

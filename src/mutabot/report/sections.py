@@ -1,4 +1,4 @@
-"""The sections of a campaign's report, as plain rows and lines: the terminal and Markdown print the same."""
+"""The sections of a campaign's report, as plain rows and lines, for the terminal and Markdown."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Section:
 
 
 def sections(results: Results, place: PlaceName) -> Iterator[Section]:
-    """Yield the sections that have something to say. ``place`` names a span as the reader knows it."""
+    """Yield the sections that are not empty. ``place`` names a span for the reader."""
     yield from _errors(results)
     if results.done:
         yield from _scores(results)
@@ -70,12 +70,12 @@ MUTANT_COLUMNS = (">no.", "place", "operator", "*fault")
 
 
 def mutant_cells(mutant: Mutant, place: PlaceName) -> tuple[str, ...]:
-    """The cells of these columns."""
+    """Return the cells of these columns."""
     return str(mutant.number), places_text(mutant.site, place), mutant.operator, mutant.description
 
 
 def _errors(results: Results) -> Iterator[Section]:
-    """How many outcomes are errors, and one line per message with the mutants that it is about."""
+    """Yield how many outcomes are errors, and one line per message with the mutants that it is about."""
     found: dict[str, list[int]] = {}
     for result in results.everything:
         for outcome in result.outcomes:
@@ -90,7 +90,7 @@ def _errors(results: Results) -> Iterator[Section]:
 
 
 def _scores(results: Results) -> Iterator[Section]:
-    """A row for each family and role. There is no combined score."""
+    """Yield a row for each family and role. There is no combined score."""
     columns: tuple[str, ...] = ("family · role", ">mutants", ">score", ">check score", ">killed")
     rows = [_score_row(group) for group in results.groups]
     if results.accepted:
@@ -127,7 +127,7 @@ def _sample_line(group: Group) -> str:
 
 
 def _narrowed(results: Results) -> Iterator[Section]:
-    """What ``--since`` and ``--budget`` left out."""
+    """Yield the mutants that ``--since`` and ``--budget`` left out."""
     since, budget = results.since, results.budget
     if since is not None:
         run, unjudged = sum(since.run.values()), sum(since.not_judged.values())
@@ -148,7 +148,7 @@ _NAMES = 5
 
 
 def untested(found: Untested, *, everything: bool = False) -> Iterator[Section]:
-    """What no test reaches of the program; ``everything``: each by name, in a line of its own."""
+    """Yield what no test reaches of the program; with ``everything``, a line for each name."""
     lines = []
     for what, names in found.named.items():
         if everything:
@@ -164,7 +164,7 @@ _FEW = 10
 
 
 def _survivors(results: Results, place: PlaceName) -> Iterator[Section]:
-    """Survivors with an effect, the largest first; the numbers of those without one in a line."""
+    """Yield survivors with an effect, the largest first, and a line with those without an effect."""
     idle = [one.mutant.number for one in results.survivors if one.status is Verdict.NOT_COVERED]
     if idle:
         yield Section(
@@ -195,7 +195,7 @@ def _survivors(results: Results, place: PlaceName) -> Iterator[Section]:
 
 
 def accepted_sections(results: Results, place: PlaceName) -> Iterator[Section]:
-    """Accepted survivors with the reasons, and decisions that have no effect any more."""
+    """Yield accepted survivors with the reasons, and decisions that no longer have an effect."""
     rows = [(*mutant_cells(one.mutant, place), acceptance_text(one)) for one in results.accepted]
     if rows:
         title = f"{plural(len(rows), 'survivor')} accepted, in no score"
@@ -205,7 +205,7 @@ def accepted_sections(results: Results, place: PlaceName) -> Iterator[Section]:
 
 
 def _outside(results: Results, place: PlaceName) -> Iterator[Section]:
-    """Mutants with rounds that do not count, with the reason of the first such round."""
+    """Yield mutants with rounds that do not count, with the reason of the first such round."""
     found = [(verdict, results.with_verdict(verdict)) for verdict in OUTSIDE]
     told = ", ".join(f"{len(those)} {verdict}" for verdict, those in found if those)
     rows = [
@@ -222,7 +222,7 @@ def _outside(results: Results, place: PlaceName) -> Iterator[Section]:
 
 
 def skipped(left_out: Sequence[LeftOut], *, are_listed: bool = False) -> Iterator[Section]:
-    """What the plan leaves out, a line for each kind of reason; the last one says what lists them."""
+    """Yield the mutants that the plan leaves out, a line for each kind of reason."""
     found = by_heading(left_out)
     for number, (heading, those) in enumerate(found.items(), start=1):
         joined = " that " if heading == NOTHING else ": "
@@ -233,7 +233,7 @@ def skipped(left_out: Sequence[LeftOut], *, are_listed: bool = False) -> Iterato
 
 
 def _thresholds(results: Results, place: PlaceName) -> Iterator[Section]:
-    """The ladders of graded mutants, which are in no score."""
+    """Yield the ladders of graded mutants, which are in no score."""
     if results.ladders:
         runs = sum(len(result.outcomes) for result in results.graded)
         graded = f"{plural(results.ladders, 'ladder')} of graded mutants ({plural(runs, 'run')})"
@@ -247,7 +247,7 @@ def _thresholds(results: Results, place: PlaceName) -> Iterator[Section]:
 
 
 def _reliability(results: Results) -> Iterator[Section]:
-    """Tests that were excluded, damage to the journal, outcomes that were re-run, and the self-check."""
+    """Yield excluded tests, damage to the journal, re-run outcomes, and the results of ``--verify``."""
     flaky, confirmed, checked = results.flaky.tests, results.confirmation, results.verification
     if flaky:
         yield Section(f"{plural(len(flaky), 'unreliable test')} excluded", lines=flaky)
@@ -282,7 +282,7 @@ def _reliability(results: Results) -> Iterator[Section]:
 
 
 def _re_runs(what: str, found: Estimate | None, kinds: Sequence[tuple[str, Repeated]]) -> Iterator[Section]:
-    """How many outcomes were re-run, and how many of the others may be wrong; nothing if none was."""
+    """Yield how many outcomes were re-run, and how many of the others may be wrong, if any were re-run."""
     parts = []
     for name, one in kinds:
         of_kind = plural(one.outcomes, name, name.replace("kill", "kills").replace("survivor", "survivors"))
@@ -302,7 +302,7 @@ def _re_runs(what: str, found: Estimate | None, kinds: Sequence[tuple[str, Repea
 
 
 def section_lines(section: Section, at_most: int) -> Iterator[str]:
-    """Yield the Markdown of a section, of many rows the first."""
+    """Yield the Markdown of a section, with at most ``at_most`` rows."""
     yield from (f"### {escaped(section.title)}", "")
     if section.columns:
         yield _row(name.lstrip(">*") for name in section.columns)
@@ -338,5 +338,5 @@ def percent(share: float | None) -> str:
 
 
 def between(interval: Interval | None) -> str:
-    """Return an interval as text: ``34–90 %``, or ``–`` where there is none."""
+    """Return an interval as text: ``34–90 %``, or ``–`` if there is none."""
     return "–" if interval is None else f"{100 * interval.low:.0f}–{100 * interval.high:.0f} %"

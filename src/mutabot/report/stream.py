@@ -1,4 +1,4 @@
-"""Lines of mutants while a campaign runs: each as soon as nothing that follows can change its state."""
+"""Print the lines of mutants while a campaign runs, each as soon as its state is final."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ STREAMED: dict[str, ModuleType] = {"lines": lines, "jsonl": jsonl}
 
 
 class MutantStream:
-    """Prints a line per mutant, and a last line; a mutant's last line counts.
+    """Prints a line per mutant, and a last line; of several lines of a mutant, the last counts.
 
     A survivor is one with its first round; all others are settled by their last round. What a second look
     changes comes at the end.
@@ -45,7 +45,7 @@ class MutantStream:
         self._states: dict[str, str] = {}
 
     def add(self, end: MutantEnd) -> None:
-        """Print the line of a mutant if its state is settled now."""
+        """Print the line of a mutant if its state is final now."""
         mutant = end.mutant
         if mutant.id in self._states or mutant.has_sizes or end.outcome.round >= self._rounds:
             return
@@ -64,7 +64,7 @@ class MutantStream:
             self._print(result)
 
     def finish(self, results: Results) -> None:
-        """Print the lines of mutants that have another state by now, or none yet, and the last line."""
+        """Print the lines of mutants that have changed their state or lack a line, and the last line."""
         for result in results.mutants:
             if self._states.get(result.mutant.id) != state_of(result):
                 self._print(result)

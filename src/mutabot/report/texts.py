@@ -1,4 +1,4 @@
-"""What formats have in common: texts that any of them can hold, and one state of a mutant over its rounds.
+"""Texts for all formats: legible texts, the state of a mutant over its rounds, and excerpts.
 
 ``portable`` makes a whole campaign fit to leave the machine, so that none of its texts tells of that;
 ``escaped`` makes a text fit for Markdown. Other formats only have to escape what is special in them.
@@ -32,17 +32,17 @@ _ABSOLUTE = re.compile(
 
 
 def legible(text: str) -> str:
-    """A text with a sign in the place of every character that a format could not hold; as long as before."""
+    """Return a text of equal length in which characters that no format can hold are replaced."""
     return _UNFIT.sub("\N{REPLACEMENT CHARACTER}", text)
 
 
 def one_line(text: str) -> str:
-    """A text without line breaks and repeated blanks."""
+    """Return a text without line breaks and repeated blanks."""
     return " ".join(text.split())
 
 
 class Cleaner:
-    """Makes messages fit for a report: legible, and with paths that say nothing of the machine.
+    """Cleans messages for a report: legible, and without paths of the machine.
 
     What lies in the project is named from its folder on, any other file by its last name: ``…/decoder.py``.
     """
@@ -82,7 +82,7 @@ _META = (
 
 
 def portable(campaign: Results) -> Results:
-    """Return a copy of the campaign that is fit for any report."""
+    """Return a copy of the campaign whose texts are fit for any report."""
     clean = Cleaner(campaign.meta.get("root"))
     texts = "state mutants graded controls flaky attempt verification left_out untested accepting"
     found: dict[str, Any] = {name: mapped(getattr(campaign, name), clean) for name in texts.split()}
@@ -107,7 +107,7 @@ _OWN = (Mutant, LeftOut, Untested)
 
 
 def mapped(value: T, change: Callable[[str], str]) -> T:
-    """Return the data with every text changed, also keys of tables; of ids only special characters."""
+    """Return the data with every text changed, including keys; in ids, only special characters."""
     return cast("T", _mapped(value, change))
 
 
@@ -135,12 +135,12 @@ ACCEPTED, NOT_RUN = "accepted", "not run"
 
 
 def state_of(result: MutantResult) -> str:
-    """The verdict over all rounds, *accepted* or *not run*: what a mutant is counted as."""
+    """Return the state that a mutant is counted as: a verdict, *accepted* or *not run*."""
     return ACCEPTED if result.is_accepted else str(result.status or NOT_RUN)
 
 
 def acceptance_text(result: MutantResult) -> str:
-    """``accepted on 2026-01-31: the table is symmetric``; empty if it is not accepted."""
+    """Return when and why it was accepted: ``accepted on 2026-01-31: the table is symmetric``; else empty."""
     found = result.acceptance
     if found is None or not result.is_accepted:
         return ""
@@ -148,7 +148,7 @@ def acceptance_text(result: MutantResult) -> str:
 
 
 def rounds_text(result: MutantResult) -> str:
-    """``killed by check in rounds 1 and 2, survived in round 3, not run in rounds 4 to 6``."""
+    """Return the rounds by outcome: ``killed by check in rounds 1 and 2, not run in rounds 3 to 6``."""
     by_end: dict[str, list[int]] = {}
     for number, outcome in enumerate(result.rounds, start=1):
         by_end.setdefault(_end(outcome), []).append(number)
@@ -156,7 +156,7 @@ def rounds_text(result: MutantResult) -> str:
 
 
 def reason_of(result: MutantResult) -> str:
-    """Why a mutant has its state: its rounds, one line about it, and what a deciding test said."""
+    """Return why a mutant has its state: its rounds, a line about it, and a deciding test's message."""
     lines = [rounds_text(result), *filter(None, [acceptance_text(result)])]
     status = result.status
     if result.lets_through:
@@ -177,18 +177,18 @@ def survivor_text(result: MutantResult) -> str:
 
 
 def also_text(site: Site) -> str:
-    """Return the other places of a fault that stands in several, for a place where the first is named."""
+    """Return the other places of a fault that has several, to follow the first one."""
     others = ", ".join(span.place for span in site.other_spans)
     return f" (also at {others})" if others else ""
 
 
 def places_text(site: Site, place: Callable[[Span], str]) -> str:
-    """Return all places of a site, a line each; ``place`` names a span as the reader knows it."""
+    """Return all places of a site, a line each; ``place`` names a span for the reader."""
     return ",\n".join(map(place, site.spans))
 
 
 def why_alone(result: MutantResult) -> str:
-    """Return the line about a mutant, for a place where its description stands beside it."""
+    """Return the line about a mutant without its description."""
     return result.why.removeprefix(f"{result.mutant.description}; ")
 
 
@@ -206,7 +206,7 @@ def effect_text(result: MutantResult) -> str:
 
 
 def telling(result: MutantResult) -> tuple[int, Diverged | None] | None:
-    """Return a mutant's most informative round, 0-based, and the test in which the robot acted differently.
+    """Return the most informative round of a mutant, 0-based, and the test with the greatest effect.
 
     Of a survivor that is the round that let it through farthest from the original, which ``result.why`` is
     about too; else the first round with its state. None if it has not been run.
@@ -220,14 +220,14 @@ def telling(result: MutantResult) -> tuple[int, Diverged | None] | None:
 
 
 def place_text(result: MutantResult, number: int, diverged: Diverged) -> str:
-    """Return the test in which something happened if several ran, and the round if there are several."""
+    """Return the test of an effect if several ran, and the round if there are several."""
     outcome = result.rounds[number]
     test = diverged.test.rpartition("::")[2] if outcome is None or outcome.tests != 1 else ""
     return ", ".join(filter(None, (test, f"round {number + 1}" if len(result.rounds) > 1 else "")))
 
 
 def short_reason(result: MutantResult) -> str:
-    """Why a mutant that has been run has its state, in a line: what the first such round said."""
+    """Return why a mutant that has been run has its state, in a line, by the first such round."""
     status = result.status
     return next(first_line(one.message) for one in result.outcomes if one.verdict is status)
 
@@ -243,7 +243,7 @@ _TAB = 4
 
 
 def excerpts(site: Site, source: Callable[[str], str | None]) -> list[str]:
-    """Return the lines around each place of a site; of several, each begins with its file and line.
+    """Return the lines around each place of a site; with several places, each with file and line.
 
     Args:
         source: the text of a file, or None if it is not known.

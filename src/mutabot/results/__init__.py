@@ -1,1 +1,1 @@
-"""Analysis: scores, kill rates and why survivors survived, from what a journal holds."""
+"""Analysis of a journal: scores, kill rates, and why survivors survived."""

@@ -1,4 +1,4 @@
-"""Why a mutant ended as it did, in one line an engineer can act on."""
+"""Describe in one line why a mutant ended as it did."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from mutabot.model.quantity import distinct_texts, value_text
 
 
 def quantity_of(mutant: Mutant, vocabulary: Vocabulary | None) -> Quantity | None:
-    """The quantity a mutant changes, or None if it concerns the call or the vocabulary is not known."""
+    """Return the quantity that a mutant changes; None if it changes none or the vocabulary is not known."""
     if vocabulary is None:
         return None
     return vocabulary.quantity(mutant.operation, mutant.pattern, mutant.quantity)
 
 
 def explain(mutant: Mutant, outcomes: Sequence[Outcome], vocabulary: Vocabulary | None = None) -> str:
-    """One line about a mutant's outcomes: what changed, and what became of the world or who noticed.
+    """Describe a mutant's outcomes in a line: what changed, and its effect or who noticed.
 
     Speaks about the survivor farthest from the original, if there is any; else about a round in which no
     test reached it; else about the verdict that occurred most.
@@ -37,7 +37,7 @@ def explain(mutant: Mutant, outcomes: Sequence[Outcome], vocabulary: Vocabulary 
 
 
 def change_text(mutant: Mutant, outcome: Outcome, quantity: Quantity | None = None) -> str | None:
-    """What the mutant changed when it first acted: ``read -0.0014 m instead of 0.0014 m``.
+    """Return what the mutant changed when it first acted: ``read -0.0014 m instead of 0.0014 m``.
 
     That is in the test whose story is told, if there is one.
     """

@@ -52,7 +52,7 @@ def keep_film(journal: Path, meta: Mapping[str, Any], mutant: str, film: KeptFil
 
 
 def kept_films(journal: Path, meta: Mapping[str, Any]) -> dict[str, KeptFilm]:
-    """Return those of this campaign by the ids of their mutants, as far as their files are there."""
+    """Return the films of this campaign by mutant id, as far as their files exist."""
     folder = _folder(journal)
     found = {
         mutant: KeptFilm(folder / _name(mutant), round, test)

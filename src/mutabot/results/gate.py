@@ -1,4 +1,4 @@
-"""Whether a campaign is good enough: the limits that decide its exit code."""
+"""Decide by limits whether a campaign is good enough, and the exit code that follows."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _SHOWN = 20
 
 @frozen
 class Decision:
-    """The end of a campaign as a continuous-integration job sees it.
+    """The decision for a continuous-integration job.
 
     Attributes:
         exit_code: what the command ends with.
@@ -91,7 +91,7 @@ def _incomplete(results: Results) -> str:
 
 
 def _doubtful(results: Results) -> Iterator[str]:
-    """Changes to the journal by other processes, which make its exit code unreliable."""
+    """Yield changes to the journal by other processes, which make its exit code unreliable."""
     if results.set_aside:
         yield (
             f"{in_short(results.set_aside, 5)} in the journal: not written by mutabot, or damaged; "
@@ -108,7 +108,7 @@ def _doubtful(results: Results) -> Iterator[str]:
 
 
 def _of_shard(results: Results, shard: ShardOf) -> Decision:
-    """Shares and scores of a part say little about the whole; a disagreement is one wherever it is found."""
+    """Decide about a shard, whose scores say little about the whole; only disagreements count."""
     wrong = _disagreements(results)
     if wrong:
         return Decision(ExitCode.UNRELIABLE, wrong)
@@ -137,7 +137,7 @@ def _too_unstable(results: Results, limit: float | None) -> tuple[str, ...]:
 def _too_many(
     results: Results, verdict: Verdict, words: str, limit: float | None, key: str
 ) -> tuple[str, ...]:
-    """A line if more outcomes than the limit allows ended so."""
+    """Return a message if more outcomes than the limit have one of these verdicts."""
     outcomes = results.outcomes
     count, run = sum(one.verdict is verdict for one in outcomes), len(outcomes)
     if limit is None or not run or count / run <= limit:
@@ -169,12 +169,12 @@ def _nothing_valid(results: Results) -> str:
 
 
 def _too_loose(results: Results, demands: Sequence[Demand]) -> Iterator[str]:
-    """Each site that tolerates more than is demanded, with direction and rounds."""
+    """Yield each site that tolerates more than demanded, with direction and rounds."""
     return unmet(demands, ladders_of(results) if demands else ())
 
 
 def _found(results: Results, fail_on: Collection[str]) -> Iterator[str]:
-    """What there must be none of: survivors that are not accepted, and what no test reaches."""
+    """Yield the findings that ``--fail-on`` forbids: unaccepted survivors, or code that no test reaches."""
     idle = [one.mutant.number for one in results.survivors if one.status is Verdict.NOT_COVERED]
     survivors = sorted({one.mutant.number for one in results.survivors} - {*idle})
     if "survivors" in fail_on and survivors:

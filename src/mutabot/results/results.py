@@ -1,4 +1,4 @@
-"""Everything a report needs, read from a journal once.
+"""The results of a campaign, read from a journal once, for all reports.
 
 Facts of objects as plain data, named in a line: ``id file=site.span.file round=round+1``.
 """
@@ -35,7 +35,7 @@ OUTSIDE = (
 
 @frozen
 class MutantResult:
-    """What became of one mutant.
+    """The result of one mutant.
 
     Attributes:
         mutant: the mutant.
@@ -62,32 +62,32 @@ class MutantResult:
 
     @property
     def outcomes(self) -> tuple[Outcome, ...]:
-        """The outcomes there are."""
+        """The outcomes in rounds that were run."""
         return tuple(outcome for outcome in self.rounds if outcome is not None)
 
     @property
     def survived(self) -> list[Outcome]:
-        """The outcomes in which every test that reaches it passed."""
+        """The outcomes in which every test that reaches the mutant passed."""
         return [one for one in self.outcomes if one.verdict is Verdict.SURVIVED]
 
     @property
     def kill_rate(self) -> Score:
-        """In how many rounds it was killed."""
+        """The share of rounds that killed it."""
         return Score.of(self.outcomes)
 
     @property
     def lets_through(self) -> bool:
-        """Whether any round lets it through, by surviving or because no test reaches it."""
+        """Whether it survives in any round, or no test reaches it there."""
         return any(map(_lets_through, self.outcomes))
 
     @property
     def is_survivor(self) -> bool:
-        """Whether any round lets it through, and it is not accepted."""
+        """Whether it survives in any round, or no test reaches it there, and it is not accepted."""
         return self.lets_through and self.acceptance is None
 
     @property
     def is_accepted(self) -> bool:
-        """Whether any round lets it through, and it is accepted: then it is in no score."""
+        """Whether it survives in any round and is accepted, so that it is in no score."""
         return self.lets_through and self.acceptance is not None
 
     @property
@@ -112,7 +112,7 @@ class MutantResult:
 
     @property
     def deviation(self) -> float:
-        """How far its survivors were from the original at most, in units of the original's spread."""
+        """The greatest distance of its survivors from the original, in units of the original's spread."""
         return max((one.deviation or 0.0 for one in self.survived), default=0.0)
 
     @property
@@ -123,13 +123,13 @@ class MutantResult:
 
     @property
     def indistinguishable(self) -> bool:
-        """Whether no survivor of it looked other than the original."""
+        """Whether all its survivors looked exactly like the original."""
         return bool(self.survived) and all(one.indistinguishable for one in self.survived)
 
 
 @frozen
 class Results:
-    """What became of a campaign.
+    """The results of a campaign.
 
     Attributes:
         meta: what the campaign said about itself.
@@ -194,7 +194,7 @@ class Results:
 
     @property
     def altered(self) -> tuple[str, ...]:
-        """Describe changes by other processes to the journal during the campaign, which were undone."""
+        """Descriptions of changes by other processes to the running campaign's journal, which were undone."""
         return tuple(self.meta.get(records.ALTERED) or ())
 
     @property
@@ -211,19 +211,19 @@ class Results:
 
     @property
     def outcomes(self) -> tuple[Outcome, ...]:
-        """Every outcome there is: by mutant, then by round."""
+        """All outcomes: by mutant, then by round."""
         return tuple(outcome for result in self.everything for outcome in result.outcomes)
 
     @property
     def tests(self) -> list[str]:
-        """Node ids of all tests that are known: what mutants name is among them."""
+        """Node ids of all known tests, including those that mutants name."""
         named = (test for one in self.outcomes for test, _ in killing_tests(one))
         baseline = (one.test.test for one in self.baseline)
         return list(dict.fromkeys([*baseline, *self.reaching.tests, *named]))
 
     @classmethod
     def read(cls, path: Path, *, earlier: bool = False) -> Results:
-        """Read the last campaign of the journal at a path, and what earlier ones found if ``earlier``.
+        """Read the last campaign of the journal at a path, and earlier ones if ``earlier``.
 
         Raises JournalError.
         """
@@ -231,7 +231,7 @@ class Results:
             return read_results(journal, earlier=earlier)
 
     def mutant(self, name: str) -> MutantResult:
-        """Return the mutant with this number or id, or the only one that ``--only`` would take by ``name``.
+        """Return the mutant with this number or id, or the only one that matches ``name`` as in ``--only``.
 
         A part of an id will do. Raises SelectionError, naming the nearest id, or the mutants that it fits.
         """
@@ -252,7 +252,7 @@ class Results:
         raise SelectionError(unknown_name_text("mutant", name, (one.mutant.id for one in everything)))
 
     def selected(self, only: Iterable[str], skip: Iterable[str]) -> list[MutantResult]:
-        """Return those of ``mutants`` that ``--only`` and ``--skip`` leave. Raises SelectionError."""
+        """Return the ``mutants`` that match ``only`` and not ``skip``. Raises SelectionError."""
         chosen = {one.id for one in select([one.mutant for one in self.mutants], only, skip)}
         return [one for one in self.mutants if one.mutant.id in chosen]
 
@@ -263,7 +263,7 @@ class Results:
         return number - 1
 
     def source(self, file: str) -> str | None:
-        """The text of a mutated file at the time of the campaign; None if it was not written down."""
+        """Return the text of a mutated file at the time of the campaign; None if it was not recorded."""
         return self.sources.get(file)
 
     def reached_by(self, mutant: Mutant) -> tuple[str, ...]:
@@ -272,17 +272,17 @@ class Results:
 
     @property
     def ladders(self) -> int:
-        """Number of ladders of graded mutants; ``results`` says what became of them."""
+        """Number of ladders of graded mutants."""
         return len({one.mutant.ladder for one in self.graded})
 
     @property
     def earlier(self) -> list[MutantResult]:
-        """Mutants of which an earlier campaign found something."""
+        """Mutants with outcomes of an earlier campaign."""
         return [result for result in self.mutants if result.earlier]
 
     @property
     def survivors(self) -> list[MutantResult]:
-        """Mutants that some round lets through, the farthest from the original at any moment first."""
+        """Mutants that survive in some round, the farthest from the original at any moment first."""
         found = [result for result in self.mutants if result.is_survivor]
         return sorted(found, key=lambda one: (-one.deviation, one.indistinguishable, one.mutant.number))
 
@@ -293,7 +293,7 @@ class Results:
 
     @property
     def needlessly_accepted(self) -> list[str]:
-        """Describe decisions whose mutants are all killed in every valid round."""
+        """Descriptions of decisions whose mutants are all killed in every valid round."""
         groups: dict[str, list[MutantResult]] = {}
         for one in self.mutants:
             if one.acceptance is not None:
@@ -307,7 +307,7 @@ class Results:
         return [*survivors, *(result for result in self.mutants if not result.is_survivor)]
 
     def with_verdict(self, *verdicts: Verdict) -> list[tuple[MutantResult, Outcome]]:
-        """Each mutant with its first outcome of one of these verdicts, by number."""
+        """Return each mutant with its first outcome of one of these verdicts, by number."""
         found = []
         for result in self.mutants:
             outcome = next((one for one in result.outcomes if one.verdict in verdicts), None)
@@ -317,17 +317,17 @@ class Results:
 
     @property
     def planned(self) -> int:
-        """Number of (mutant, round) pairs the campaign was to run, without graded mutants."""
+        """Number of (mutant, round) pairs that the campaign was to run, without graded mutants."""
         return len(self.mutants) * self.rounds
 
     @property
     def confirmation(self) -> Confirmed | None:
-        """What the whole suite says of mutants that were run without some tests; None if all were run."""
+        """The whole suite's verdicts on mutants that ran without some tests; None if none did."""
         return Confirmed.of(self.outcomes, self.meta.get("seed") or 0)
 
     @property
     def known(self) -> str:
-        """``12 of 20 outcomes are known``."""
+        """The known outcomes as text: ``12 of 20 outcomes are known``."""
         return (
             f"{self.done} of {plural(self.planned, 'outcome')} {'is' if self.planned == 1 else 'are'} known"
         )
@@ -339,7 +339,7 @@ class Results:
 
 
 def killing_tests(outcome: Outcome) -> list[tuple[str, By | None]]:
-    """The known tests that noticed a mutant, and what noticed it."""
+    """Return the known tests that noticed a mutant, and what noticed it."""
     if not outcome.verdict.is_killed:
         return []
     first = [(outcome.test, outcome.by)] if outcome.test is not None else []
@@ -357,7 +357,7 @@ _TOLD = {one.name for one in fields(Results)} & (records.FACTS.keys() - records.
 
 
 def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
-    """Put together what the journal holds now: the last campaign, and all that is known if ``earlier``."""
+    """Read what the journal holds now: the last campaign, and earlier ones if ``earlier``."""
     meta, mutants = journal.meta(), journal.mutants()
     planned = {mutant.id for mutant in mutants}
     outcomes = [outcome for outcome in journal.outcomes() if outcome.mutant in planned]
@@ -421,7 +421,7 @@ def _lets_through(outcome: Outcome) -> bool:
 
 
 def _is_killed(results: Iterable[MutantResult]) -> bool:
-    """Whether all of these have run in every round, and every valid round of each kills it."""
+    """Return whether all of these have run in every round, and every valid round of each kills it."""
     return all(one.kill_rate.valid and not one.lets_through and None not in one.rounds for one in results)
 
 
@@ -435,14 +435,14 @@ def _killed_now_text(source: str, results: Sequence[MutantResult]) -> str:
 
 
 def _accepted(accepting: Accepted, outcomes: Iterable[Outcome]) -> set[str]:
-    """The ids of accepted mutants that some round lets through."""
+    """Return the ids of accepted mutants that survive in some round."""
     return {one.mutant for one in outcomes if one.mutant in accepting.mutants and _lets_through(one)}
 
 
 def _earlier(
     journal: JournalReader, planned: Sequence[Mutant], outcomes: Sequence[Outcome], rounds: int
 ) -> tuple[list[Outcome], dict[str, bool]]:
-    """What earlier campaigns found that the last one did not, of its mutants or others.
+    """Return outcomes of earlier campaigns that the last one lacks, of its mutants or others.
 
     Also of which mutants of these something has changed since that they depend on, by their ids.
     """
@@ -476,7 +476,7 @@ def _unfinished(journal: JournalReader) -> str:
 
 
 def _is_whole(mutants: Sequence[Mutant], outcomes: Sequence[Outcome], rounds: int) -> bool:
-    """Whether each mutant has an outcome in each round; those of ladders need not be run."""
+    """Return whether each mutant has an outcome in each round; those of ladders need not be run."""
     known = {(outcome.mutant, outcome.round) for outcome in outcomes}
     alone = (mutant.id for mutant in mutants if not mutant.has_sizes)
     return all((name, round) in known for name in alone for round in range(rounds))
@@ -493,7 +493,7 @@ def _state(journal: JournalReader, shard: records.ShardOf | None, *, is_whole: b
 
 
 def unlooked(results: Iterable[MutantResult]) -> list[str]:
-    """Describe readings of the oracle none of whose judged mutants was noticed.
+    """Describe readings of the oracle of which no mutant was noticed.
 
     Of a reading with a mutant that is still to be run, as in another shard, nothing is said.
     """
@@ -517,7 +517,7 @@ def unlooked(results: Iterable[MutantResult]) -> list[str]:
 
 
 def _unlooked_text(operation: str, quantity: str, found: Sequence[MutantResult]) -> str:
-    """``tests/sensors.py:12:5 tracker:robot_position .y: none of its 3 mutants was noticed``."""
+    """Describe an unnoticed reading: ``tests/sensors.py:12:5 tracker:position .y: none of its 3 mutants``."""
     places = in_short(list(dict.fromkeys(one.mutant.site.place for one in found)), 1)
     which = "its only mutant was not" if len(found) == 1 else f"none of its {len(found)} mutants was"
     return f"{places} {operation} {quantity}: {which} noticed"
@@ -532,7 +532,7 @@ _PLAIN = {str, int, float, bool, type(None)}
 
 
 def fact(one: Any, path: Sequence[str]) -> Any:
-    """The attribute at ``("site", "span", "file")``; None where something on the way is None."""
+    """Return the attribute at a path such as ``("site", "span", "file")``; None if a step is None."""
     for name in path:
         if one is None:
             return None
@@ -541,7 +541,7 @@ def fact(one: Any, path: Sequence[str]) -> Any:
 
 
 class Encoder:
-    """Makes JSON-like data of objects. Fields that are None are left out where a class has no facts here.
+    """Converts objects to JSON-like data. None fields are left out of classes without a line of facts.
 
     A line of facts has words for attributes: ``name``, ``key=path`` for another name, ``*path`` for all facts
     of what is there, and ``*`` for the fields. ``path+1`` counts from 1, ``path?`` is null where it is empty,
@@ -552,7 +552,7 @@ class Encoder:
         self._known = known
 
     def __call__(self, value: Any) -> Any:
-        """The data of any value."""
+        """Return the data of any value."""
         if type(value) in _PLAIN:
             return value
         known = self._known.get(type(value))
@@ -567,7 +567,7 @@ class Encoder:
         return self._fields(value) if is_dataclass(value) else value
 
     def facts(self, one: object, line: str) -> dict[str, Any]:
-        """The facts of an object that a line names, in its order."""
+        """Return the facts of an object that a line names, in its order."""
         found: dict[str, Any] = {}
         for key, path, kind in _words(line):
             if kind == "*":

@@ -1,4 +1,4 @@
-"""Scores: how many of the valid mutants were killed. A score always carries its counts."""
+"""Scores: the share of valid mutants that were killed, always with counts."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @frozen
 class Score:
-    """What a number of outcomes comes to.
+    """The score of some outcomes, with counts.
 
     Which verdict stands where in the score is decided in ``model.outcome`` alone.
 
@@ -32,13 +32,13 @@ class Score:
 
     @classmethod
     def of(cls, outcomes: Iterable[Outcome]) -> Score:
-        """The score of these outcomes."""
+        """Return the score of these outcomes."""
         outcomes = list(outcomes)
         return cls(Counter(one.verdict for one in outcomes), sum(map(_is_found, outcomes)))
 
     @property
     def of_each(self) -> dict[Verdict, int]:
-        """Outcomes per verdict, also of those that did not occur."""
+        """Outcomes per verdict, including verdicts that did not occur."""
         return {verdict: self.counts.get(verdict, 0) for verdict in Verdict}
 
     @property
@@ -48,7 +48,7 @@ class Score:
 
     @property
     def killed(self) -> int:
-        """The numerator of the score; time-outs are in it and also shown apart."""
+        """The numerator of the score; it includes time-outs, which are also shown separately."""
         return sum(count for verdict, count in self.counts.items() if verdict.is_killed)
 
     @property
@@ -58,12 +58,12 @@ class Score:
 
     @property
     def score(self) -> float | None:
-        """Killed / valid, 0 … 1; None when nothing was valid."""
+        """Killed / valid, 0 … 1; None if no outcome is valid."""
         return self.killed / self.valid if self.valid else None
 
     @property
     def check_score(self) -> float | None:
-        """Killed by a check / valid, 0 … 1; None when nothing was valid."""
+        """Killed by a check / valid, 0 … 1; None if no outcome is valid."""
         return self.by_check / self.valid if self.valid else None
 
     @property
@@ -101,7 +101,7 @@ class RoundScores:
         population: int | None = None,
         accepted: Collection[str] = (),
     ) -> RoundScores:
-        """The scores of these outcomes in rounds 0 … ``rounds`` − 1.
+        """Return the scores of these outcomes in rounds 0 … ``rounds`` − 1.
 
         Args:
             outcomes: of any mutants.
@@ -134,7 +134,7 @@ class RoundScores:
 
     @property
     def total(self) -> Score:
-        """All rounds in one: its counts are of (mutant, round) pairs."""
+        """The score of all rounds; its counts are of (mutant, round) pairs."""
         counts: Counter[Verdict] = Counter()
         for score in self.rounds:
             counts.update(score.counts)
@@ -142,18 +142,18 @@ class RoundScores:
 
     @property
     def mean(self) -> float | None:
-        """Mean of the rounds' scores; rounds without a valid mutant have none. None if no round has one."""
+        """Mean of the scores of rounds with a valid mutant; None if there is none."""
         return _mean([score.score for score in self.rounds])
 
     @property
     def mean_check(self) -> float | None:
-        """Mean of the rounds' check scores; None if no round has one."""
+        """Mean of the check scores of rounds with a valid mutant; None if there is none."""
         return _mean([score.check_score for score in self.rounds])
 
 
 @frozen
 class Group:
-    """The scores of one family in one role. Groups are never added up to one score.
+    """The scores of one family in one role. Groups are never combined into one score.
 
     Attributes:
         family: the operators' family.
@@ -178,7 +178,7 @@ def groups_of(
     *,
     accepted: Collection[str] = (),
 ) -> tuple[Group, ...]:
-    """One group per family and role, in the order in which they first occur in the plan.
+    """Return one group per family and role, in the order in which they first occur in the plan.
 
     Graded mutants have none: the magnitudes of a ladder are no population of faults.
     ``drawing`` says how the mutants were drawn, if they were. ``accepted``: as in ``RoundScores.of``.
@@ -206,10 +206,10 @@ def _mean(scores: Sequence[float | None]) -> float | None:
 
 
 def _is_found(outcome: Outcome) -> bool:
-    """Whether a check killed it."""
+    """Return whether a check killed it."""
     return outcome.verdict is Verdict.KILLED and outcome.by is By.CHECK
 
 
 def _share(outcome: Outcome | None, counts: Callable[[Outcome], bool]) -> float | None:
-    """A cell of the table that an interval is made from: 1, 0, or None outside the score."""
+    """Return an outcome's cell in the table for intervals: 1, 0, or None outside the score."""
     return float(counts(outcome)) if outcome is not None and outcome.verdict.is_valid else None

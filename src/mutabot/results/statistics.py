@@ -1,4 +1,4 @@
-"""Intervals: how far a kill rate or a score would move with other rounds and other mutants like these.
+"""Confidence intervals of kill rates and scores, over other rounds and other mutants like these.
 
 ``wilson`` is for one mutant: its rounds are independent draws. ``crossed`` is for a score: every cell of the
 table mutants × rounds shares its mutant with a row and its round with a column, so cells are not independent
@@ -72,7 +72,7 @@ def wilson(killed: float, valid: float) -> Interval | None:
 
 
 def crossed(table: Sequence[Sequence[float | None]]) -> Interval | None:
-    """The interval of a score over rounds and mutants, both taken as random samples.
+    """Return the interval of a score over rounds and mutants, both taken as random samples.
 
     The score is the mean over rounds of killed / valid. The interval is Wilson's, with the number of
     independent observations that gives the score's estimated variance, and Student's t in place of the
@@ -103,7 +103,7 @@ def crossed(table: Sequence[Sequence[float | None]]) -> Interval | None:
 
 
 def sampled(table: Sequence[Sequence[float | None]], population: int) -> Interval | None:
-    """The interval of the score that *all* mutants would have had, from a random sample of them.
+    """Return the interval of the score that *all* mutants would have had, from a random sample of them.
 
     The rounds are given: it is the score of the same campaign without sampling. As in ``crossed``, the
     interval is Wilson's with the number of independent observations that gives the score's estimated
@@ -179,20 +179,20 @@ class _Cells:
 
     @property
     def smoothed(self) -> float:
-        """The score with the imagined mutants."""
+        """The score with the pseudo-mutants included."""
         return (self.score * self.mutants + _IMAGINED) / (self.mutants + 2 * _IMAGINED)
 
     def interval(self, variance: float, freedom: float, *, most: float) -> Interval:
-        """Wilson's, with the number of independent observations that gives this variance, at ``most``."""
+        """Return Wilson's interval for as many observations as give this variance, at most ``most``."""
         independent = self.smoothed * (1 - self.smoothed) / variance * (_NORMAL / student(freedom)) ** 2
         return _wilson(self.score, min(independent, most))
 
     def weight(self, number: int) -> float:
-        """What one cell of this round counts in the score."""
+        """Return the weight of a cell of this round in the score."""
         return 1.0 / (len(self.rounds) * self.sizes[number])
 
     def influence(self, row: Mapping[int, float]) -> float:
-        """What a mutant adds to the score beyond an average one."""
+        """Return what a mutant contributes to the score beyond an average one."""
         return math.fsum(self.weight(number) * (value - self.rounds[number]) for number, value in row.items())
 
     def variance_of_mutants(self) -> float:
@@ -219,7 +219,7 @@ class _Cells:
         return math.fsum((share - score) ** 2 for share in self.rounds.values()) / (rounds * (rounds - 1))
 
     def variance_of_cells(self) -> float:
-        """MSe / MR: what chance within cells alone gives."""
+        """MSe / MR: the variance that chance within cells alone gives."""
         free = self.count - self.mutants - len(self.rounds) + 1
         if free <= 0:
             return 0.0
@@ -232,7 +232,7 @@ class _Cells:
 
 
 def student(freedom: float) -> float:
-    """How many standard errors an interval of ``LEVEL`` reaches to each side, from 1 degree of freedom on.
+    """Return the half-width of an interval of ``LEVEL`` in standard errors, from 1 degree of freedom on.
 
     Between the lines of the table ``ln t`` is taken as linear in 1/freedom: within 0.4 %, and within 0.05 %
     from 4 on. Raises ValueError below 1.
@@ -275,7 +275,7 @@ class Estimate:
 
 
 def false_kills(repeats: Repeats, level: float = LEVEL) -> Estimate | None:
-    """How many of the kills that still count are false; None where no kill was repeated."""
+    """Estimate how many of the kills that still count are false; None if no kill was repeated."""
     found = _together((repeats.doubted, repeats.others), level)
     if found is None:
         return None
@@ -288,12 +288,12 @@ def false_kills(repeats: Repeats, level: float = LEVEL) -> Estimate | None:
 
 
 def false_survivors(repeats: Repeats, level: float = LEVEL) -> Estimate | None:
-    """How many of the survivors that still count would not survive again; None where none was repeated."""
+    """Estimate how many of the survivors that still count would not survive again; None without repeats."""
     return _together((repeats.survivors,), level)
 
 
 def _together(strata: tuple[Repeated, ...], level: float) -> Estimate | None:
-    """The sum over kinds of outcomes. The ends are summed too, which makes the interval rather too wide."""
+    """Return the sum over kinds of outcomes. The ends are summed too, so the interval is conservative."""
     looked = [one for one in strata if one.repeated]
     if not looked:
         return None
@@ -309,7 +309,7 @@ def _together(strata: tuple[Repeated, ...], level: float) -> Estimate | None:
 
 
 def remaining(stratum: Repeated, level: float = LEVEL) -> tuple[int, int]:
-    """The interval of how many of the outcomes that were not repeated would change.
+    """Return the interval of how many of the unrepeated outcomes would change.
 
     Exact, as Clopper and Pearson's, but for a random sample without replacement: the numbers for which
     neither as few nor as many changed ones among the repeated are less likely than half of 1 − level.
@@ -332,7 +332,7 @@ def remaining(stratum: Repeated, level: float = LEVEL) -> tuple[int, int]:
 def confirmed_by_chance(
     changed: int, confirmed: int, survivors: int, level: float = LEVEL
 ) -> tuple[float, int]:
-    """Expected and greatest likely number of false kills that came out again by chance.
+    """Return the expected and greatest likely number of false kills that were confirmed by chance.
 
     Args:
         changed: kills that did not come out again.
@@ -367,7 +367,7 @@ def _binomial_upper(seen: int, tried: int, tail: float) -> float:
 
 
 def _hypergeometric(k: int, total: int, changed: int, drawn: int) -> float:
-    """The probability that k of ``drawn`` outcomes are among the ``changed`` ones of ``total``."""
+    """Return the probability that k of ``drawn`` outcomes are among the ``changed`` ones of ``total``."""
     if k > changed or drawn - k > total - changed or k > drawn or k < 0:
         return 0.0
     return math.exp(_log_comb(changed, k) + _log_comb(total - changed, drawn - k) - _log_comb(total, drawn))
@@ -378,7 +378,7 @@ def _log_comb(n: int, k: int) -> float:
 
 
 def _last(holds: Callable[[int], bool], first: int, last: int) -> int:
-    """The last number from ``first`` on for which something holds that stops holding once at most."""
+    """Return the last number from ``first`` on for which ``holds`` is true; it changes at most once."""
     while first < last:
         middle = (first + last + 1) // 2
         first, last = (middle, last) if holds(middle) else (first, middle - 1)
@@ -387,7 +387,7 @@ def _last(holds: Callable[[int], bool], first: int, last: int) -> int:
 
 @frozen
 class Confirmed:
-    """What the whole suite says of mutants that were run without some of its tests.
+    """The whole suite's verdicts on mutants that ran without some of its tests.
 
     Attributes:
         outcomes: survivors, in all rounds, and what was refused while tests were left out.
@@ -409,7 +409,7 @@ class Confirmed:
 
     @classmethod
     def of(cls, outcomes: Iterable[Outcome], seed: int) -> Confirmed | None:
-        """Of these outcomes; None if no test was left out."""
+        """Count these outcomes; None if no test was left out."""
         outcomes = list(outcomes)
         drawn = run_short(outcomes, seed)
         if not drawn:

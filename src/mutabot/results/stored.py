@@ -1,4 +1,4 @@
-"""Stored campaigns: what a journal holds as one object, with recordings, and as a table.
+"""Stored campaigns: the content of a journal as one object, with recordings, and as a table.
 
 The table has one row per mutant and round that has been run; docs/reports.md has its columns. Names and units
 are stable: columns may be added, at the end.
@@ -32,7 +32,7 @@ _HELD, _SHOWN = 32, 10
 
 
 class StoredEvidence:
-    """All recordings of a campaign, to be closed. Raises JournalError if they cannot be read.
+    """All recordings of a campaign, to be closed after use. Raises JournalError if they cannot be read.
 
     Args:
         journal: the path of its journal.
@@ -48,11 +48,11 @@ class StoredEvidence:
             self._recordings.close()
 
     def tests(self, mutant: str, round: int) -> tuple[str, ...]:
-        """The tests in which a mutant, by its id, differed in a round (from 0), if they were recorded."""
+        """Return the tests with recordings in which a mutant, by its id, differed in a round (from 0)."""
         return self._recordings.tests(mutant, round) if self._recordings is not None else ()
 
     def pair(self, mutant: str, round: int, test: str) -> tuple[Recording | None, Recording | None]:
-        """One test, as the original and as a mutant.
+        """Return the recordings of one test, as the original and as a mutant.
 
         None if there is none; of a mutant also if nothing in it differs, or if there was no room for it.
         """
@@ -83,7 +83,7 @@ _FACTS = Encoder({})
 
 
 def rows(results: Results) -> Iterator[dict[str, Any]]:
-    """The cells of all outcomes by column: by mutant, then by round. None stands for what is not known."""
+    """Yield the cells of all outcomes by column, by mutant, then by round. None is a missing value."""
     for result in results.everything:
         for outcome in result.outcomes:
             example = outcome.example if outcome.example is not None and len(outcome.example) == 2 else ()
@@ -102,11 +102,11 @@ def rows(results: Results) -> Iterator[dict[str, Any]]:
 
 @frozen
 class StoredCampaign(Results):
-    """The last campaign of a journal, as notebooks read it. Nothing of it changes later."""
+    """The last campaign of a journal, for notebooks. It does not change."""
 
     @property
     def scores(self) -> tuple[Group, ...]:
-        """Scores per family and role. They are never added up."""
+        """Scores per family and role, which are never combined."""
         return self.groups
 
     @property
@@ -120,7 +120,7 @@ class StoredCampaign(Results):
         return f"<campaign, {self.state}: {size}: {counts}>"
 
     def _repr_html_(self) -> str:
-        """Scores and the first survivors, for notebooks."""
+        """Return scores and the first survivors as HTML, for notebooks."""
         scores = [
             (f"{one.family} · {one.role}", str(one.mutants), _percent(one.scores.mean),
              _percent(one.scores.mean_check), str(one.scores.accepted))
@@ -144,12 +144,12 @@ class StoredCampaign(Results):
 
     @property
     def _counts(self) -> dict[str, int]:
-        """Mutants by what they are counted as."""
+        """The counts of mutants by state."""
         states = ("accepted" if one.is_accepted else one.status or "not run" for one in self.mutants)
         return dict(Counter(map(str, states)))
 
     def rows(self) -> list[dict[str, Any]]:
-        """One row per outcome, by column; docs/reports.md has them. ``pandas.DataFrame`` takes this."""
+        """Return one row per outcome, by column, as in docs/reports.md. ``pandas.DataFrame`` takes this."""
         return list(rows(self))
 
 
@@ -158,7 +158,7 @@ def _percent(share: float | None) -> str:
 
 
 def _table(head: Sequence[str], found: Sequence[Sequence[str]]) -> str:
-    """An HTML table; nothing without rows."""
+    """Return an HTML table; nothing without rows."""
     if not found:
         return ""
     lines = (
@@ -169,7 +169,7 @@ def _table(head: Sequence[str], found: Sequence[Sequence[str]]) -> str:
 
 
 def open(path: str | Path = ".") -> StoredCampaign:
-    """Read the last campaign of a journal, also one that was interrupted or still runs.
+    """Read the last campaign of a journal, which may be interrupted or still running.
 
     ``path`` is a project's folder, a folder inside it, or the file of a journal.
 

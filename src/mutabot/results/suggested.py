@@ -1,4 +1,4 @@
-"""What is suggested for survivors, kept beside the journal for reports of its campaign."""
+"""Suggestions for survivors, kept beside the journal for reports of its campaign."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from mutabot.model.codec import from_data, to_data
 
 @frozen
 class Suggestion:
-    """What was found for a survivor: a check that kills it, or why there is none.
+    """A suggestion for a survivor: a check that kills it, or why there is none.
 
     Attributes:
         test: node id of the test that the check is added to, without parameters; empty if there is no check.
@@ -34,7 +34,7 @@ _STARTED = "started"
 
 
 def keep_suggestions(journal: Path, meta: Mapping[str, Any], found: Mapping[str, Suggestion]) -> None:
-    """Write them down, by the ids of survivors, for this campaign. Raises UsageError if that fails."""
+    """Write suggestions, by the ids of survivors, for this campaign. Raises UsageError if that fails."""
     path = _path(journal)
     data = {_STARTED: meta.get(_STARTED), "found": to_data(found)}
     try:
@@ -44,7 +44,7 @@ def keep_suggestions(journal: Path, meta: Mapping[str, Any], found: Mapping[str,
 
 
 def kept_suggestions(journal: Path, meta: Mapping[str, Any]) -> Mapping[str, Suggestion]:
-    """Return those for this campaign; nothing if none were looked for, or by another version of mutabot."""
+    """Return the suggestions for this campaign; empty if there are none of this version of mutabot."""
     try:
         data = json.loads(_path(journal).read_text(encoding="utf-8"))
         if data[_STARTED] != meta.get(_STARTED):

@@ -1,4 +1,4 @@
-"""What lives beside the robot program, in its process.
+"""The part of mutabot in the process of the robot program.
 
 It imports the standard library, wrapt, pytest, and of mutabot only ``model``, ``languages``, ``evidence``,
 ``extensions`` and ``operators``. ``session_hooks`` and ``test_hooks`` make pytest run a job, and ``session``
@@ -20,7 +20,7 @@ real_folder = cache(os.path.realpath)
 
 @cache
 def real_path(path: str) -> str:
-    """The path of a file without symbolic links."""
+    """Return the path of a file without symbolic links."""
     if not os.path.isabs(path):
         return os.path.realpath(path)
     folder, name = os.path.split(path)

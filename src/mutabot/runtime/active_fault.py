@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class FaultContext(Protocol):
-    """What a process of the tests offers to its fault."""
+    """The interface that a process of the tests offers to its fault."""
 
     @property
     def round(self) -> int:
@@ -36,7 +36,7 @@ class FaultContext(Protocol):
         """Simulated seconds since the first tick of the running test; None without a clock."""
 
     def untracked(self) -> AbstractContextManager[None]:
-        """A context in which calls of the robot's operations are the fault's own, not the program's.
+        """Return a context in which calls of operations are attributed to the fault, not to the program.
 
         The methods of a fault are called in it. What a fault puts into the program is not.
         """
@@ -60,7 +60,7 @@ class FaultContext(Protocol):
 
 
 class ActiveFault(ABC):
-    """One mutant in a process of the tests.
+    """The base class of faults: one mutant in one process of the tests.
 
     Its methods are called in this order: ``prepare_process`` once; in each test ``start_test``, ``reach`` for
     each of its keys but those of the start of a test, and ``end_test``. In a process that was forked for it,
@@ -88,15 +88,15 @@ class ActiveFault(ABC):
 
     @property
     def evidence(self) -> Evidence:
-        """What it did in the running test."""
+        """What the fault did in the running test."""
         return self._evidence
 
     def prepare_process(self) -> None:  # noqa: B027  # most have nothing to prepare
-        """Prepare this process; as soon as what the fault awaits is there."""
+        """Prepare this process, as soon as what the fault awaits exists."""
 
     @abstractmethod
     def start_test(self, test: str, random: Random) -> None:
-        """A test begins, before its fixtures; or, in a process that was just forked, it goes on from here.
+        """Begin a test, before its fixtures, or continue it in a process that was just forked.
 
         Args:
             test: its node id.
@@ -104,11 +104,11 @@ class ActiveFault(ABC):
         """
 
     def reach(self, key: Key) -> None:  # noqa: B027  # most are in place from the start of a test
-        """The running test has reached a key of the fault's: from here on it may differ from the original."""
+        """Act on a key of the fault that the running test has reached, from where it may differ."""
 
     @abstractmethod
     def end_test(self) -> None:
-        """The test and its fixtures are over: take the fault away."""
+        """Take the fault away, as the test and its fixtures are over."""
 
     def begin_count(self) -> None:
         """Reset the evidence of the fault for a new test."""
@@ -127,7 +127,7 @@ class ActiveFault(ABC):
             self.context.acted()
 
     def raising(self, error: BaseException) -> BaseException:
-        """Say that the program is to meet this exception: ``raise self.raising(TimeoutError("no answer"))``.
+        """Return an exception for the program: ``raise self.raising(TimeoutError("no answer"))``.
 
         Any other that this fault's code raises is an error of the mutant.
         """
@@ -136,29 +136,29 @@ class ActiveFault(ABC):
 
 
 class _ControlFault(ActiveFault):
-    """A control: it is reached where the mutants at its place first differ."""
+    """The base class of controls, which are reached where the mutants at their place first differ."""
 
     is_checked: ClassVar[bool] = False
 
     @property
     def is_of_start(self) -> bool:
-        """Whether it is reached as a test begins."""
+        """Whether the control is reached as a test begins."""
         return all((key[2] if key[0] == NTH else key[0]) == TEST for key in self.keys)
 
     def start_test(self, test: str, random: Random) -> None:
-        """At the start of each test, if that is its place."""
+        """Act at the start of each test, if that is the control's place."""
         if self.is_of_start:
             self.control()
 
     def reach(self, key: Key) -> None:
-        """At each of its keys."""
+        """Act at each of the control's keys."""
         self.control()
 
     def end_test(self) -> None:
-        """Do nothing: nothing was put in place."""
+        """Do nothing, as nothing was put in place."""
 
     def control(self) -> None:
-        """What it does there."""
+        """Do what the control is for."""
 
 
 class IdentityControl(_ControlFault):
@@ -179,7 +179,7 @@ class FatalControl(_ControlFault):
 
     @property
     def error(self) -> FatalFault:
-        """What it raises."""
+        """The error that the control raises."""
         from mutabot.operators.command import FatalFault  # noqa: PLC0415  # once in a campaign
 
         return FatalFault(f"control: {self.mutant.site.place} fails")

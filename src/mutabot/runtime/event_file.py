@@ -1,4 +1,4 @@
-"""Write the events of this process into its own file: see ``model.event_file`` for the format."""
+"""Write the events of this process into its own file."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ _PROMPT = (TestStart, TestEnd, ForkEnded, Serving)
 
 
 class EventWriter(Protocol):
-    """What takes the events of a process."""
+    """The interface of a receiver of the events of a process."""
 
     def send(self, event: Event) -> None:
-        """Take one event."""
+        """Send one event."""
 
 
 def _die() -> None:
@@ -30,7 +30,7 @@ def _die() -> None:
 
 
 class EventFile:
-    """The file of this process.
+    """The event file of this process.
 
     Every event is written whole and at once, so that a process that dies loses only what it had not told yet.
 
@@ -59,7 +59,7 @@ class EventFile:
 
     @classmethod
     def of_session(cls, home: str, key: str, bell: int) -> EventFile:
-        """That of the test process whose home this is."""
+        """Return the event file of the test process with this home."""
         return cls(os.path.join(home, FOLDER), SESSION, key, bell=bell)
 
     def send(self, event: Event) -> None:
@@ -82,7 +82,7 @@ class EventFile:
             self._ring(self._bell)
 
     def go_on_apart(self) -> None:
-        """In a process that was just forked, write into a separate file from now on.
+        """Write into a separate file from now on, in a process that was just forked.
 
         Its name tells the ``ForkEnded.fork`` of its parent, which has counted it in ``forks``.
         """
@@ -94,7 +94,7 @@ class EventFile:
         self._last = self.forks = 0
 
     def keep_number(self) -> None:
-        """After ``go_on_apart``, in a folder of its own: open the file where the parent's was."""
+        """Open the file at the parent's path, which is in a private folder, after ``go_on_apart``."""
         number = self._file
         self._open()
         os.dup2(self._file, number, inheritable=False)
@@ -102,7 +102,7 @@ class EventFile:
         self._file = number
 
     def close(self) -> None:
-        """Let go of the file, and of the pipe."""
+        """Close the file and the pipe."""
         os.close(self._file)
         if self._bell is not None:
             os.close(self._bell)
@@ -126,7 +126,7 @@ class EventFile:
             self._fail()
 
     def _is_open(self) -> bool:
-        """Whether the descriptor still leads to the file, and not to another's by now."""
+        """Return whether the descriptor still belongs to the file, and not to one opened later."""
         try:
             return os.path.samestat(os.fstat(self._file), self._status)
         except OSError:
@@ -134,18 +134,18 @@ class EventFile:
 
 
 class Held:
-    """Stands for the file of a process that does not know its job yet: keeps the events."""
+    """Stores events in the place of the file, for a process that does not know its job yet."""
 
     def __init__(self) -> None:
         self.events: list[Event] = []
 
     def send(self, event: Event) -> None:
-        """Keep one event."""
+        """Store one event."""
         self.events.append(event)
 
 
 def plain(value: Any) -> Any:
-    """JSON-like stand-in for a value that JSON does not know."""
+    """Return JSON-like stand-in for a value that JSON cannot represent."""
     data = data_of(value)
     if type(data) is array or is_of_numpy(data):
         return data.tolist()

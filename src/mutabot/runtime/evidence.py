@@ -18,13 +18,13 @@ _WRAPPED, _SEVERAL = "doctest:UnexpectedException", "_pytest.doctest:MultipleDoc
 
 
 def leaves(error: BaseException) -> list[BaseException]:
-    """What was really raised, in order; the exception itself if it holds no others."""
+    """Return the exceptions in a group, in order; the exception itself if it is no group."""
     held = _held(error)
     return [leaf for one in held for leaf in leaves(one)] if held else [error]
 
 
 def everything(error: BaseException) -> Iterator[BaseException]:
-    """The exception, all that it holds, and all that these were caused by or raised beside."""
+    """Yield the exception, those in its group, and all their causes and contexts."""
     seen: set[int] = set()
     waiting = [error]
     while waiting:
@@ -71,7 +71,7 @@ class KnownError:
             self._said = (type(error), text_of(error))
 
     def matches(self, error: BaseException) -> bool:
-        """Whether this is the exception."""
+        """Return whether this is the exception."""
         if self._reference is not None:
             return self._reference() is error
         return self._address == id(error) and self._said == (type(error), text_of(error))
@@ -104,7 +104,7 @@ def is_due_to(error: BaseException, culprits: Sequence[KnownError]) -> bool:
 
 
 def _is_due(error: BaseException | None, culprits: Sequence[KnownError], above: frozenset[int]) -> bool:
-    """``above``: what led here; a chain of exceptions may be a circle."""
+    """Return whether an exception is due to culprits; ``above`` has those on the way, against circles."""
     if error is None or id(error) in above:
         return False
     if any(one.matches(error) for one in culprits):
@@ -170,12 +170,12 @@ class Evidence:
 
     @property
     def culprits(self) -> tuple[KnownError, ...]:
-        """The refusals and all that they held."""
+        """The refusals and all exceptions in them."""
         return tuple(one for refusal in self.refusals for one in refusal.noted)
 
     @property
     def refusal(self) -> str | None:
-        """How the robot refused a mutated call, in its own words; None if it did not."""
+        """The robot's text of refusing a mutated call; None if it refused none."""
         return self.refusals[-1].text if self.refusals else self.said
 
 
@@ -185,7 +185,7 @@ class TimeExceeded(BaseException):  # it is no error of the program's
 
 @dataclass(slots=True)
 class Meter:
-    """What the running test has used so far.
+    """A meter of what the running test has used so far.
 
     Attributes:
         limit: seconds of simulated time that it may take; None for any.
@@ -214,7 +214,7 @@ class Meter:
         self.began = process_time()
 
     def tick(self, time: float) -> None:
-        """The simulation has advanced to ``time`` (s). Raises TimeExceeded beyond the limit."""
+        """Set simulated time to ``time`` (s). Raises TimeExceeded beyond the limit."""
         if self.started is None or self.now is None:
             self.started = time
         elif time < self.now:  # a new simulation began in the same test
@@ -223,7 +223,7 @@ class Meter:
         self._reach(time)
 
     def advance(self, seconds: float) -> None:
-        """The simulation has advanced by a step (s). Raises TimeExceeded beyond the limit."""
+        """Advance simulated time by some seconds. Raises TimeExceeded beyond the limit."""
         if self.started is None or self.now is None:
             self.started = self.now = 0.0
         self._reach(self.now + seconds)

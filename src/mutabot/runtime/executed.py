@@ -1,4 +1,4 @@
-"""Records which units of the project's Python files are executed, and which files are read as text.
+"""Record which units of the project's Python files are executed, and which files are read as text.
 
 Files are compiled with one more statement at the beginning of each function, which sets a byte. That takes a
 tenth of the time that a trace function takes (14 ns a call instead of 165), and works alike in all versions
@@ -33,7 +33,7 @@ _PLACES = tuple[str, int]
 
 
 class ExecutedUnits(SourceStep):
-    """The record of this process and of its forks. Of a file that is compiled without marks, all counts.
+    """The executed units of this process and its forks. Files compiled without marks count as a whole.
 
     Args:
         root: absolute path of the project.
@@ -56,11 +56,11 @@ class ExecutedUnits(SourceStep):
 
     @property
     def has_started(self) -> bool:
-        """Whether a process was started outside of the call phases of tests, but for those of libraries."""
+        """Whether a process was started outside of the tests' call phases, other than by libraries."""
         return (ALL_FILES, WHOLE) in self._common
 
     def install(self) -> None:
-        """Record from now on."""
+        """Start to record."""
         setattr(builtins, RAN, self._ran)
         for module in list(sys.modules.values()):  # plug-ins that pytest has imported before
             file = getattr(module, "__file__", None)
@@ -72,7 +72,7 @@ class ExecutedUnits(SourceStep):
         listen(("open", "import", "exec", *STARTS), self._hear)
 
     def wants(self, path: str) -> bool:
-        """Whether a file is the project's own."""
+        """Return whether a file is the project's own."""
         return path.endswith(".py") and self._name(path) is not None
 
     def change(self, tree: ast.Module, source: bytes, path: str) -> None:
@@ -92,27 +92,27 @@ class ExecutedUnits(SourceStep):
             _mark(node, number)  # what is defined in it may be sent to processes that know no marks
 
     def give_up(self, path: str, error: Exception) -> None:
-        """A file is compiled without marks: all of it counts once it is executed."""
+        """Note that a file is compiled without marks, so that all of it counts once it is executed."""
         self._loaded.discard(self._name(path) or "")
 
     def start_test(self) -> None:
-        """A test begins, before its fixtures."""
+        """Begin to record a test, before its fixtures."""
         self._test.clear()
 
     def begin_call(self) -> None:
-        """The fixtures of the test are set up."""
+        """Begin the call phase of a test, after its fixtures are set up."""
         self._keep(self._take())
         self._in_call = True
 
     def end_call(self) -> None:
-        """Its fixtures are taken down next. What the test did may matter to all tests after it."""
+        """End the call phase of a test; what it did may matter to all tests after it."""
         if self._in_call:
             self._test |= self._take()
             self._keep(self._test)
             self._in_call = False
 
     def of_test(self, *, alone: bool = False) -> Executed:
-        """The units that the running test depends on and that are new; ``alone``: those of its call phase."""
+        """Return new units that the running test depends on; ``alone``: only those of its call phase."""
         self.end_call()
         self._keep(self._take())
         told = set(self._test if alone else self._untold)  # another thread may be at work
@@ -124,12 +124,12 @@ class ExecutedUnits(SourceStep):
         return {file: tuple(sorted(lines)) for file, lines in found.items()}
 
     def _keep(self, found: set[_PLACES]) -> None:
-        """Count these units for all tests from now on."""
+        """Count these units for all later tests."""
         self._untold.update(found - self._common)
         self._common.update(found)
 
     def _take(self) -> set[_PLACES]:
-        """The functions that were executed since this was last asked."""
+        """Return the functions that were executed since the last call."""
         found, number = set(), self._ran.find(1)
         while number >= 0:
             self._ran[number] = 0  # one by one: another thread may be at work
@@ -138,7 +138,7 @@ class ExecutedUnits(SourceStep):
         return found
 
     def _name(self, path: str) -> str | None:
-        """The path of a file of the project, relative to it; None for others."""
+        """Return the path of a file of the project, relative to it; None for others."""
         real = path
         if not path.startswith("<"):  # a link in the project is a file of its own
             folder, last = os.path.split(os.path.abspath(path))
@@ -148,7 +148,7 @@ class ExecutedUnits(SourceStep):
         return real[len(self._root) :]
 
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
-        """Something happens that may matter beside what is executed; see ``environment.listen``."""
+        """Record an audit event that outcomes may depend on, beside executed units."""
         if event == "open":
             path, _, flags = arguments
             if isinstance(path, str | bytes | os.PathLike) and not flags & (os.O_WRONLY | os.O_TRUNC):
@@ -168,7 +168,7 @@ class ExecutedUnits(SourceStep):
             self._keep({(ALL_FILES, WHOLE)})
 
     def _is_of_library(self) -> bool:
-        """Whether an installed package does it while it is imported, as ``glfw`` does to know a version."""
+        """Return whether an installed package causes the event while it is imported."""
         frame: FrameType | None = sys._getframe(1 + FRAMES)
         while frame is not None:
             file = frame.f_code.co_filename
@@ -181,7 +181,7 @@ class ExecutedUnits(SourceStep):
 
 
 def _who(readers: tuple[str, ...]) -> str:
-    """Return the name of the module that opened a file; ``readers`` open files on behalf of others."""
+    """Return the name of the module that opened a file, skipping ``readers``, which open files for others."""
     frame: FrameType | None = sys._getframe(2 + FRAMES)
     while frame is not None and str(frame.f_globals.get("__name__", "")).partition(".")[0] in readers:
         frame = frame.f_back
@@ -189,18 +189,18 @@ def _who(readers: tuple[str, ...]) -> str:
 
 
 def _is_by_us() -> bool:
-    """Whether it is Mutabot that does what is heard of, be it by modules that read program text."""
+    """Return whether mutabot causes the event, possibly through modules that read program text."""
     return _who(("linecache", "tokenize", "codecs")).startswith("mutabot.")
 
 
 def _is_import() -> bool:
-    """Whether a program text is opened by what imports it, or by pytest."""
+    """Return whether a program text is opened by the import system or by pytest."""
     name = _who(("pathlib", "linecache", "tokenize", "codecs"))
     return name.startswith(("_pytest.", "_frozen_importlib_external", "importlib._bootstrap_external"))
 
 
 def _is_foreign(event: str, arguments: tuple[Any, ...]) -> bool:
-    """Whether a program is started that runs no code of the project, as libraries do to know their system."""
+    """Return whether a program is started that runs no code of the project, such as ``uname``."""
     if event != "subprocess.Popen" or not arguments[1]:
         return False
     executable = arguments[0] or (arguments[1] if isinstance(arguments[1], str | bytes) else arguments[1][0])

@@ -1,4 +1,4 @@
-"""Runs the fault of this process: makes it when what it awaits is there, and keeps its errors apart.
+"""Run the fault of this process: make it when what it awaits exists, and tell its errors from others.
 
 Whatever the code of a fault raises is an error of its mutant: no test has noticed anything then.
 """
@@ -36,7 +36,7 @@ _OF_TEST = (Activation.FIRST_TEST, Activation.FIRST_TICK)
 
 @dataclass(slots=True)
 class FaultRunner:
-    """The fault of this process, if it has one.
+    """The runner of this process's fault, if it has one.
 
     Attributes:
         context: what the fault is given.
@@ -55,7 +55,7 @@ class FaultRunner:
     _is_in_test: bool = False
 
     def take_on(self, mutant: Mutant, activation: Activation) -> None:
-        """Be this mutant from here on, also within a test that has begun."""
+        """Become this mutant, possibly within a test that has begun."""
         self._mutant, self.activation = mutant, activation
         self._is_in_test = bool(self.context.test)
         awaited, is_of_test = activation.awaits, activation.awaits in _OF_TEST
@@ -67,7 +67,7 @@ class FaultRunner:
 
     @property
     def evidence(self) -> Evidence:
-        """What it did in the running test."""
+        """What the fault did in the running test."""
         found = Evidence()
         if self._fault is not None:
             with self._guarded("asked what it did"):
@@ -75,13 +75,13 @@ class FaultRunner:
         return found if self._failure is None else replace(found, failure=self._failure)
 
     def _imported(self, *, is_later: bool) -> None:
-        """What the fault awaits was imported. In the midst of a test, the fatal control fails there."""
+        """Make the fault, whose awaited module was imported; the fatal control fails inside a test."""
         self._make()
         if is_later and self.fatal is not None:
             raise self.fatal
 
     def start_test(self) -> None:
-        """A test begins."""
+        """Begin a test."""
         self.fatal, self._is_in_test = None, True
         if self._fault is None and self._awaits(Activation.FIRST_TEST):
             self._make()
@@ -89,7 +89,7 @@ class FaultRunner:
             self._start(self._fault)
 
     def tick(self) -> None:
-        """The program's clock has begun."""
+        """Make the fault if it awaits the program's clock, which has begun."""
         if self._fault is None and self._awaits(Activation.FIRST_TICK):
             self._make()
 
@@ -97,7 +97,7 @@ class FaultRunner:
         return self.activation is not None and self.activation.awaits == awaited
 
     def reach(self, key: Key) -> None:
-        """The running test has reached a key. Raises FatalFault for the fatal control."""
+        """Pass on a key that the running test has reached. Raises FatalFault for the fatal control."""
         fault = self._fault
         if fault is None or key not in fault.keys:
             return None
@@ -108,14 +108,14 @@ class FaultRunner:
         return None
 
     def end_test(self) -> None:
-        """The test and its fixtures are over; what the fault did is asked after this."""
+        """End a test and its fixtures; the fault's evidence is read after this."""
         self._is_in_test = False
         if self._fault is not None:
             with self._guarded("taken away"), self.context.untracked():
                 self._fault.end_test()
 
     def _make(self) -> None:
-        """Make the fault, once; within a test, it begins there."""
+        """Make the fault, once; within a test, begin the test for it."""
         if self._fault is not None or self._failure is not None:
             return
         with self._guarded("put in place"), self.context.untracked():
@@ -131,7 +131,7 @@ class FaultRunner:
 
     @contextmanager
     def _guarded(self, what: str) -> Iterator[None]:
-        """A provider may fail in any way: that is an error of its mutant, and says nothing of the tests."""
+        """Turn exceptions of the fault's own code into errors of its mutant."""
         try:
             yield
         except BaseException as error:
@@ -142,7 +142,7 @@ class FaultRunner:
             self._failure = self._failure or f"{operator} cannot be {what}: {in_words(error)}"
 
     def failure_in(self, error: BaseException, robots: Collection[str], locator: Locator) -> str | None:
-        """How its own code failed, if that is where an exception comes from that a test or process met.
+        """Return how the fault's own code failed, if it is the source of an exception; None if it is not.
 
         Args:
             error: the exception.
@@ -173,7 +173,7 @@ class FaultRunner:
 
 
 def _is_own(frame: FrameType, module: str, robots: Collection[str], locator: Locator) -> bool | None:
-    """Whether a frame is of a fault's code, or of its package; None for those that say nothing."""
+    """Return whether a frame is of the fault's code or package; None for frames that do not tell."""
     name = str(frame.f_globals.get("__name__", ""))
     if name in robots:
         return False

@@ -1,4 +1,4 @@
-"""Check that the vocabulary fits the program: what it names exists and can be used as it says."""
+"""Check that the vocabulary fits the program: its targets exist and are used as described."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Kinds = Sequence[Callables | Messages]
 
 
 class Inspection:
-    """Report each mistake in a vocabulary once.
+    """Reports each mistake in a vocabulary once.
 
     Args:
         vocabulary: the vocabulary to check.
@@ -42,15 +42,15 @@ class Inspection:
         self._fit: dict[str, set[str]] = {}
 
     def note(self, call: Call, read: Mapping[str, Value]) -> None:
-        """A call was made, and these values were read from its result."""
+        """Note a call, and the values that were read from its result."""
         self._fit.setdefault(call.operation.target, set()).update(read)
 
     def target_is_wrong(self, target: str, finding: Finding) -> None:
-        """A target of the vocabulary turned out wrong when it was found."""
+        """Report a target of the vocabulary that was found and does not fit."""
         self.tell(self._source_of(target), finding)
 
     def path_is_wrong(self, operation: Operation, key: str, error: PathError) -> None:
-        """A path does not fit what a call was given, or what it returned."""
+        """Report a path that does not fit the arguments or the result of a call."""
         is_remark = isinstance(error, StrangeValueError)
         finding = Finding(key, str(error), error.step, error.known, is_remark=is_remark)
 
@@ -64,7 +64,7 @@ class Inspection:
             self._unfit.setdefault((operation.source, key), tell)
 
     def tell(self, source: str, finding: Finding) -> None:
-        """Say what was found out about an entry of the vocabulary, unless something was said before."""
+        """Report a finding about an entry of the vocabulary, unless one was reported before."""
         if (source, finding.key) in self._told:
             return
         self._told.add((source, finding.key))
@@ -72,13 +72,13 @@ class Inspection:
         self._send(Remark(source, finding.key, finding.text) if finding.is_remark else problem)
 
     def check_target(self, operation: Operation, kinds: Kinds) -> None:
-        """Say what of an operation does not fit its target."""
+        """Report what of an operation does not fit its target."""
         for targets in kinds:
             for finding in targets.check(operation):
                 self.tell(operation.source, finding)
 
     def inspect(self, kinds: Kinds) -> None:
-        """Find what no test led to, so that every target of the vocabulary is looked at."""
+        """Check every target of the vocabulary that no test has reached."""
         for targets in kinds:
             for target, finding in targets.seek():
                 self.tell(self._source_of(target), finding)
@@ -93,7 +93,7 @@ class Inspection:
         self._check_exceptions()
 
     def _check_idle(self) -> None:
-        """Functions that make the answer of a command that is left out."""
+        """Check the functions that make the answers of commands that are left out."""
         for operation in self._vocabulary.operations:
             for idle in (operation.idle, *(pattern.idle for pattern in operation.patterns)):
                 call = idle.get("call") if isinstance(idle, dict) else None
@@ -103,7 +103,7 @@ class Inspection:
                     self.tell(operation.source, Finding("idle", text))
 
     def _check_exceptions(self) -> None:
-        """A misspelt refusal would turn refusals into kills; so each name must be an exception."""
+        """Check that each refusal names an exception; a misspelt one would turn refusals into kills."""
         keys = ("refusals", "checks", "failures")
         named = [("vocabulary", key, name) for key in keys for name in getattr(self._vocabulary, key)]
         named += [
@@ -115,7 +115,7 @@ class Inspection:
                 self.tell(source, Finding(f"{key} {name}", f"{name} is not an exception class"))
 
     def _look_up(self, source: str, key: str, target: str) -> Any:
-        """What ``module:qualified.name`` names; None, and a problem, if there is no such thing."""
+        """Return the object at ``module:qualified.name``; None, with a problem reported, if there is none."""
         module, _, qualname = target.partition(":")
         try:
             owner, name, _ = resolve(importlib.import_module(module), qualname)

@@ -1,4 +1,4 @@
-"""A pytest plug-in that watches one plain run of a suite: ``-p mutabot.runtime.observation_plugin``."""
+"""A pytest plug-in that observes one plain run of a suite: ``-p mutabot.runtime.observation_plugin``."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _MOST_PROBLEMS = 20
 
 
 class _ObservationHooks:
-    """Pytest's hooks: when to write down what was found, and what became of the tests."""
+    """Pytest's hooks, which write down observations and the outcomes of tests."""
 
     def __init__(self, observation: ProcessObservation, problems: list[str]) -> None:
         self._observation, self._problems = observation, problems
@@ -31,11 +31,11 @@ class _ObservationHooks:
         self._written = time.monotonic()
 
     def pytest_collectreport(self, report: Any) -> None:
-        """A file that cannot be collected."""
+        """Note a file that cannot be collected."""
         self._note(report)
 
     def pytest_runtest_logreport(self, report: Any) -> None:
-        """A phase of a test is over."""
+        """Note a finished phase of a test."""
         self._note(report)
         if report.when == "call" or report.outcome != "passed":
             self._outcomes[report.nodeid] = report.outcome
@@ -46,12 +46,12 @@ class _ObservationHooks:
             self._problems.append(problem)
 
     def pytest_runtest_logfinish(self) -> None:
-        """A test is over: the run may be cut short in the next one."""
+        """Write down observations after a test, since the run may be cut short in the next one."""
         if time.monotonic() - self._written > _PAUSE:
             self._write()
 
     def pytest_sessionfinish(self) -> None:
-        """All tests are over."""
+        """Write down all observations."""
         self._write()
 
     def _write(self) -> None:
@@ -63,7 +63,7 @@ class _ObservationHooks:
 
 
 def _last_line(text: str) -> str:
-    """The line of a traceback that says what went wrong; for a mistake in a file, with its file and line."""
+    """Return the most informative line of a traceback; for an error in a file, with its file and line."""
     lines = [line.strip().removeprefix("E").strip() for line in text.splitlines() if line.startswith("E ")]
     plain = [line.strip() for line in text.splitlines() if line.strip()]
     last = (lines or plain[-1:] or ["no message"])[-1][:300]

@@ -1,4 +1,4 @@
-"""The contract of what watches one plain run of a suite, and how it is put into each process of that run.
+"""The contract of observers of a plain run, and their set-up in each process of the run.
 
 ``execution.observation.observe`` starts the run; ``runtime.observation_plugin`` is its way into pytest.
 Nothing that the program can see changes.
@@ -38,7 +38,7 @@ _PASSING = MAIN | {Form.FEEDBACK, Form.RESULT}
 
 @frozen
 class CallOrigin:
-    """Where a call stands in the source.
+    """The position of a call in the source.
 
     Attributes:
         file: relative to the project, with ``/``.
@@ -52,7 +52,7 @@ class CallOrigin:
 
 
 class Observer(ABC):
-    """What watches the calls in one process of a run: those of the program and those of its tests.
+    """The base class of observers, which watch the calls in one process of a run.
 
     An object is made in each process before it imports the program. What its methods raise, the program
     would meet.
@@ -80,11 +80,11 @@ class Observer(ABC):
 
     @abstractmethod
     def read(self, name: str, found: Any, receiver: Any, caller: CallOrigin) -> None:
-        """The attribute ``name`` of ``receiver`` was read, and is ``found``."""
+        """Note that the attribute ``name`` of ``receiver``, which is ``found``, was read."""
 
     @abstractmethod
     def assigned(self, name: str, receiver: Any, values: Sequence[Any], caller: CallOrigin) -> None:
-        """An attribute or an item is about to be assigned.
+        """Note that an attribute or an item is about to be assigned.
 
         Args:
             name: the attribute's, or ``__setitem__``.
@@ -97,7 +97,7 @@ class Observer(ABC):
     def used(
         self, form: Form, name: str, caller: CallOrigin | None, written: Sequence[Any], *, is_callback: bool
     ) -> Callable[[Any], None] | None:
-        """Something is done under a resolved name of a middleware.
+        """Note a use of a resolved name of a middleware; return a function for its messages, or None.
 
         Args:
             form: what.
@@ -115,7 +115,7 @@ class Observer(ABC):
 
 
 class ProcessObservation:
-    """The observer of this process, and what gives it the calls.
+    """The observer of this process, and the hooks that pass calls to it.
 
     Args:
         folder: where all processes of the run find their job and write what they saw.
@@ -131,20 +131,20 @@ class ProcessObservation:
         self.observer: Observer = getattr(import_module(module), name)(job.libraries, self._is_test)
 
     def install(self) -> None:
-        """Watch what is imported from now on, also in processes that are started from now on."""
+        """Observe what is imported from now on, also in processes that are started from now on."""
         _Uses(self.observer, self._locator)
         questions(self.observer, self._locator).install()
         carry(self.folder)
 
     def wake(self) -> None:
-        """Say which processes below the tests are of interest."""
+        """Make processes below the tests join the observation."""
         program, module = self.job.program, self.job.observer.partition(":")[0]
         names = {part.removesuffix(".py") for path in program for part in path.split("/")}
         files = [os.path.realpath(os.path.join(self.job.root, path)) for path in program]
         write_wake(self.folder, __name__, "", names, files, [module.partition(".")[0]])
 
     def write(self, name: str, **more: Any) -> None:
-        """Write what was seen, all of it or nothing, into the file of this name."""
+        """Write all observations into the file of this name, or none."""
         path = os.path.join(self.folder, f"{name}{SEEN}")
         with open(f"{path}.new", "w", encoding="utf-8", errors="surrogateescape") as file:
             json.dump({"seen": to_data(self.observer.data()), **more}, file, default=str)
@@ -156,7 +156,7 @@ class ProcessObservation:
 
 
 def questions(observer: Observer, locator: Locator) -> CallSites:
-    """What asks an observer at each call, and at each attribute that is read."""
+    """Return call sites that report each call and each attribute read to an observer."""
 
     @cache
     def caller_of(site: CallSite) -> CallOrigin:
@@ -177,7 +177,7 @@ def questions(observer: Observer, locator: Locator) -> CallSites:
 
 
 class _PublicNames:
-    """All names that are not private."""
+    """The set of all names that are not private."""
 
     def __contains__(self, name: object) -> bool:
         return not str(name).startswith("_")
@@ -185,19 +185,19 @@ class _PublicNames:
 
 @border
 def _carried_out(wrapped: Callable[..., Any], args: Any, kwargs: Any) -> Any:
-    """Call what is used; calls that it makes itself do not count, as in a campaign."""
+    """Call what is used, without counting calls that it makes itself, as in a campaign."""
     return wrapped(*args, **kwargs)
 
 
 class _Uses(Messages):
-    """Hands on all that is done under names."""
+    """Passes uses of names on to the observer."""
 
     def __init__(self, observer: Observer, locator: Locator) -> None:
         self._observer, self._locator = observer, locator
         super().__init__(lambda target, finding: None)
 
     def find(self, form: Form, name: str, node: str | None) -> Handler | None:
-        """Return the observer of a use; None for a set-up, which is reported at once."""
+        """Return the observer's handler of a use; None for a set-up, which is reported at once."""
         observer, locator = self._observer, self._locator
         if form not in _PASSING:
             caller = _caller(locator.locate(sys._getframe(1)))
@@ -230,7 +230,7 @@ def _caller(place: CallPlace | None) -> CallOrigin | None:
 
 
 def join(folder: str) -> None:
-    """Watch this process below the tests, which writes what it saw when it ends."""
+    """Observe this process below the tests, which writes its observations when it ends."""
     observation = ProcessObservation(folder)
     observation.install()
     hook_script()

@@ -1,4 +1,4 @@
-"""Plug-ins that would run tests elsewhere, again or in another order, or measure coverage: switched off.
+"""Switch off plug-ins that run tests elsewhere, again or in another order, or measure coverage.
 
 Their options may stand in a project's ``addopts``, their settings in its configuration, their fixtures and
 markers in its tests. So something stands in for each: it declares what the plug-in declares, by the plug-in's
@@ -72,7 +72,7 @@ _NAME = re.compile(r"[A-Za-z0-9._-]+")
 
 
 def switch_off(manager: pytest.PytestPluginManager) -> None:
-    """Switch off what is installed of these plug-ins; pytest has not loaded any by itself yet."""
+    """Switch off installed plug-ins of these, before pytest loads them."""
     config: Any = manager.get_plugin("pytestconfig")
     off = _SwitchedOff()
     for plugin in PLUGINS:
@@ -89,7 +89,7 @@ def switch_off(manager: pytest.PytestPluginManager) -> None:
 def _replace(
     manager: pytest.PytestPluginManager, config: Any, off: _SwitchedOff, entry: str, module: str
 ) -> bool:
-    """Block a plug-in and let something stand in for it; False if it is not installed."""
+    """Block a plug-in and load a stand-in for it. Return whether it is installed."""
     was_named = any(manager.has_plugin(name) for name in (entry, module))  # by ``-p``, before us
     for name in (entry, module):
         manager.set_blocked(name)
@@ -105,7 +105,7 @@ def _replace(
 
 
 def _options(plugin: ModuleType) -> set[str]:
-    """The names under which a plug-in's options are kept."""
+    """Return the names under which a plug-in's options are stored."""
     parser = _Parser()
     with contextlib.suppress(Exception):  # it asks for more than it has to
         getattr(plugin, "pytest_addoption", lambda parser: None)(parser)
@@ -113,7 +113,7 @@ def _options(plugin: ModuleType) -> set[str]:
 
 
 class _Parser:
-    """Stands for pytest's parser, and for a group of options in it: notes what options there are."""
+    """Stands for pytest's parser and its groups of options, to find out which options there are."""
 
     def __init__(self) -> None:
         self.options: set[str] = set()
@@ -132,7 +132,7 @@ class _Parser:
 
 
 def _stand_in(plugin: ModuleType, hooks: tuple[str, ...]) -> ModuleType:
-    """A plug-in with the declarations and fixtures of another."""
+    """Return a plug-in with the markers, options and fixtures of another."""
     found = ModuleType(f"stand-in for {plugin.__name__}")
     for name, value in vars(plugin).items():
         # before pytest 8.4, a fixture is a function with a mark
@@ -148,7 +148,7 @@ def _normal(requirement: str) -> str:
 
 
 class _SwitchedOff:
-    """Declare the markers and options of plug-ins that are switched off; all options have their defaults."""
+    """Declares the markers and options of plug-ins that are switched off; options have their defaults."""
 
     def __init__(self) -> None:
         self.plugins: list[Plugin] = []
@@ -156,7 +156,7 @@ class _SwitchedOff:
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_cmdline_main(self, config: pytest.Config) -> None:
-        """The command line was read."""
+        """Restore the defaults of the switched-off plug-ins' options."""
         vars(config.option).update(self.defaults)
 
     def pytest_configure(self, config: pytest.Config) -> None:
@@ -168,7 +168,7 @@ class _SwitchedOff:
 
 @contextmanager
 def alarm_held() -> Iterator[None]:
-    """Stop the process's alarm for the time of a block, and let a process forked in it have what is left.
+    """Stop the process's alarm inside the context, and let a process forked in it have the rest.
 
     A fork inherits no alarm; and a parent that waits for its forks has not used that time itself.
     """
@@ -181,7 +181,7 @@ def alarm_held() -> Iterator[None]:
 
 
 def watched(test: str, seconds: float, by: str) -> Watched:
-    """The report that ``by`` ends this process with exit code 1 unless ``test`` ends in time."""
+    """Return the event that ``by`` ends this process with exit code 1 unless ``test`` ends in time."""
     until = monotonic() + left_out() + seconds
     return Watched(test, until, f"no end after {seconds:g} s of wall clock ({by})")
 
@@ -193,7 +193,7 @@ def watched_by_faulthandler(item: pytest.Item) -> Watched | None:
 
 
 def drop_idle_watchdog(item: pytest.Item) -> None:
-    """Where faulthandler would only print, its thread must not keep a process from forking."""
+    """End the thread of a faulthandler that only prints, as it would prevent forks."""
     seconds, ends = _faulthandler(item.config)
     if seconds > 0 and not ends:
         faulthandler.cancel_dump_traceback_later()

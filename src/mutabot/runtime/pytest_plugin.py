@@ -1,4 +1,4 @@
-"""The pytest plugin: sleeps unless a job is given, and always offers seeds to tests and fixtures."""
+"""The pytest plug-in, which is inactive without a job, and always offers seeds to tests and fixtures."""
 
 from __future__ import annotations
 
@@ -81,13 +81,13 @@ def pytest_load_initial_conftests(early_config: pytest.Config) -> Generator[None
 
 
 def _hooks_of(config: pytest.Config) -> SessionHooks | None:
-    """The hooks of the job; None for a session that a test has started in this process."""
+    """Return the hooks of the job; None for a session that a test has started in this process."""
     return _hooks if _hooks is not None and _hooks.config is config else None
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)
 def pytest_cmdline_main(config: pytest.Config) -> Generator[None, Any, Any]:
-    """The session is over: leave as the interpreter does, but without taking everything apart.
+    """Leave at the end of the session like the interpreter, but without dismantling every module.
 
     In a fork that would copy all memory that it shares, which took longer than most tests.
     """
@@ -122,7 +122,7 @@ def seed_of(node: pytest.Item | pytest.Collector) -> int:
 
 
 def _seeded(config: pytest.Config) -> SessionHooks | PlainRound | None:
-    """What gives the seeds of a session; None for one that a test has started in a job's process."""
+    """Return the source of a session's seeds; None for a session that a test has started."""
     return _hooks_of(config) if _hooks is not None else _plain_round
 
 
@@ -132,7 +132,7 @@ def _seed(request: pytest.FixtureRequest) -> int:
 
 @pytest.fixture
 def mutabot_seed(request: pytest.FixtureRequest) -> int:
-    """The seed of this test in this round: a whole number of 32 bits.
+    """Return the seed of this test in this round: a whole number of 32 bits.
 
     A fixture that several tests share may ask for it as well, and gets the seed of the class, module, package
     or session that it lives as long as.
@@ -145,7 +145,7 @@ def mutabot_seed(request: pytest.FixtureRequest) -> int:
 
 @pytest.fixture(scope="session")
 def mutabot_round_seed(request: pytest.FixtureRequest) -> int:
-    """The seed of this round, the same for all its tests: a whole number of 32 bits."""
+    """Return the seed of this round, the same for all its tests: a whole number of 32 bits."""
     return _seed(request)
 
 
@@ -157,7 +157,7 @@ _mutabot_class_seed = pytest.fixture(scope="class", name=_SHARED["class"])(_seed
 
 @pytest.hookimpl(wrapper=True)
 def pytest_fixture_setup(fixturedef: Any, request: Any) -> Generator[None, Any, Any]:
-    """Fixtures shared by several tests draw from a seed of their own."""
+    """Seed shared fixtures with seeds of their own."""
     seeded = _seeded(request.config)
     if seeded is None or fixturedef.scope == "function":
         return (yield)
@@ -166,7 +166,7 @@ def pytest_fixture_setup(fixturedef: Any, request: Any) -> Generator[None, Any, 
 
 
 def _offer_at_every_scope(owner: str) -> None:
-    """Let fixtures of every scope ask for the seed. ``owner``: what defines it; others may override it.
+    """Offer the seed to fixtures of every scope; ``owner`` defines it, and others may override it.
 
     To pytest a fixture has one scope, and one that is made anew for each test cannot be had by a fixture that
     several tests share. A shared simulator needs a seed as well. So what a shared fixture gets by this name
@@ -208,7 +208,7 @@ class PlainRound:
 
     @classmethod
     def from_environment(cls) -> PlainRound | None:
-        """The round that the environment names, or None. Raises pytest.UsageError for what makes no sense."""
+        """Return the round in the environment, or None. Raises pytest.UsageError for an invalid one."""
         number = _whole_number(call.ROUND_VARIABLE, least=1)
         if number is None:
             return None
@@ -220,12 +220,12 @@ class PlainRound:
         return cls(call.DEFAULT_SEED if seed is None else seed, number - 1)
 
     def seed_of(self, name: str) -> int:
-        """The seed of a test or shared fixture in this round."""
+        """Return the seed of a test or shared fixture in this round."""
         return seeds.derive(self._seed, self._round, name)
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtestloop(self) -> Generator[None, Any, Any]:
-        """All tests are collected."""
+        """Seed the generators after all tests are collected."""
         seeds.seed_all(self.seed_of("session"))
         return (yield)
 

@@ -1,4 +1,4 @@
-"""Which keys the running test reaches: simulated time, calls, and how often.
+"""Track which keys the running test reaches: simulated time, calls, and their counts.
 
 Only keys that somebody awaits are looked for: the mutants of a fork parent, or the fault of this process. To
 both they are told in the same way, so that a fault begins in a fork where it does in a process of its own.
@@ -36,7 +36,7 @@ class ReachedKeys:
         self._passed = float("-inf")  # the last moment that was told in this test
 
     def watch(self, keys: Iterable[Key]) -> None:
-        """Look for these keys from here on."""
+        """Watch for these keys from now on."""
         keys = list(keys)
         self._counted = frozenset(key[2:] for key in of_kind(keys, NTH))
         every = [*keys, *self._counted]
@@ -45,7 +45,7 @@ class ReachedKeys:
         self.asks_calls = bool(of_kind(every, CALL))
 
     def start_test(self) -> None:
-        """A test begins."""
+        """Begin a test."""
         self._due, self._has_ticked = list(self._times), False
         self._passed = float("-inf")
         self._counts.clear()
@@ -60,7 +60,7 @@ class ReachedKeys:
             self._reach(Activation.at_time(self._passed))
 
     def call(self, key: Key, number: int) -> None:
-        """The program is about to make this call, by its number among those of its site in the test."""
+        """Note a call that the program is about to make, by its number among those of its site."""
         self._reach(key, number)
 
     def _reach(self, key: Key, number: int | None = None) -> None:

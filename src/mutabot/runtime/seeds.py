@@ -1,4 +1,4 @@
-"""Seeds: every (campaign seed, round, test) has its own, every (mutant, round, test) its own generator.
+"""Seeds of each (campaign seed, round, test), and generators of each (mutant, round, test).
 
 How tests are called: as pytest does, in texts that can be written down wherever they go.
 """
@@ -45,12 +45,12 @@ def seeded_apart(seed: int) -> Iterator[None]:
 
 
 class PytestNode(Protocol):
-    """What pytest has given an id: a test, a file, a report about either."""
+    """An object of pytest with an id: a test, a file, or a report about either."""
 
     @property
     def nodeid(self) -> str: ...
 
 
 def node_id(named: PytestNode) -> str:
-    """The id of a test. The name of its file need not be UTF-8, but what is written of it is."""
+    """Return the id of a test, with bytes of its file's name that are no UTF-8 escaped."""
     return printable(named.nodeid)

@@ -1,4 +1,4 @@
-"""A session in the process of the tests: its job, what is hooked into the program, and its tests."""
+"""A session in the process of the tests: its job, its hooks in the program, and its tests."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ if TYPE_CHECKING:  # processes below the tests fork for nobody
 
 
 class Session:
-    """The job at hand.
+    """The session of a job.
 
     Args:
         job: what to do.
@@ -111,7 +111,7 @@ class Session:
         self._sees_itself: set[Handler] = set()
 
     def install(self) -> None:
-        """Put the interception of the whole vocabulary in place, and the mutant with it."""
+        """Intercept all operations of the vocabulary, and activate the mutant."""
         self.text = SessionText.of(self.job, self.pipe, self.acted)
         if self.returns is not None:
             self.returns.install()  # after the alternatives, which are found by where they stand
@@ -140,13 +140,13 @@ class Session:
             self._take_on(self.job.mutant, self.job.active[self.job.mutant.id])
 
     def _ask_for_answers(self) -> None:
-        """Find the mutants of the job that may ask what a command answered last."""
+        """Find the mutants of the job that may ask for a command's last answer."""
         idle = [(one, Idle.of(one.idle)) for one in self._mutants_of_job() if one.idle is not None]
         self._asking = [(one.operation, one.pattern, answers) for one, answers in idle if answers.varying]
         self._remember_answers()
 
     def _remember_answers(self) -> None:
-        """Have only those answers remembered in the running test that a mutant may ask for."""
+        """Store, in the running test, only answers that a mutant may ask for."""
         now = (self.job.round, self.test)
         asked = {(target, pattern) for target, pattern, idle in self._asking if idle.is_varying(*now)}
         for adapter in self._adapters:
@@ -157,7 +157,7 @@ class Session:
         return mutants + ([self.job.mutant] if self.job.mutant is not None else [])
 
     def _see_calls(self) -> None:
-        """Intercept calls at their sites, of anything that takes the place of an operation."""
+        """Intercept calls at their sites, whatever replaces an operation there."""
         called = [one for one in self._adapters if one.operation.kind in (None, "methods")]
         self.standing = Standing(called, self.callables, self.locator, self._sees_itself)
         self._tell_standing()
@@ -167,14 +167,14 @@ class Session:
         self.call_sites.install()
 
     def _tell_standing(self) -> None:
-        """Tell what the baseline saw at the sites of the job's mutants, and whether anybody asks for more."""
+        """Report what the baseline observed at the sites of the job's mutants."""
         mutants = self._mutants_of_job()
         self.standing.known = dict(self.job.known) | {one.site.span: one.operation for one in mutants}
         if self.job.inspect:
             self.standing.noted = StandIns(lambda: self.test, self.locator.relative)
 
     def _listen(self) -> None:
-        """Hear the messages that pass by, if they tell of refusals, or of where the robot is."""
+        """Receive messages that may show refusals, or the robot's position."""
         operations = self.job.vocabulary.operations
         asked = {name for operation in operations for name in operation.currents}
         told = (one for operation in operations for one in operation.told_as_refused)
@@ -185,7 +185,7 @@ class Session:
             self._heeded().on_heard = self._heard
 
     def _heeded(self) -> Messages:
-        """The names on middlewares, which are hooked as soon as anybody asks for one."""
+        """Return the names on middlewares, which are hooked when they are first needed."""
         if self.messages is None:
             self.messages = Messages(self.inspection.target_is_wrong)
             self.targets.append(self.messages)
@@ -199,7 +199,7 @@ class Session:
             adapter.observe_message(name, message)
 
     def _handler(self, operation: Operation) -> Handler:
-        """What stands around an operation: an adapter of its own, and the way that all calls go."""
+        """Return the handler of an operation, with an adapter of its own."""
         vocabulary = self.job.vocabulary
         readings = {name: vocabulary.operation(name) for name in operation.currents}
         told = partial(self.inspection.path_is_wrong, operation)
@@ -215,7 +215,7 @@ class Session:
 
     @property
     def mutant(self) -> ActiveMutant | None:
-        """The mutant of calls that is at work; None for the original, and for other mutants."""
+        """The active mutant of calls; None for the original, and for other mutants."""
         return self.passing.mutant
 
     @property
@@ -229,17 +229,17 @@ class Session:
         return self.fault.evidence
 
     def look_back(self, *, at_all: bool = False) -> None:
-        """Look whether the program has written to copies that the mutant handed out; ``at_all`` of them."""
+        """Check whether the program has written to copies that the mutant passed on."""
         if self.mutant is not None:
             self.mutant.look_back(at_all=at_all)
 
     @property
     def commands(self) -> int:
-        """Operations of the running test that made the robot do something."""
+        """The number of the running test's calls that made the robot act."""
         return sum(adapter.commands for adapter in self._adapters)
 
     def _take_on(self, mutant: Mutant, activation: Activation) -> None:
-        """Be a mutant from here on."""
+        """Become a mutant."""
         self.fault.take_on(mutant, activation)
         self._watch(activation.keys)
 
@@ -251,7 +251,7 @@ class Session:
         self.passing.on_reach = self.reached.call if is_asked and self.reached.asks_calls else None
 
     def _reach(self, keys: list[Key], number: int | None) -> None:
-        """The running test reaches these keys, at a call of this number among those of its site."""
+        """Note keys that the running test reaches, at a call of this number among those of its site."""
 
         def is_due(mutant: Mutant) -> bool:
             return number is None or mutant.moment is None or self.is_moment(mutant, number)
@@ -272,7 +272,7 @@ class Session:
             self.text.watch(self._reach_text, self.fork_parent.places())
 
     def _reach_text(self, place: int, indexes: frozenset[int]) -> None:
-        """Alternatives in the program text are about to differ from the original."""
+        """Note alternatives in the program text that may differ from here on."""
         if self.fork_parent is not None:
             self.fork_parent.reach(*(at_text(place, index) for index in indexes))
 
@@ -287,7 +287,7 @@ class Session:
         self._take_on(mutant, activation)
 
     def take_on(self, job: Job, pipe: EventWriter) -> None:
-        """Go on with a job of the same program and vocabulary. What was installed stays."""
+        """Continue with a job of the same program and vocabulary. What was installed stays."""
         self.job, self.pipe = job, pipe
         self.inspection.is_asked = job.inspect
         self._ask_for_answers()
@@ -297,7 +297,7 @@ class Session:
             self.text.pipe = pipe
 
     def start_test(self, test: str, fixtures: Callable[[], Iterable[Any]] | None = None) -> None:
-        """A test begins, before its fixtures.
+        """Begin a test, before its fixtures.
 
         ``fixtures`` tells what objects they hold; None in a process below the tests.
         """
@@ -333,7 +333,7 @@ class Session:
         self.recording.start(test, is_wanted=self.job.evidence)
 
     def change_file(self, path: str, content: bytes) -> None:
-        """See ``FaultContext.change_file``."""
+        """Change a file of the project for this process; see ``FaultContext.change_file``."""
         if self.files is not None:  # else this process is below one that has changed it
             self.files.change(path, content)
 
@@ -353,23 +353,23 @@ class Session:
         return self._time.now_if_known()
 
     def seed_of(self, mutant: Mutant) -> int:
-        """All magnitudes of one fault draw alike, so that a bigger one is the same fault, only bigger."""
+        """Return a seed that all magnitudes of a fault share, so that they differ in size only."""
         return derive(self.job.seed, self.job.round, self.test, mutant.ladder or mutant.id)
 
     def moment_of(self, mutant: Mutant) -> Moment | None:
-        """At which calls of the running test a mutant acts."""
+        """Return at which calls of the running test a mutant acts; None for all."""
         if mutant.moment is None:
             return None
         seed = derive(self.job.seed, self.job.round, self.test, mutant.site.id, "moment")
         return mutant.moment.drawn(self.job.round, self.test, seed)
 
     def is_moment(self, mutant: Mutant, number: int) -> bool:
-        """Whether a mutant acts at this call of its site in the running test."""
+        """Return whether a mutant acts at this call of its site in the running test."""
         moment = self.moment_of(mutant)
         return moment is None or moment.holds(number, self.seconds)
 
     def end_test(self) -> None:
-        """The test and its fixtures are over."""
+        """End the test, after its fixtures."""
         self.passing.meter = None
         if self.text is not None:
             if self.fork_parent is not None:
@@ -377,7 +377,7 @@ class Session:
             self.text.end_test()
 
     def take_probes(self) -> Reading:
-        """Read all probes: at the end of a test, before its fixtures take the world down."""
+        """Read all probes, at the end of a test, before its fixtures are torn down."""
         self.look_back(at_all=True)
         if self.returns is not None:
             self.returns.stop()
@@ -396,7 +396,7 @@ class Session:
             self.passing.meter = meter
 
     def _along(self) -> Reading:
-        """Read the probes along the way; those in program files run as the original.
+        """Read the probes along the way, in program files as the original.
 
         A mutant may be waited for there, and is counted where it acts. While other threads run the program,
         nothing of its text can be set aside.
@@ -414,7 +414,7 @@ class Session:
         return self.returns is not None and self.returns.wants(file)
 
     def finish(self, texts: Iterable[TextsSeen] = ()) -> None:
-        """All tests are over: wait for forks, tell what was seen, and check the vocabulary if asked to.
+        """Wait, after all tests, for forks, report observations, and check the vocabulary if asked to.
 
         ``texts`` is what processes below the tests saw of the program text.
         """
@@ -435,12 +435,12 @@ class Session:
                     self.inspection.tell(operation.source, finding)
 
     def calls_asked(self) -> CallsAsked:
-        """Which calls of the program were asked about until now, and where something else stood."""
+        """Return which calls were intercepted until now, and which replacements were called."""
         files = sorted(map(self.locator.relative, self.call_sites.asked))
         return CallsAsked(tuple(files), tuple(sorted(self.standing.alone)))
 
     def inspect_targets(self) -> None:
-        """Look at every target of the vocabulary, also of what no test has led to."""
+        """Check every target of the vocabulary, including those that no test has reached."""
         self.inspection.inspect(self.targets)
 
     def _raised(self, error: BaseException, made: SiteCall) -> None:
@@ -452,7 +452,7 @@ class Session:
             self.text.raised(error, made.call, names)
 
     def _note(self, made: SiteCall, *, is_refused: bool = False) -> None:
-        """A call of the original was refused by the robot, or returned the robot's own memory."""
+        """Note that the robot refused a call of the original, or returned its own memory."""
         index = self.recorder.index_of(replace(seen_by(made), direct=False, stands_in=False))
         one = Noted(index, made.number if is_refused else None)
         if one not in self.noted and self.on_noted is not None:
@@ -460,13 +460,13 @@ class Session:
         self.noted[one] = None
 
     def failure_in(self, error: BaseException) -> str | None:
-        """How the mutant's own code failed, if that is where an exception comes from; None if it is not."""
+        """Return how the mutant's own code failed, if it is the source of an exception; None if it is not."""
         operations = self.job.vocabulary.operations
         robots = {one.target.partition(":")[0] for one in operations if one.named is None}
         return self.fault.failure_in(error, robots, self.locator)
 
     def refusals_of(self, operation: Operation) -> frozenset[str]:
-        """Names of the exceptions by which the robot refuses a call of an operation."""
+        """Return names of the exceptions by which the robot refuses a call of an operation."""
         return frozenset((*operation.refusals, *self.job.vocabulary.refusals))
 
     def _send(self, line: Event) -> None:
@@ -477,7 +477,7 @@ class Session:
             self.pipe.send(site)
 
     def acted(self) -> None:
-        """The fault changed something in the running test."""
+        """Report that the fault changed something in the running test."""
         self._tell_acted(tape.now())
 
     def acted_in_call(self) -> None:
@@ -493,7 +493,7 @@ class Session:
         return meter.simulated if meter is not None else None
 
     def in_mutated_call(self, began: bool) -> None:
-        """A mutated call begins, or has returned or raised."""
+        """Mark the start of a mutated call, by its time, or its end, by None."""
         self.pipe.send(Acted(self.test, began))
 
     def _clock_is_wrong(self, key: str, text: str) -> None:

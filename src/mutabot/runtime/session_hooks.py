@@ -1,4 +1,4 @@
-"""Pytest's hooks for a job: they collect its tests, and run them in this process or in copies of it."""
+"""Pytest's hooks for a job, which collect its tests and run them in this process or in copies of it."""
 
 from __future__ import annotations
 
@@ -146,11 +146,11 @@ class SessionHooks:
         self.session.become(mutant, fork.activation)
 
     def _is_of_tests(self, path: str) -> bool:
-        """Whether a file is the project's own, and not the program's."""
+        """Return whether a file is the project's own, and not the program's."""
         return self.locator.is_of_project(path) and self.locator.role(path) is not Role.PROGRAM
 
     def seed_of(self, name: str) -> int:
-        """The seed of a test or shared fixture in this round."""
+        """Return the seed of a test or shared fixture in this round."""
         return seeds.derive(self.job.seed, self.job.round, name)
 
     @pytest.hookimpl(trylast=True)
@@ -179,7 +179,7 @@ class SessionHooks:
     def pytest_make_collect_report(
         self, collector: pytest.Collector
     ) -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
-        """Note whose doing it is that something cannot be collected."""
+        """Note whether the mutant or the tests caused an error of collection."""
         report = yield
         call: pytest.CallInfo[Any] | None = getattr(report, "call", None)
         if report.failed and call is not None and call.excinfo is not None:
@@ -189,7 +189,7 @@ class SessionHooks:
         return report
 
     def import_failed(self, error: BaseException | None, node: str) -> None:
-        """Test files cannot be imported. If the mutant did something meanwhile, their tests noticed it.
+        """Report test files that cannot be imported; a mutant that acted meanwhile was noticed.
 
         Args:
             error: what was raised.
@@ -210,7 +210,7 @@ class SessionHooks:
                 self.session.pipe.send(end)
 
     def pytest_internalerror(self, excinfo: pytest.ExceptionInfo[BaseException]) -> None:
-        """A failing hook ends the suite: if the mutant caused that before any test, it was noticed."""
+        """Report a failing hook, by which a mutant was noticed if it acted before any test."""
         if not is_ours(excinfo.traceback[-1].frame.raw) and not self.session.test:
             self.import_failed(excinfo.value, "")
 
@@ -221,7 +221,7 @@ class SessionHooks:
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtestloop(self, session: pytest.Session) -> Generator[None, Any, Any]:
-        """All tests are collected: run them, or fork a copy of this process for every job."""
+        """Run the collected tests, or fork a copy of this process for every job."""
         request = self._server.serve(self.tests.units.has_started) if self._server is not None else None
         if request is not None:
             self._take_on(session, *request)
@@ -259,7 +259,7 @@ class SessionHooks:
 
     @pytest.hookimpl(trylast=True)
     def pytest_sessionfinish(self, exitstatus: int) -> None:
-        """Everything has run: tell what is left to tell."""
+        """Report, after all tests, what was observed."""
         if self._server is not None:
             return
         if self.tests.fork is not None:
@@ -275,14 +275,14 @@ class SessionHooks:
 
 
 def _keep_cache_in(config: pytest.Config, home: str) -> None:
-    """What one process keeps in pytest's cache, others must not find."""
+    """Give the process a cache folder of its own, as other processes must not find its entries."""
     cache = getattr(config, "cache", None)
     if cache is not None:
         cache._cachedir = Path(home, "cache")
 
 
 def _tests_us(job: Job) -> bool:
-    """Whether the program has parts of mutabot: what these compute must not be taken from memory."""
+    """Return whether the program contains parts of mutabot, whose results must not be cached."""
     home = Path(mutabot.__file__).resolve().parent.parent
     if home.name == "site-packages":
         return False

@@ -1,4 +1,4 @@
-"""How a test ends, and what ended it: a check, an exception, a limit, a refusal, or a failure of the tool."""
+"""Classify how a test ended, and by what: a check, an exception, a limit, a refusal, or the tool."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ FAILED = "failed"
 def classify(
     error: BaseException, test: str, file: str, locator: Locator, vocabulary: Vocabulary, evidence: Evidence
 ) -> TestEnd:
-    """The end of a test that this exception means: why it failed, and nothing else.
+    """Return the test end that an exception means: why the test failed, and nothing else.
 
     Of exceptions that hold others, such as exception groups, what they hold decides: a refusal if all are, a
     check if all are that are no refusals; a time-out or a failure if one is.
@@ -72,7 +72,7 @@ def classify(
 
 
 def of_evidence(end: TestEnd, evidence: Evidence, cause: TestEnd | None = None) -> dict[str, Any]:
-    """What a mutant did, as fields of the end of a test.
+    """Return a mutant's evidence as fields of the end of a test.
 
     ``cause``: what ended it otherwise: also what a test said that it would do.
     """
@@ -95,7 +95,7 @@ def of_evidence(end: TestEnd, evidence: Evidence, cause: TestEnd | None = None) 
 
 
 def outcome_so_far(report: pytest.TestReport, before: str) -> str:
-    """The outcome of a test with one more report that is no failure.
+    """Return the outcome of a test with one more report that is no failure.
 
     The report of the call comes after those of its subtests and says what they come to; set-up and
     tear-down count where they did not simply pass.
@@ -109,7 +109,7 @@ def outcome_so_far(report: pytest.TestReport, before: str) -> str:
 
 
 def _text(error: BaseException, count: int) -> str:
-    """What an exception says, shortly; ``count``: how many there are in its group."""
+    """Return the text of an exception, shortened; ``count`` is the size of its group."""
     lines = _lines(error)[:12]
     if count > 1:
         lines.append(f"(one of {count} exceptions in a group)")
@@ -127,7 +127,7 @@ def _lines(error: BaseException) -> list[str]:
 
 
 def _is_timeout(error: BaseException) -> bool:
-    """Whether a limit ended the test: ours, or one of the suite's own."""
+    """Return whether a time limit ended the test, mutabot's or the suite's own."""
     if isinstance(error, TimeExceeded) or is_named(error, _TIMEOUTS):
         return True
     return isinstance(error, pytest.fail.Exception) and any(
@@ -157,12 +157,12 @@ def _is_check(error: BaseException, test_file: str, locator: Locator, vocabulary
 
 
 def _from_the_raise(error: BaseException) -> list[tuple[FrameType, int]]:
-    """The frames that the exception came through and the lines they were at, innermost first."""
+    """Return the frames that the exception came through and the lines they were at, innermost first."""
     return list(walk_tb(error.__traceback__))[::-1]
 
 
 def _place(error: BaseException, locator: Locator) -> str | None:
-    """The innermost line that is the user's own: the file lies under the root and is not installed."""
+    """Return the innermost line that is the user's own: below the root and not installed."""
     lines = [(frame.f_code.co_filename, line) for frame, line in _from_the_raise(error)]
     if _is_mismatch(error) and error.test.filename is not None and error.test.lineno is not None:
         lines.append((error.test.filename, error.test.lineno + error.example.lineno + 1))
@@ -173,6 +173,6 @@ def _place(error: BaseException, locator: Locator) -> str | None:
 
 
 def _is_mismatch(error: Any) -> TypeGuard[doctest.DocTestFailure]:
-    """Whether an example of a doctest gave something else than it says."""
+    """Return whether an example of a doctest gave an unexpected result."""
     module = sys.modules.get("doctest")  # who raised it has imported it
     return module is not None and isinstance(error, module.DocTestFailure)

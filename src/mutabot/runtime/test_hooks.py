@@ -1,4 +1,4 @@
-"""Pytest's hooks around each test of a job: they start its measurements and tell how it ended.
+"""Pytest's hooks around each test of a job, which start measurements and report how it ended.
 
 A process that was forked in the middle of a test goes on to the end as its mutant, or leaves when a test
 decides.
@@ -59,12 +59,12 @@ class ForkedRun:
         listen((*STARTS, *FORKINGS), self._hear)
 
     def start_test(self, test: str) -> None:
-        """A test begins, its second at least."""
+        """Begin a test, the fork's second at least."""
         self._parent.note_test(self.mutant.id, test)
         self._shared = None
 
     def end_test(self, end: TestEnd) -> None:
-        """A test is over: tell how it ended, and leave if it decides about the mutant."""
+        """End a test: report how it ended, and leave if it decides about the mutant."""
         self._has_acted |= end.acted > 0
         try:
             self._report(end)
@@ -74,7 +74,7 @@ class ForkedRun:
                 os._exit(DECIDED)  # whatever happens, nothing must run on in this process
 
     def finish(self, errors: list[str], gone: tuple[str, ...]) -> None:
-        """The session is over: what its exit code is, the parent will tell."""
+        """Report the end of the session; the parent reports the exit code."""
         self._parent.note_test(self.mutant.id)
         self._parent.note_finished(self.mutant.id)
         self._session.pipe.send(
@@ -90,7 +90,7 @@ class ForkedRun:
         self._session.pipe.send(told)
 
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
-        """The program is about to start its first process, which is to be the mutant as well."""
+        """Make the first process that the program starts the mutant as well."""
         if self._tests.members is None and os.getpid() == self._pid:
             try:
                 self._tests.members = self._own_processes()
@@ -118,7 +118,7 @@ _RECENT = 0.05
 
 
 class TestHooks:
-    """The running test.
+    """Pytest's hooks around the running test.
 
     Args:
         session: the job at hand.
@@ -152,13 +152,13 @@ class TestHooks:
         listen(("socket.bind",), self._hear)
 
     def start_clocks(self, *, is_new: bool = False) -> None:
-        """Count from now on what the test takes; ``is_new``: in a process that was just forked."""
+        """Start the clocks of a test; ``is_new``: in a process that was just forked."""
         self._started = (monotonic(), self._ran())
         if is_new or self._used.age > _RECENT:
             self._used = TimeUsed.from_now([os.getpid()])
 
     def _ran(self) -> float:
-        """Processor seconds of this process; in the baseline, also of those below it, which limits count."""
+        """Return the processor time (s) of this process; in the baseline, also of those below it."""
         job = self.session.job
         is_baseline = job.mutant is None and job.forking is None
         return process_time() + (ran_below() if is_baseline else 0.0)
@@ -210,7 +210,7 @@ class TestHooks:
         session.start_test(test, partial(objects_of_fixtures, item))
 
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
-        """Note a fixed address that the test waits at: two processes cannot have it at the same time."""
+        """Note a fixed address at which the test listens, which two processes cannot share."""
         address = arguments[1]
         is_chosen = isinstance(address, tuple) and len(address) > 1 and address[1] == 0
         if not is_chosen and self._address is None:  # by the system, which gives one that nobody else has
@@ -218,7 +218,7 @@ class TestHooks:
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_setup(self, item: pytest.Item) -> None:
-        """The fixtures of a test are next."""
+        """Note the start of a test's fixtures."""
         if self.session.fork_parent is not None:
             drop_idle_watchdog(item)
         if self.session.fault.fatal is not None:
@@ -226,20 +226,20 @@ class TestHooks:
 
     @pytest.hookimpl(optionalhook=True, tryfirst=True)
     def pytest_timeout_set_timer(self, item: pytest.Item, settings: Any) -> None:
-        """Pytest-timeout is about to watch a test: its thread leaves the process without a word."""
+        """Report that pytest-timeout watches a test, as its thread ends the process without a report."""
         if settings.method == "thread":
             self.session.pipe.send(watched(node_id(item), settings.timeout, "pytest-timeout"))
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_call(self, item: pytest.Item) -> None:
-        """The test's fixtures are set up."""
+        """Note that the test's fixtures are set up."""
         if self.session.returns is not None:
             self.session.returns.begin_call()
         self.units.begin_call()
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_teardown(self) -> Generator[None, Any, Any]:
-        """Read the probes before fixtures tear the world down."""
+        """Read the probes before fixtures are torn down."""
         self.units.end_call()
         self._reading = self.session.take_probes()
         return (yield)
@@ -265,18 +265,18 @@ class TestHooks:
 
     @pytest.hookimpl(trylast=True)
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
-        """A report counts for the suite: a plug-in that runs a test again does not report what it undoes."""
+        """Count a report of the suite; reports that a re-running plug-in undoes do not arrive here."""
         self._logged = bool(self._logged) or report.failed
 
     def _note_failure(self, end: TestEnd, phase: str) -> None:
-        """The first failure counts; of several subtests, the first that is more than a refusal."""
+        """Keep the first failure; of several subtests, the first that is more than a refusal."""
         first = self._failure
         is_more = end.exception is not None and end.refused is None
         if first is None or (first.refused is not None and self._failed_in == phase and is_more):
             self._outcome, self._failure, self._failed_in = FAILED, end, phase
 
     def _classified(self, item: pytest.Item, call: pytest.CallInfo[None]) -> TestEnd | None:
-        """What ended a phase of the test; None if nothing was raised."""
+        """Return the test end for an exception in a phase; None if nothing was raised."""
         if call.excinfo is None:
             return None
         session = self.session

@@ -1,1 +1,1 @@
-"""Thresholds: how large a graded fault the tests miss, from its magnitudes to what users demand."""
+"""Thresholds: the largest graded faults that the tests miss, and what users demand of them."""

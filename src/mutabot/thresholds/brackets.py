@@ -1,4 +1,4 @@
-"""What the tests made of one magnitude, and the bracket of a round that follows from all of them.
+"""The tests' judgement of each magnitude, and the bracket of a round's threshold.
 
 The detection threshold of a round is the smallest magnitude from which on every magnitude that was run is
 noticed. It is known only as a bracket, between the largest magnitude that was missed and the smallest one
@@ -15,7 +15,7 @@ from mutabot.model import Outcome, Verdict
 
 
 class MagnitudeResult(StrEnum):
-    """How the tests judged one magnitude."""
+    """The tests' judgement of one magnitude."""
 
     #: a check, an exception or a time-out ended it
     NOTICED = "noticed"
@@ -28,12 +28,12 @@ class MagnitudeResult(StrEnum):
 
     @property
     def is_valid(self) -> bool:
-        """Whether it says anything about the tests."""
+        """Whether the judgement is valid, that is, says anything about the tests."""
         return self in (MagnitudeResult.NOTICED, MagnitudeResult.MISSED)
 
 
 def seen(outcome: Outcome) -> MagnitudeResult:
-    """What the tests made of a graded mutant in a round."""
+    """Return the judgement of a graded mutant by its outcome in a round."""
     if outcome.verdict in (Verdict.REFUSED, Verdict.GUARDED):
         return MagnitudeResult.REFUSED
     if not outcome.verdict.is_valid:
@@ -43,7 +43,7 @@ def seen(outcome: Outcome) -> MagnitudeResult:
 
 @frozen
 class Bracket:
-    """Where the threshold of one round lies: above ``low``, and at most at ``high``.
+    """The bracket of one round's threshold: above ``low``, and at most ``high``.
 
     Attributes:
         low: the largest magnitude that was missed; None if none was.
@@ -60,7 +60,7 @@ class Bracket:
 
     @property
     def is_known(self) -> bool:
-        """Whether anything valid was run."""
+        """Whether any judgement is valid."""
         return self.low is not None or self.high is not None
 
     @property
@@ -70,7 +70,7 @@ class Bracket:
 
 
 def bracket_of(ladder: Mapping[float, MagnitudeResult]) -> Bracket:
-    """The bracket of a round, from what was seen at the magnitudes that were run."""
+    """Return the bracket of a round, from the magnitudes that were run."""
     missed = [size for size, one in ladder.items() if one is MagnitudeResult.MISSED]
     low = max(missed, default=None)
     above = {size: one for size, one in ladder.items() if low is None or size > low}

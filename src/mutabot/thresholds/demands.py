@@ -1,4 +1,4 @@
-"""Demands: every such fault that is at least so big must be noticed in every round."""
+"""Demands: faults of at least a given magnitude must be noticed in every round."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _AMOUNT = re.compile(r"([-+]?(?:\d{1,18}\.?\d{0,18}|\.\d{1,18})(?:[eE][-+]?\d{1,
 
 @frozen
 class Demand:
-    """What a user demands: every such fault that is at least so big must be noticed in every round.
+    """A user's demand that faults of at least a given magnitude are noticed in every round.
 
     Attributes:
         notice: the magnitude, in ``unit``.
@@ -42,7 +42,7 @@ class Demand:
     source: str = ""
 
     def is_about(self, mutant: Mutant, kind: Kind | None) -> bool:
-        """Whether it speaks of a graded mutant, whose quantity is of this kind as far as that is known."""
+        """Return whether it concerns a graded mutant, whose quantity is of this kind, if known."""
         return (
             mutant.operator == self.operator
             and (self.quantity is None or is_like(self.quantity, mutant.quantity or ""))
@@ -52,7 +52,7 @@ class Demand:
         )
 
     def magnitude_in(self, unit: str | None) -> float | None:
-        """The demanded magnitude in another unit; None if that measures something else."""
+        """Return the demanded magnitude in another unit; None if that measures something else."""
         if unit is None or self.unit is None:
             return self.notice if unit == self.unit else None
         if unit == self.unit:
@@ -63,7 +63,7 @@ class Demand:
 
     @property
     def text(self) -> str:
-        """``notice = "5 mm" at mission.py:38, quantity y``."""
+        """The demand as text: ``notice = "5 mm" at mission.py:38, quantity y``."""
         about = [f"quantity {self.quantity}" if self.quantity is not None else ""]
         about += [f"kind {self.kind}" if self.kind is not None else ""]
         about += [f"operator {self.operator}" if self.operator != OFFSET else ""]
@@ -73,11 +73,11 @@ class Demand:
 
     @property
     def amount(self) -> str:
-        """``5 mm``."""
+        """The demanded magnitude as text: ``5 mm``."""
         return f"{self.notice:g}{f' {self.unit}' if self.unit is not None else ''}"
 
     def is_at(self, mutant: Mutant) -> bool:
-        """Whether it speaks of the site of a mutant."""
+        """Return whether it concerns the site of a mutant."""
         site = self.site
         if site is None:
             return True
@@ -86,7 +86,7 @@ class Demand:
 
 
 def wanted_magnitudes(demands: Iterable[Demand], mutant: Mutant, kind: Kind | None) -> tuple[float, ...]:
-    """The magnitudes that a ladder must have so that demands can be judged, rising, in the ladder's unit.
+    """Return the magnitudes that a ladder must have for its demands, rising, in the ladder's unit.
 
     ``mutant`` is any of the ladder's: only its site, quantity, operator, unit and id are looked at. ``kind``
     is that of its quantity.
@@ -106,7 +106,7 @@ def is_same(one: float, other: float) -> bool:
 
 
 def parse_amount(text: str) -> tuple[float, str | None]:
-    """The number and the unit in ``5 mm``, ``2.5 deg``, ``5 %`` or ``3``.
+    """Return the number and the unit in ``5 mm``, ``2.5 deg``, ``5 %`` or ``3``.
 
     Raises ValueError with a sentence about what is wrong; KeyError for a unit that does not exist.
     """

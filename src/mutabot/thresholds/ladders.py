@@ -1,4 +1,4 @@
-"""Ladders: all magnitudes of one fault at one site, quantity, operator and direction, round by round.
+"""Ladders: all magnitudes of one fault at one site, quantity, operator and direction, by round.
 
 The thresholds of R rounds are taken as independent draws. How many of them lie below the median is then a
 binomial number, whatever their distribution is, so that two of them, in order, hold the median between them
@@ -26,7 +26,7 @@ LEVEL = 0.95
 
 
 class GradedResult(Protocol):
-    """What became of one graded mutant: its outcome in each round, None where it has not been run."""
+    """The interface of one graded mutant's outcomes in each round, None where it was not run."""
 
     @property
     def mutant(self) -> Mutant: ...
@@ -37,7 +37,7 @@ class GradedResult(Protocol):
 
 
 class GradedResults(Protocol):
-    """What became of all graded mutants of a campaign, and how it ended."""
+    """The interface of all graded mutants of a campaign, and how the campaign ended."""
 
     @property
     def graded(self) -> Sequence[GradedResult]: ...
@@ -49,7 +49,7 @@ class GradedResults(Protocol):
 
 @frozen
 class Between:
-    """Where the median threshold of further rounds like these lies: above ``low``, at most at ``high``.
+    """The interval of the median threshold of further rounds: above ``low``, at most ``high``.
 
     Attributes:
         low: a magnitude that was missed; 0 where none was.
@@ -63,7 +63,7 @@ class Between:
 
 
 def median_between(lows: Sequence[float], highs: Sequence[float], level: float = LEVEL) -> Between | None:
-    """The interval of the median threshold, from the brackets of the rounds; None with fewer than two.
+    """Return the interval of the median threshold, by the rounds' brackets; None with fewer than two.
 
     Args:
         lows: their lower ends, in any order; 0 where even the smallest fault was noticed.
@@ -80,7 +80,7 @@ def median_between(lows: Sequence[float], highs: Sequence[float], level: float =
 
 
 def ranks(rounds: int, level: float = LEVEL) -> tuple[int, int] | None:
-    """Which rounds, counted in the order of their thresholds from 1, have the median between them.
+    """Return which rounds, ranked by their thresholds from 1, enclose the median; None if none do.
 
     None if there are too few rounds for the level.
     """
@@ -92,12 +92,12 @@ def ranks(rounds: int, level: float = LEVEL) -> tuple[int, int] | None:
 
 
 def share_noticed(rounds: int, level: float = LEVEL) -> float:
-    """The share of rounds that at least notice what all of these rounds notice (Wilks 1941)."""
+    """Return the share of all rounds that notice what these rounds notice (Wilks 1941)."""
     return float((1.0 - level) ** (1.0 / rounds)) if rounds else 0.0
 
 
 def binomial_at_most(count: int, of: int, share: float) -> float:
-    """The probability of at most ``count`` successes."""
+    """Return the probability of at most ``count`` successes."""
     return math.fsum(math.comb(of, k) * share**k * (1.0 - share) ** (of - k) for k in range(count + 1))
 
 
@@ -106,7 +106,7 @@ _NOTHING_THERE = frozenset({Verdict.NO_EFFECT, Verdict.INVALID})
 
 
 class Above(StrEnum):
-    """What is above the largest magnitude that was missed."""
+    """The kind of result above the largest magnitude that was missed."""
 
     NOTICED = "noticed"
     LARGEST = "missed up to the largest"
@@ -134,7 +134,7 @@ class LadderRound:
 
     @classmethod
     def of(cls, number: int, sizes: Sequence[float], outcomes: Mapping[float, Outcome]) -> LadderRound:
-        """Make it of the planned magnitudes, rising, and the outcomes of those that were run."""
+        """Make it from the planned magnitudes, rising, and the outcomes of those that were run."""
         bracket = bracket_of({size: seen(one) for size, one in outcomes.items()})
         if any(one.verdict is Verdict.NOT_COVERED for one in outcomes.values()):
             bracket = Bracket(low=sizes[-1])  # what no test reaches, none reaches at any magnitude
@@ -159,12 +159,12 @@ class LadderRound:
 
     @property
     def counts(self) -> bool:
-        """Whether it says something about the tests."""
+        """Whether the round counts, that is, says something about the tests."""
         return not self.why_out
 
     @property
     def noticed_by(self) -> str | None:
-        """Who notices at the upper end of the bracket: ``check``, ``exception`` or ``timeout``."""
+        """What notices the fault at the bracket's upper end: ``check``, ``exception`` or ``timeout``."""
         if self.bracket.high is None:
             return None
         outcome = self.outcomes[self.bracket.high]
@@ -223,12 +223,12 @@ class Ladder:
 
     @property
     def mutant(self) -> Mutant:
-        """The smallest of its mutants."""
+        """The mutant of the smallest magnitude."""
         return self.results[0].mutant
 
     @property
     def quantity(self) -> Quantity | None:
-        """What it changes, if the journal holds the vocabulary."""
+        """The quantity that the fault changes, if the journal holds the vocabulary."""
         return self.results[0].quantity
 
     @property
@@ -243,12 +243,12 @@ class Ladder:
 
     @property
     def place(self) -> str:
-        """``sorting.py:38``; all places of a fault that stands in several."""
+        """The place as text: ``sorting.py:38``; all places of a fault that has several."""
         return ", ".join(span.place for span in self.mutant.site.spans)
 
     @property
     def name(self) -> str:
-        """``arm.move_by y +``; another operator than an offset is named, and the axis of a turn (``z +``)."""
+        """The name: ``arm.move_by y +``; with the operator unless it is an offset, and the axis of a turn."""
         mutant, way = self.mutant, self.mutant.direction
         operator = mutant.operator if mutant.operator != OFFSET else ""
         moment = f"@{mutant.moment.text}" if mutant.moment is not None else ""
@@ -273,22 +273,22 @@ class Ladder:
 
     @property
     def none_up_to(self) -> float:
-        """Up to here no round notices it; 0 if a round notices the smallest fault that was tried."""
+        """The magnitude up to which no round notices it; 0 if a round notices the smallest one."""
         return self.lows[0]
 
     @property
     def half_from(self) -> float:
-        """The magnitude from which at least half of the rounds notice it; infinite if there is none."""
+        """The magnitude from which at least half of the rounds notice it; inf if there is none."""
         return self.highs[math.ceil(len(self.highs) / 2) - 1]
 
     @property
     def all_from(self) -> float:
-        """The magnitude from which all rounds notice it; infinite if there is none."""
+        """The magnitude from which all rounds notice it; inf if there is none."""
         return self.highs[-1]
 
     @property
     def median(self) -> Between | None:
-        """Where the median threshold of further rounds lies; None with fewer than two rounds."""
+        """The interval of the median threshold of further rounds; None with fewer than two rounds."""
         return median_between(self.lows, self.highs)
 
     @property
@@ -307,13 +307,13 @@ class Ladder:
 
     @property
     def refused_from(self) -> float | None:
-        """The smallest magnitude from which on a round knows nothing but refusals; None if none does."""
+        """The smallest magnitude from which on all results of a round are refusals; None if there is none."""
         ends = (one.bracket.refused for one in self.counted if one.bracket.high is None)
         return min((end for end in ends if end is not None), default=None)
 
     @property
     def why_unjudged(self) -> str:
-        """Why nothing is known of it; empty if something is."""
+        """Why the ladder cannot be judged; empty if it can."""
         if any(one.counts for one in self.rounds):
             return ""
         reasons = Counter(one.why_out for one in self.rounds)
@@ -324,13 +324,13 @@ class Ladder:
         return ranked[0].partition(" (")[0] if len(reasons) == 1 else "; ".join(ranked)
 
     def number_of(self, magnitude: float) -> int | None:
-        """The number of the mutant of this magnitude; None if the ladder has none."""
+        """Return the number of the mutant of this magnitude; None if the ladder has none."""
         found = (one.mutant for one in self.results if is_same(one.mutant.magnitude or 0.0, magnitude))
         return next((one.number for one in found), None)
 
 
 def looseness(ladder: Ladder) -> tuple[float, float, float]:
-    """Greater for ladders whose faults may be larger before all rounds notice them.
+    """Return a sort key that is greater for ladders that tolerate larger faults.
 
     Magnitudes of different units are compared in those of the SI: a milliradian counts as a millimetre, which
     it is at a metre's reach.
@@ -342,7 +342,7 @@ def looseness(ladder: Ladder) -> tuple[float, float, float]:
 
 
 def ladders_of(results: GradedResults) -> tuple[Ladder, ...]:
-    """The ladders of a campaign, in the order of its plan."""
+    """Return the ladders of a campaign, in the order of its plan."""
     found: dict[str, list[GradedResult]] = {}
     for one in results.graded:
         found.setdefault(one.mutant.ladder, []).append(one)

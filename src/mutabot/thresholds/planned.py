@@ -1,4 +1,4 @@
-"""Ladders of a plan: mutants of one graded fault at rising magnitudes, and which of these are demanded."""
+"""Ladders in a plan: mutants of one graded fault at rising magnitudes, and demanded ones."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Ladders = Mapping[str, Sequence[Mutant]]
 
 
 def split_ladders(mutants: Iterable[Mutant]) -> tuple[list[Mutant], Ladders]:
-    """The mutants that stand alone, and the ladders."""
+    """Split mutants into those without magnitudes, and ladders."""
     found: dict[str, list[Mutant]] = {}
     for mutant in mutants:
         found.setdefault(mutant.ladder, []).append(mutant)
@@ -25,7 +25,7 @@ def split_ladders(mutants: Iterable[Mutant]) -> tuple[list[Mutant], Ladders]:
 def demanded_of(
     ladders: Ladders, demands: Sequence[Demand], vocabulary: Vocabulary
 ) -> dict[str, tuple[float, ...]]:
-    """The demanded magnitudes of each ladder, by its id."""
+    """Return the demanded magnitudes of each ladder, by its id."""
     found = {}
     for name, (first, *_) in ladders.items() if demands else ():
         quantity = vocabulary.quantity(first.operation, first.pattern, first.quantity)

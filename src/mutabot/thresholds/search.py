@@ -1,4 +1,4 @@
-"""Search thresholds on ladders with as few runs as it takes.
+"""Search the thresholds of ladders with as few runs as possible.
 
 The first round of a ladder is
 bisected. Each later one begins with both ends of its bracket, and is bisected where these disagree with it.
@@ -50,17 +50,17 @@ class LadderSearch:
     _guards: set[int] = field(default_factory=set)
 
     def take(self, round: int, step: LadderStep, seen: MagnitudeResult) -> None:
-        """A magnitude was run in a round."""
+        """Note the result of a magnitude in a round."""
         self.found.setdefault(round, {})[step] = seen
 
     @property
     def is_violated(self) -> bool:
-        """Whether any round missed a larger fault where it noticed a smaller one."""
+        """Whether any round missed a larger fault and noticed a smaller one."""
         rows = ({float(step): one for step, one in row.items()} for row in self.found.values())
         return any(bracket_of(row).is_violated for row in rows)
 
     def due(self, round: int) -> set[LadderStep]:
-        """The magnitudes to run next in a round; empty if nothing more is asked there."""
+        """Return the magnitudes to run next in a round; empty if the round is done."""
         row = self.found.get(round, {})
         left = set(range(self.size)) - row.keys()
         if self.is_violated:
@@ -75,7 +75,7 @@ class LadderSearch:
         return self._guard(round, row, left)
 
     def _guess(self, round: int) -> tuple[LadderStep, ...]:
-        """Both ends of the bracket of the first round; none in that round itself, or if it knows nothing."""
+        """Return the first round's bracket as a guess; empty in that round itself, or without a bracket."""
         row = self.found.get(0, {})
         if round == 0 or not any(one.is_valid for one in row.values()):
             return ()
@@ -84,7 +84,7 @@ class LadderSearch:
     def _guard(
         self, round: int, row: Mapping[LadderStep, MagnitudeResult], left: set[LadderStep]
     ) -> set[LadderStep]:
-        """Ask for one more magnitude, the first time that no other is left."""
+        """Return one more magnitude to check, the first time that no other is left."""
         if round in self._guards or not left:
             return set()
         self._guards.add(round)
@@ -99,7 +99,7 @@ class LadderSearch:
 
 
 def _ends(row: Mapping[LadderStep, MagnitudeResult], size: int) -> tuple[LadderStep, LadderStep]:
-    """The largest step that was missed, and the smallest above it that was noticed or refused.
+    """Return the largest step that was missed, and the next step that was noticed or refused.
 
     −1 and ``size`` where there is none.
     """
@@ -110,7 +110,7 @@ def _ends(row: Mapping[LadderStep, MagnitudeResult], size: int) -> tuple[LadderS
 
 
 def _middle(row: Mapping[LadderStep, MagnitudeResult], low: LadderStep, high: LadderStep) -> set[LadderStep]:
-    """The step in the middle between two, of those that were not run; none if all were."""
+    """Return the middle step of those between two that were not run; empty if all were."""
     between = [step for step in range(low + 1, high) if step not in row]
     return {between[len(between) // 2]} if between else set()
 
@@ -123,7 +123,7 @@ def search_ladders(
     seed: int,
     always: Mapping[str, Collection[float]],
 ) -> int:
-    """Find the thresholds of all ladders. Returns how many runs that took, known ones included.
+    """Find the thresholds of all ladders. Return how many runs that took, including known ones.
 
     Args:
         ladders: their mutants, rising.

@@ -1,4 +1,4 @@
-"""The thresholds of a campaign: its ladders, what the rounds showed, and which demands are not met.
+"""The thresholds of a campaign: its ladders, their results, and unmet demands.
 
 Words give brackets, and never a number between them.
 """
@@ -23,14 +23,14 @@ if TYPE_CHECKING:
 
 
 def amount(magnitude: float, unit: str | None) -> str:
-    """``20 mm``; a fraction in percent, a plain number without a unit."""
+    """Return a magnitude as text: ``20 mm``; fractions in percent, numbers without a unit."""
     if unit in ("fraction", "percent"):
         return f"{magnitude * (100 if unit == 'fraction' else 1):.6g} %"
     return f"{magnitude:.6g}{f' {unit}' if unit is not None else ''}"
 
 
 def line_of(ladder: Ladder) -> str:
-    """The line of a ladder that can be judged: a fact about these rounds."""
+    """Return the line of a ladder that can be judged: a fact about these rounds."""
     brackets = {(one.bracket.low, one.bracket.high, one.above) for one in ladder.counted}
     if not any(one.is_reached for one in ladder.counted):
         return f"no test reaches it{_all(ladder)}"
@@ -38,7 +38,7 @@ def line_of(ladder: Ladder) -> str:
 
 
 def rounds_left_out(ladder: Ladder) -> Iterator[str]:
-    """Rounds that do not count although others do, each with the reason."""
+    """Yield the rounds that do not count although others do, each with the reason."""
     for one in ladder.rounds:
         if one.why_out:
             yield f"round {one.number + 1} {one.why_out}"
@@ -70,7 +70,7 @@ def _apart(ladder: Ladder) -> str:
 
 
 def _noticed(ladder: Ladder) -> Iterator[tuple[int, str]]:
-    """Describe from which magnitude the first, half and all of the rounds notice it."""
+    """Yield from which magnitude the first, half and all of the rounds notice it."""
     highs = [high for high in ladder.highs if math.isfinite(high)]
     wanted = {highs[0], highs[-1], ladder.half_from} if highs else set()
     for high in sorted(one for one in wanted if math.isfinite(one)):
@@ -79,7 +79,7 @@ def _noticed(ladder: Ladder) -> Iterator[tuple[int, str]]:
 
 
 def _never_noticed(ladder: Ladder) -> Iterator[str]:
-    """The rounds that never notice it, alike ones together."""
+    """Yield the rounds that never notice it, equal ones together."""
     rounds = [one for one in ladder.counted if one.bracket.high is None]
     total = len(ladder.counted)
     for text, count in Counter(_never(ladder, one) for one in rounds).items():
@@ -104,7 +104,7 @@ def _smallest(ladder: Ladder, high: float) -> str:
 
 
 def _all(ladder: Ladder) -> str:
-    """Describe how many rounds are meant, for what holds in all of them."""
+    """Return how many rounds a fact is about that holds in all of them."""
     total = len(ladder.counted)
     return f" (all {total} rounds)" if total > 1 else " (1 round)"
 
@@ -114,7 +114,7 @@ def _text(ladder: Ladder, magnitude: float) -> str:
 
 
 def violations_in_words(ladder: Ladder) -> Iterator[str]:
-    """``noticed at 5 mm, survives 20 mm, round 3``, one per violation; rounds alike together."""
+    """Yield violations as text: ``noticed at 5 mm, survives 20 mm, round 3``; equal rounds together."""
     rounds: dict[tuple[float, float], list[int]] = {}
     for one in ladder.violations:
         rounds.setdefault((one.noticed, one.missed), []).append(one.round + 1)
@@ -146,7 +146,7 @@ class Thresholds:
 
     @property
     def summary(self) -> str:
-        """``25 of 46 graded faults not noticed even at the largest size; 21 noticed in every round ...``."""
+        """The summary: ``25 of 46 graded faults not noticed even at the largest size; …``."""
         counts = Counter(map(_in_all_rounds, self.ladders))
         counts["not judged"] = len(self.unjudged)
         kinds = [kind for kind in (*_KINDS, "not judged") if counts[kind]]
@@ -168,7 +168,7 @@ _KINDS = (
 
 
 def _in_all_rounds(ladder: Ladder) -> str:
-    """The kind of a ladder that can be judged."""
+    """Return the kind of a ladder that can be judged."""
     largest, accepted, effective, some, every, unreached = _KINDS
     above = {one.above for one in ladder.counted}
     if not any(one.is_reached for one in ladder.counted):
@@ -181,7 +181,7 @@ def _in_all_rounds(ladder: Ladder) -> str:
 
 
 def thresholds_of(results: GradedResults) -> Thresholds:
-    """The thresholds of a campaign."""
+    """Return the thresholds of a campaign."""
     ladders = ladders_of(results)
     judged = (one for one in ladders if not one.why_unjudged)
     return Thresholds(
@@ -193,7 +193,7 @@ def thresholds_of(results: GradedResults) -> Thresholds:
 
 
 def unmet(demands: Iterable[Demand], ladders: Sequence[Ladder]) -> Iterator[str]:
-    """The demands that do not hold: ``sorting.py:38 arm.move_by y +: survives 5 mm in round 3``."""
+    """Yield the unmet demands: ``sorting.py:38 arm.move_by y +: survives 5 mm in round 3``."""
     kinds = {one.id: one.quantity.kind if one.quantity is not None else None for one in ladders}
     for demand in demands:
         about = [one for one in ladders if demand.is_about(one.mutant, kinds[one.id])]
@@ -205,7 +205,7 @@ def unmet(demands: Iterable[Demand], ladders: Sequence[Ladder]) -> Iterator[str]
 
 
 def _why_unmet(demand: Demand, ladder: Ladder) -> str:
-    """Why it does not hold that all rounds notice what is demanded, and more; empty if it does."""
+    """Return why a demand is not met in all rounds; empty if it is."""
     demanded = demand.magnitude_in(ladder.unit)
     assert demanded is not None, "it speaks of ladders of its own measure alone"
     survivors = [

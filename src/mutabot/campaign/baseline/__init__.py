@@ -1,1 +1,1 @@
-"""What is known of the original: its tests, their sites and values, and what tests share."""
+"""The baseline: the original's tests, the sites and values that they reach, and what tests share."""

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class PlantedFaults:
-    """What the providers have planted.
+    """An index of all planned mutants: their activations, and their places in the program text.
 
     Attributes:
         by_id: the mutants of the first order.
@@ -73,7 +73,7 @@ class PlantedFaults:
         return found
 
     def instrumentation(self, mutants: Iterable[Mutant]) -> Instrumentation | None:
-        """The program text with the places of these mutants, or None if they have none there."""
+        """Return what to put into the program text for these mutants; None if they have no place in it."""
         needed = {place for mutant in mutants for place in self.active(mutant).places}
         return Instrumentation(self.texts).only(needed) if needed else None
 
@@ -91,7 +91,7 @@ class Sources:
     _read: dict[tuple[str, Callable[[str], Any]], Any] = field(default_factory=dict)
 
     def places(self, sites: Iterable[SiteSeen]) -> dict[int, Place]:
-        """The places that a process reported, by their index in its traces."""
+        """Return the places that a process reported, by their index in its traces."""
         return {seen.index: self._place(seen) for seen in sites}
 
     def _place(self, seen: SiteSeen) -> Place:
@@ -124,7 +124,7 @@ def _extent(span: Span) -> Extent:
 
 @dataclass(slots=True)
 class Baseline(Original):
-    """What is known about the original.
+    """What the baseline knows about the original.
 
     Outside of this room it is changed by its methods alone: each stands for something that was learned.
 
@@ -179,19 +179,19 @@ class Baseline(Original):
     _probe_spreads: dict[tuple[int, str], ProbeSpread] = field(default_factory=dict)
 
     def suite(self, round: int) -> tuple[str, ...]:
-        """The tests that a mutant is run with, in their order: all that can be relied on."""
+        """Return the tests that a mutant is run with, in order: those that are reliable in this round."""
         return tuple(self.tests[round])
 
     def aside(self, round: int, tests: Collection[str]) -> tuple[str, ...]:
-        """The tests that the original collects in a round, without these."""
+        """Return the tests that the original collects in a round, other than these."""
         return tuple(sorted(self.collected.get(round, frozenset()).difference(tests)))
 
     def tests_reaching(self, round: int, mutant: Mutant) -> tuple[str, ...]:
-        """The tests that reach a mutant, quickest first."""
+        """Return the tests that reach a mutant, quickest first."""
         return tuple(self.reaching.get((round, Place.of(mutant)), ()))
 
     def tests_judging(self, round: int, mutant: Mutant) -> tuple[str, ...]:
-        """The tests that can notice a mutant, in their order: all from the first on that reaches it.
+        """Return the tests that can notice a mutant, in their order: all from the first on that reaches it.
 
         Of a fault of which nothing is left after a test, those that reach it.
         """
@@ -202,11 +202,11 @@ class Baseline(Original):
         return suite[first:]
 
     def is_exclusive(self, round: int) -> bool:
-        """Whether nothing may run beside the suite: other processes would get in its way."""
+        """Return whether nothing may run beside the suite: other processes would get in its way."""
         return self.shares_files or self.why_exclusive(round) is not None
 
     def why_exclusive(self, round: int) -> tuple[str, str] | None:
-        """A test of the suite that gets in the way of other processes, and how; None if there is none."""
+        """Return a test that disturbs other processes, and in which way; None if the suite has none."""
         ends = ((test, self.ends[round, test].exclusive) for test in self.tests[round])
         return next(((test, why) for test, why in ends if why is not None), None)
 
@@ -219,7 +219,7 @@ class Baseline(Original):
         return mutant.family != CONTROL and self.faults.active(mutant).is_of_tests
 
     def is_early(self, mutant: Mutant) -> bool:
-        """Whether a mutant may act before any test begins."""
+        """Return whether a mutant may act before any test begins."""
         return Place.of(mutant) in self.early
 
     def add_planned(self, planned: Mapping[str, Planned]) -> None:
@@ -233,7 +233,7 @@ class Baseline(Original):
                 self.reach(round, place, None if place in one.early else frozenset(tests))
 
     def reach(self, round: int, place: Place, tests: Collection[str] | None) -> None:
-        """Note that these tests reach a place in a round; None for a place that affects all tests."""
+        """Note that these tests reach a place in a round; None is a place that affects all tests."""
         here = [test for test in self.tests[round] if tests is None or test in tests]
         aside = [test for where, test in self.unstable if where == round and (tests is None or test in tests)]
         self.reaching[round, place] = sorted(here, key=lambda test: cost(self.ends[round, test]))
@@ -245,7 +245,7 @@ class Baseline(Original):
         self.below.setdefault((round, place, test), set()).add(origin)
 
     def is_missed(self, round: int, mutant: Mutant, end: TestEnd) -> bool:
-        """Whether processes below this test, which passed, ran as the original, for all that is known.
+        """Return whether processes below this test, which passed, may have run as the original.
 
         The test reaches the mutant in processes of an origin in which it was not hit.
         """
@@ -253,7 +253,7 @@ class Baseline(Original):
         return end.outcome != "failed" and not reached <= set(end.hit_below)
 
     def seconds(self, round: int, tests: Iterable[str]) -> float:
-        """What tests took, by the clock on the wall."""
+        """Return the wall-clock time that tests took in a round, in s."""
         return sum(self.ends[round, test].wall for test in tests)
 
     def add_remarks(self, remarks: Iterable[Remark]) -> None:
@@ -261,7 +261,7 @@ class Baseline(Original):
         self.remarks = (*self.remarks, *remarks)
 
     def doubt(self, test: str) -> None:
-        """A test failed once where equal runs pass: its kills may be chance."""
+        """Note that a test failed once where equal runs pass: its kills may be chance."""
         self.doubted.add(test)
 
     def compare_runs(self, round: int, end: TestEnd, found: Observation, vocabulary: Vocabulary) -> None:
@@ -284,12 +284,12 @@ class Baseline(Original):
             self.observations[key] = steady
 
     def add_seed(self, found: Mapping[str, Observation]) -> None:
-        """Add a run of the original with the seed of a round in which no mutant runs, by test."""
+        """Add a run of the original, by test, with the seed of a round in which no mutant runs."""
         for test, one in found.items():
             self.further.setdefault(test, []).append(one)
 
     def probe_spread(self, round: int, test: str, probes: Sequence[Probe]) -> ProbeSpread:
-        """How far probes are apart in runs of a test with other seeds than that of the round."""
+        """Return how far probes are apart in runs of a test with other seeds than that of the round."""
         key = (round, test)
         if key not in self._probe_spreads:
             rounds = range(len(self.tests))
@@ -301,7 +301,7 @@ class Baseline(Original):
         return self._probe_spreads[key]
 
     def set_aside(self, round: int, test: str, reason: str) -> None:
-        """A test turned out to be flaky: from now on no mutant is judged by it in this round."""
+        """Exclude a flaky test: from now on no mutant is judged by it in this round."""
         self.unstable[round, test] = reason
         self.tests[round] = [other for other in self.tests[round] if other != test]
         for (where, place), tests in self.reaching.items():
@@ -310,11 +310,11 @@ class Baseline(Original):
                 self.flaky_reaching.setdefault((where, place), []).append(test)
 
     def ran(self, round: int) -> list[str]:
-        """The tests of a round that were not skipped."""
+        """Return the tests of a round that were not skipped."""
         return [test for test in self.tests[round] if self.ends[round, test].outcome != "skipped"]
 
     def missing_judges(self, round: int, mutant: Mutant) -> list[str]:
-        """Tests that would judge a mutant, were they not excluded in this round.
+        """Return the tests that would judge a mutant if they were not excluded in this round.
 
         A test that fails may stop short of a place that it reaches in other rounds.
         """
@@ -329,12 +329,12 @@ class Baseline(Original):
 
 
 def cost(end: TestEnd) -> tuple[float, int]:
-    """What a test costs, in a measure that is the same in every run: wall clocks are not."""
+    """Return what a test costs, in a measure that is the same in every run, unlike wall-clock time."""
     return (end.simulated or 0.0, end.operations)
 
 
 def observation(end: TestEnd, places: Mapping[int, Place]) -> Observation:
-    """What is compared of a test."""
+    """Return what is compared of a test: its calls, and the probes at its end."""
     # a campaign holds many traces: the calls of a site share what tells it
     known = {}
     for index in {call[0] for call in end.trace}:
@@ -351,7 +351,7 @@ def observation(end: TestEnd, places: Mapping[int, Place]) -> Observation:
 
 
 def refused_of(result: Result) -> dict[str, tuple[RefusedAt, ...]]:
-    """The calls that the robot refused in a run, by test."""
+    """Return the calls that the robot refused in a run, by test."""
     sites = {seen.index: seen for seen in result.sites}
     found: dict[str, tuple[RefusedAt, ...]] = {}
     for end in result.ends:

@@ -48,7 +48,7 @@ class NamedCall:
 
 @frozen
 class KnownCalls:
-    """What is known of the calls that tests reach.
+    """The operations and calls that tests reach.
 
     Attributes:
         operations: the operations that can be called, by their last names.
@@ -64,7 +64,7 @@ class KnownCalls:
 
 
 def calls_in(source: str, file: str, known: KnownCalls) -> Iterator[NamedCall]:
-    """The calls of a file that have an operation's name. Raises SyntaxError or ValueError."""
+    """Yield the calls of a file that have an operation's name. Raises SyntaxError or ValueError."""
     tree = ast.parse(source)
     origins = _Origins(tree, file)
     names = FRONT_END.names(source)
@@ -86,7 +86,7 @@ def calls_in(source: str, file: str, known: KnownCalls) -> Iterator[NamedCall]:
 
 @frozen
 class _CallScope:
-    """Where a call stands.
+    """The code around a call: its function, class and module.
 
     Attributes:
         name: as in ``code.co_qualname``.
@@ -106,7 +106,7 @@ class _CallScope:
 
 
 def _calls(nodes: Sequence[ast.AST], scope: _CallScope) -> Iterator[tuple[ast.Call, _CallScope]]:
-    """All calls below these nodes, without annotations and code for type checkers."""
+    """Yield all calls below these nodes, without annotations and code for type checkers."""
     for node in nodes:
         if isinstance(node, ast.Call):
             yield node, scope
@@ -217,7 +217,7 @@ def _methods(owner: ast.ClassDef) -> set[str]:
 
 
 def _stored_in(around: ast.AST) -> dict[str, ast.expr]:
-    """The last values, or the annotations, that names get in a function, class or module."""
+    """Return the last values, or the annotations, that names get in a function, class or module."""
     found: dict[str, ast.expr] = {}
     for node in ast.walk(around):
         match node:
@@ -235,7 +235,7 @@ def _stored_in(around: ast.AST) -> dict[str, ast.expr]:
 def _operation(
     call: ast.Call, last: str, text: str, scope: _CallScope, origins: _Origins, known: KnownCalls
 ) -> tuple[Operation, str] | None:
-    """The operation that a call is of, and why that is in doubt; None if it is of none."""
+    """Return the operation that a call is of, and why that is in doubt; None if it is of none."""
     candidates = known.operations[last]
     told = [one for one in candidates if one.target in known.reached.get(text, ())]
     if told:
@@ -258,7 +258,7 @@ def _operation(
 def _doubt(
     call: ast.Call, operation: Operation, scope: _CallScope, origins: _Origins, known: KnownCalls
 ) -> str | None:
-    """Why it is in doubt whether a call is of this operation; empty if it is not, None if it is of none."""
+    """Return why it is doubtful that a call is of this operation; "" if it is not, None if it cannot be."""
     function = call.func
     if operation.target.startswith(ANY):
         return "" if isinstance(function, ast.Attribute) else None
@@ -291,13 +291,13 @@ def _doubt(
 
 
 def _is_of(origin: str, module: str, known: KnownCalls) -> bool:
-    """Whether something comes from the operation's package, or from the program."""
+    """Return whether something comes from the operation's package, or from the program."""
     top = origin.partition(".")[0]
     return top in ("", module) or top in known.own
 
 
 def _is_in(operation: Operation, file: str) -> bool:
-    """Whether an operation is defined in this file of the program."""
+    """Return whether an operation is defined in this file of the program."""
     return file.removesuffix(".py").replace("/", ".").endswith(operation.module)
 
 
@@ -352,7 +352,7 @@ def _is_case(value: ast.expr | None, wanted: str) -> bool:
 
 
 def _texts(node: ast.expr) -> Iterator[str]:
-    """The texts that an expression may give: a literal, or an f-string with samples for what is computed."""
+    """Yield the texts that an expression may give: literals, and f-strings with samples of computed parts."""
     if isinstance(node, ast.Constant) and isinstance(node.value, str):
         yield node.value
     elif isinstance(node, ast.JoinedStr):

@@ -1,4 +1,4 @@
-"""Further seeds of the original, to know its own spread even if mutants run with few.
+"""Further runs of the original with other seeds, to know its own spread even if mutants run with few seeds.
 
 Its runs with seeds of rounds in which no mutant runs judge nothing. They show by how much things differ
 without any fault, so that reports tell of mutants by what is the same with all seeds.

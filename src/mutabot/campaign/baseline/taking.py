@@ -42,7 +42,7 @@ Failing = Mapping[tuple[int, str], TestEnd]
 
 
 def rounds_to_repeat(ends: Mapping[int, Iterable[TestEnd]]) -> list[int]:
-    """The rounds that a second run says more about: tests fail in them, and none fails in all rounds.
+    """Return the rounds worth a second run: tests fail in them, and no test fails in all rounds.
 
     With a single round, that is the one if tests fail in it.
     """
@@ -53,7 +53,7 @@ def rounds_to_repeat(ends: Mapping[int, Iterable[TestEnd]]) -> list[int]:
 
 
 def repeat_command(request: Request, round: int, test: str) -> str:
-    """What to type to run this test with plain pytest as in this round, from the project's folder."""
+    """Return the shell command that runs this test with plain pytest as in this round, from the project."""
     variables = f"{ROUND_VARIABLE}={round + 1}"
     if request.seed != DEFAULT_SEED:
         variables += f" {CAMPAIGN_SEED_VARIABLE}={request.seed}"
@@ -96,7 +96,7 @@ _FAILED = 1
 
 
 class Runs(Protocol):
-    """Runs the suite on the original: an executor, or a store of earlier runs."""
+    """A source of runs of the original: an executor, or a store of earlier runs."""
 
     def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Event]]:
         """See ``Executor``."""
@@ -104,7 +104,7 @@ class Runs(Protocol):
 
 @dataclass(slots=True)
 class _Suite:
-    """The suite on the original, run as often as need be.
+    """The suite on the original, run as often as necessary.
 
     Attributes:
         results: by round and repetition.
@@ -124,7 +124,7 @@ class _Suite:
     may_share: bool = True
 
     def run(self, tasks: Iterable[Task]) -> None:
-        """Run tasks until one cannot be a baseline. Raises as ``take_baseline``."""
+        """Run tasks until the result of one cannot be a baseline. Raises what ``take_baseline`` raises."""
         for result in self.executor.events(tasks):
             if not isinstance(result, Result):
                 if isinstance(result[1], Remark):
@@ -145,7 +145,7 @@ class _Suite:
         self.progress.note(str(remark))
 
     def _note_unread(self, result: Result) -> None:
-        """Turn problems of results that were not read into remarks, where only single tests are run."""
+        """Turn problems of results that were not read into remarks, if only single tests are run."""
         unread = [one for one in result.problems if one.key.startswith("result.")]
         result.problems = [one for one in result.problems if one not in unread]
         for one in unread:
@@ -153,12 +153,12 @@ class _Suite:
             self._note(Remark(one.source, one.key, why))
 
     def task(self, round: int, repetition: int, **details: Any) -> Task:
-        """A run of the original in a round. With forks, imports and collection are done once for all runs."""
+        """Return the task that runs the original in a round; forks share imports and collection."""
         job = self.request.job(round, record=True, known=tuple(self.known.items()), **details)
         return Task((round, repetition), job, startup=Limit(300.0), may_share=self.may_share)
 
     def failing(self) -> set[tuple[int, str]]:
-        """The tests that fail in a run so far, by round."""
+        """Return the tests that fail in a run so far, each with its round."""
         ends = ((key[0], end) for key, result in self.results.items() for end in result.ends)
         return {(round, end.test) for round, end in ends if end.outcome == "failed"}
 
@@ -177,7 +177,7 @@ def take_baseline(
     texts: Mapping[str, tuple[ProgramText, ...]] | None = None,
     repetitions: int | None = None,
 ) -> tuple[Baseline, list[Result]]:
-    """Run the suite on the original and look at what it does.
+    """Run the suite on the original and record what it does.
 
     ``texts``: the program text to look at, by the providers that ask for it. ``repetitions``: how often each
     round is run; as often as the request says, if it is not given. With one, the second run is left to the
@@ -213,7 +213,7 @@ def _run(
     *,
     if_all_pass: bool = False,
 ) -> bool:
-    """Run the suite as often as need be; False if it ends with the first runs, since tests fail in them."""
+    """Run the suite as often as necessary; False if it ends with the first runs, since tests fail in them."""
     request = suite.request
     texts = tuple(text for one in of_providers.values() for text in one)
     recording = Instrumentation(texts, record=True) if texts else None
@@ -249,7 +249,7 @@ def _first_runs(suite: _Suite, recording: Instrumentation | None) -> Iterator[Ta
 
 
 def _fails_if_looked_at(suite: _Suite, recording: Instrumentation) -> bool:
-    """Whether tests fail because the text is looked at; the first runs are then those that leave it alone."""
+    """Return whether tests fail only if the program text is instrumented; if so, use runs without that."""
     first, failing = dict(suite.results), suite.failing()
     if not failing:
         return False
@@ -316,7 +316,7 @@ def _read(suite: _Suite, texts: Mapping[str, tuple[ProgramText, ...]]) -> Baseli
 
 
 def _refuse(result: Result, arguments: Sequence[str]) -> None:
-    """Stop at once if this run of the suite cannot be a baseline."""
+    """Raise an error if this run of the suite cannot be a baseline."""
     if result.problems:
         errors = [problem_error(problem) for problem in result.problems]
         if len(errors) > 1:
@@ -354,7 +354,7 @@ def _refuse(result: Result, arguments: Sequence[str]) -> None:
 def _add_round(
     baseline: Baseline, request: Request, sources: Sources, round: int, repetitions: list[Result]
 ) -> dict[tuple[int, str], TestEnd]:
-    """Take in the runs of a round; returns the tests that fail in all of them."""
+    """Add the runs of a round to the baseline. Return the tests that fail in all of them."""
     runs = [{end.test: end for end in result.ends} for result in repetitions]
     places = [sources.places(result.sites) for result in repetitions]
     failed: dict[tuple[int, str], TestEnd] = {}

@@ -1,4 +1,4 @@
-"""Find what a vocabulary has and the original does not: probes that cannot be read, values that do not fit.
+"""Find entries of a vocabulary that do not fit the original: unreadable probes, values out of range.
 
 Without readings of probes comparisons would say nothing.
 """
@@ -38,7 +38,7 @@ _NOTHING = "it reads nothing (None); a probe returns what it reads"
 
 
 def refuse_unhooked(vocabulary: Vocabulary) -> None:
-    """Refuse names on a middleware where nothing is installed that knows any.
+    """Refuse names on a middleware if no installed package knows its names.
 
     Raises ConfigurationError that says where the first of them stands, and what is needed.
     """
@@ -93,13 +93,13 @@ def note_fit(
 
 
 def _with_calls(baseline: Baseline) -> list[TestEnd]:
-    """The tests that have anything to do with the robot; all of them if none has."""
+    """Return the tests that call operations; all tests if none does."""
     ends = list(baseline.ends.values())
     return [end for end in ends if end.trace] or [end for end in ends if end.outcome != "skipped"]
 
 
 def _why_not(probe: Probe, end: TestEnd) -> str | None:
-    """Why a probe could not be read at the end of a test; None if it could."""
+    """Return why a probe could not be read at the end of a test; None if it could."""
     return end.unread.get(probe.target) or (None if readings_of(probe, end.probes) else _NOTHING)
 
 
@@ -134,7 +134,7 @@ def _of_probes(baseline: Baseline, vocabulary: Vocabulary) -> Iterator[Problem]:
 
 
 def _wrong(quantity: Quantity, values: Iterable[Any]) -> str | None:
-    """Return what is wrong with recorded values of which none is an orientation; None if nothing is."""
+    """Return why recorded values cannot be orientations or angles; None if at least one can."""
     seen = [value for value in values if value is not None]
     if not quantity.is_whole or not seen or any(quantity.orientation(value) is not None for value in seen):
         return None
@@ -162,7 +162,7 @@ def _out_of_range(baseline: Baseline, vocabulary: Vocabulary) -> Iterator[Remark
 
 
 def _no_numbers(baseline: Baseline, vocabulary: Vocabulary) -> Iterator[Remark]:
-    """Quantities that name an object where a number is meant."""
+    """Remark on quantities whose recorded values are objects instead of numbers."""
     for owner, side, quantity, values in _recorded(baseline, vocabulary):
         seen = [value for value in values if value is not None]
         if quantity.is_numeric and seen and not any(map(holds_number, seen)):
@@ -175,7 +175,7 @@ def _no_numbers(baseline: Baseline, vocabulary: Vocabulary) -> Iterator[Remark]:
 
 
 def _no_noise(baseline: Baseline, vocabulary: Vocabulary) -> Iterator[Remark]:
-    """Noise of quantities to which no operator adds any."""
+    """Remark on noise that is described of quantities to which no operator adds noise."""
     for operation in vocabulary.operations:
         for pattern in (None, *operation.patterns):
             owner = pattern or operation
@@ -189,7 +189,7 @@ def _no_noise(baseline: Baseline, vocabulary: Vocabulary) -> Iterator[Remark]:
 def _recorded(
     baseline: Baseline, vocabulary: Vocabulary
 ) -> Iterator[tuple[Operation | Pattern, str, Quantity, list[Any]]]:
-    """The recorded values of each quantity of an operation or pattern, and on which side it is."""
+    """Yield the recorded values of each quantity of an operation or pattern, and their side of the call."""
     for operation in vocabulary.operations:
         for pattern in (None, *operation.patterns):
             owner, text = pattern or operation, pattern.text if pattern is not None else None

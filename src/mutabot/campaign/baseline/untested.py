@@ -1,4 +1,4 @@
-"""What no test reaches of the program: files, functions, and calls of operations.
+"""Find the parts of the program that no test reaches: files, functions, and calls of operations.
 
 Files and functions are those that no process has executed, as far as all processes could tell. A call of an
 operation's name was reached if it is a site, or if something else was seen to stand there.
@@ -38,7 +38,7 @@ _OTHER_TEXT = "what runs of this file is not the text that stands there"
 
 @frozen
 class _OriginalCode:
-    """What all runs of the original have shown.
+    """The code that the runs of the original have shown: executed units, imported files and sites.
 
     Attributes:
         sites: where calls of operations were made.
@@ -72,7 +72,7 @@ class _OriginalCode:
 
     @property
     def knows_files(self) -> bool:
-        """Whether a file of which nothing was seen was not imported."""
+        """Whether a file without any executed unit was not imported."""
         return self.executed is not None and ALL_FILES not in self.executed
 
     def is_executed(self, file: str, line: int) -> bool:
@@ -116,7 +116,7 @@ def add_untested(
 
 
 def _texts(root: Path, files: Iterable[str]) -> Iterator[tuple[str, str]]:
-    """The files of the program that hold anything but a docstring, with their text.
+    """Yield the name and text of each file of the program that holds more than a docstring.
 
     A file that cannot be parsed has an empty one: nobody can import it.
     """
@@ -136,7 +136,7 @@ def _texts(root: Path, files: Iterable[str]) -> Iterator[tuple[str, str]]:
 
 
 def _functions(texts: Mapping[str, str], seen: _OriginalCode) -> tuple[int, list[str]]:
-    """The number of functions, and those that no test calls."""
+    """Return the number of functions, and the names of those that no test calls."""
     found = [
         (file, name, node) for file, text in texts.items() for name, node in functions_of(ast.parse(text))
     ]
@@ -151,7 +151,7 @@ def _functions(texts: Mapping[str, str], seen: _OriginalCode) -> tuple[int, list
 def _calls(
     baseline: Baseline, vocabulary: Vocabulary, texts: Mapping[str, str], seen: _OriginalCode
 ) -> tuple[list[NamedCall], int]:
-    """The calls that no test reaches, and the number of sites that tests reach."""
+    """Return the calls that no test reaches, and the number of sites that tests reach."""
     operations = [one for one in vocabulary.operations if one.named is None and one.kind in (None, "methods")]
     targets = {one.target for one in operations}
     places = [one for one in baseline.hits if one.operation in targets and one.site.role is Role.PROGRAM]

@@ -1,4 +1,4 @@
-"""Find functions of the program that only pass the arguments of several calls on to an operation.
+"""Find functions of the program that only pass the arguments of their calls on to an operation.
 
 The site in such a function is one for all of its calls, and a mutant acts on all of them at once: a test that
 sees the first hides that none sees the last. Where the function itself is described, each call is a site.
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 def shared_sites(
     baseline: Baseline, vocabulary: Vocabulary, sources: Sources, files: Iterable[str]
 ) -> Iterator[Remark]:
-    """Remark on the sites in such functions, and say what to describe instead."""
+    """Yield remarks on sites inside such functions, saying what to describe in the vocabulary instead."""
     described = {one.last_name for one in vocabulary.operations}
     for place in baseline.hits:
         span, operation = place.site.span, vocabulary.operation(place.operation)
@@ -44,7 +44,7 @@ def shared_sites(
 
 
 def passed_on(source: str) -> frozenset[Extent]:
-    """The calls that are all that a function does, with its own arguments only."""
+    """Return the calls that are the whole body of a function, with its own arguments only."""
     functions = (node for node in ast.walk(ast.parse(source)) if isinstance(node, FunctionNode))
     calls = ((_only_call(function), function) for function in functions)
     return frozenset(
@@ -53,7 +53,7 @@ def passed_on(source: str) -> frozenset[Extent]:
 
 
 def call_names(source: str) -> Counter[str]:
-    """How many calls of each last name there are."""
+    """Count the calls in a source by the last part of their names."""
     functions = (node.func for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Call))
     names = (getattr(one, "attr", None) or getattr(one, "id", None) for one in functions)
     return Counter(name for name in names if name is not None)
@@ -67,7 +67,7 @@ def _only_call(function: FunctionNode) -> ast.Call | None:
 
 
 def _fits(call: ast.Call, function: FunctionNode) -> bool:
-    """Whether a call passes on arguments of the function, and beside them constants at most."""
+    """Return whether a call passes on arguments of the function, and otherwise only constants."""
     given = function.args
     own = [*given.posonlyargs, *given.args, *given.kwonlyargs, given.vararg, given.kwarg]
     names = {one.arg for one in own if one is not None} - {"self", "cls"}

@@ -37,7 +37,7 @@ _VIEWS = frozenset(
 
 
 def written_through(source: str) -> frozenset[Extent]:
-    """Where all expressions of a file stand through which something is written. Raises SyntaxError."""
+    """Return the extents of all expressions through which something is written. Raises SyntaxError."""
     writes = _Writes()
     writes.visit(ast.parse(source))
     for scope, node in writes.writes:
@@ -46,7 +46,7 @@ def written_through(source: str) -> frozenset[Extent]:
 
 
 class _Writes(ast.NodeVisitor):
-    """Collects what is assigned and what is written to, function by function.
+    """A visitor that collects, function by function, what is assigned and what is written to.
 
     Attributes:
         found: what is written through.
@@ -61,7 +61,7 @@ class _Writes(ast.NodeVisitor):
         self._scope, self._function = 0, ""
 
     def visit(self, node: ast.AST) -> None:
-        """Take in a node and all below it."""
+        """Visit a node and all below it."""
         before = self._scope, self._function
         if isinstance(node, FunctionNode):
             self._scope, self._function = id(node), node.name
@@ -105,7 +105,7 @@ class _Writes(ast.NodeVisitor):
             self._add(scope, ast.unparse(target), value)
 
     def follow(self, scope: int, node: ast.expr) -> None:
-        """What is written through this is written through all that it is a part of, or another name of."""
+        """Mark an expression as written through, and all expressions that it is a part or an alias of."""
         if extent_of(node) in self.found:
             return
         self.found.add(extent_of(node))
@@ -135,7 +135,7 @@ class _Writes(ast.NodeVisitor):
 
 
 def _changed_by(node: ast.Call) -> Iterator[ast.expr]:
-    """What a call changes, by its name and arguments."""
+    """Yield the expressions that a call changes, by the name and arguments of the call."""
     name = _name_of(node.func)
     if name in _CHANGING and isinstance(node.func, ast.Attribute):
         yield node.func.value

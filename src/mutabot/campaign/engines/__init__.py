@@ -1,1 +1,1 @@
-"""The engines, which give mutants their outcomes, and all that makes these trustworthy."""
+"""The engines, which run mutants, with the controls and re-runs that make their outcomes trustworthy."""

@@ -1,4 +1,4 @@
-"""Controls: mutants of mutabot's own whose verdict is known.
+"""Controls: mutants whose verdict is known, run to check that verdicts can be trusted.
 
 The identity changes nothing, so it must survive. The fatal mutant raises, so it must die, or make the suite
 wait for ever: turning a mutant on changes something.
@@ -42,7 +42,7 @@ IMPORT = "the program's imports"
 
 @dataclass(frozen=True, slots=True)
 class Control:
-    """One control to run.
+    """A control to run.
 
     Attributes:
         name: which of the two, as an operator.
@@ -62,12 +62,12 @@ class Control:
 
     @property
     def way(self) -> tuple[str, str, bool]:
-        """What it proves of an engine, wherever it acts."""
+        """The provider and the way of running that the control checks, wherever it acts."""
         return self.name, self.provider, self.subject == IMPORT
 
     @property
     def mutant(self) -> Mutant:
-        """The control as a mutant. What it is run for is part of its id."""
+        """The control as a mutant, whose id includes what it checks."""
         place = self.place
         return Mutant(
             0, CONTROL, self.name, place.site, place.operation, place.pattern, None, self.subject, self.name,
@@ -76,16 +76,16 @@ class Control:
 
     @property
     def run(self) -> MutantRun:
-        """The control as what an engine runs."""
+        """The control as a run for an engine."""
         return self.mutant, self.round
 
     def end(self, outcome: Outcome) -> ControlEnd:
-        """Its end, as the journal keeps it."""
+        """Return the end of the control, as the journal keeps it."""
         wrong = self.what_is_wrong(outcome)
         return ControlEnd(self.subject, self.name, wrong is None, wrong or f"{outcome.hits} hits")
 
     def what_is_wrong(self, outcome: Outcome) -> str | None:
-        """Why its end is not the one that it must have; None if it is."""
+        """Return why the control did not end as it must; None if it did."""
         # a suite that waits for ever for what the fatal one has ended shows as well that it acted
         right = (Verdict.NO_EFFECT,) if self.name == IDENTITY else (Verdict.KILLED, Verdict.TIMEOUT)
         if outcome.verdict in right:
@@ -97,7 +97,7 @@ class Control:
 
 @dataclass(frozen=True, slots=True)
 class _Candidate:
-    """Where a pair of controls could act: ``first`` is the number of the first test that reaches it."""
+    """A test where a pair of controls could act; ``first`` is the number of the first test at its place."""
 
     round: int
     is_early: bool
@@ -108,7 +108,7 @@ class _Candidate:
     test: str
 
     def rank(self, *, forked: bool, as_late_as_possible: bool) -> tuple[float, ...]:
-        """By this the candidates are sorted, the best first.
+        """Return the sort key of a candidate; the lowest is the best.
 
         What raises while the program is imported, or in another process, says little of other tests.
         """
@@ -120,7 +120,7 @@ class _Candidate:
 
 
 def controls_of(baseline: Baseline, mutants: Iterable[Mutant], *, forked: bool = False) -> list[Control]:
-    """One pair for each provider, where a mutant is planned, in the quickest test of the first round.
+    """Return a pair of controls for each provider with mutants, in the quickest test of the first round.
 
     Only a test that passes on the original must fail by the fatal one. ``forked``: for processes that are
     forked at the place. Theirs are forked in the first test that reaches one, and the identity runs all that
@@ -167,7 +167,7 @@ def run_controls(campaign: Campaign, mutants: Iterable[Mutant]) -> Iterator[Cont
 
 
 def _settled(campaign: Campaign, control: Control, outcome: Outcome) -> Iterator[ControlEnd]:
-    """The end of a control. One that ended wrongly is tried again in a process that shares nothing.
+    """Yield the end of a control, which is tried again in a fresh process if it ended wrongly.
 
     Raises ControlError for a control that ends wrongly, after it was yielded.
     """
@@ -195,7 +195,7 @@ def _settled(campaign: Campaign, control: Control, outcome: Outcome) -> Iterator
 
 
 class ForkTrust:
-    """Decides by the controls among forks which outcomes of other forks count.
+    """Decides by the controls among forks which outcomes of other forks can be trusted.
 
     Args:
         campaign: the campaign.
@@ -212,7 +212,7 @@ class ForkTrust:
         self._first = sys.maxsize  # number of the first test of which forks are not believed
 
     def take(self, outcome: Outcome) -> Iterator[ControlEnd]:
-        """Take the end of a control; yields it if it is right. Replay has controls of its own."""
+        """Note the end of a control, and yield it if it is right; a wrong one leaves its forks to replay."""
         control = self._controls[outcome.mutant]
         self._awaited.discard(outcome.mutant)
         wrong = control.what_is_wrong(outcome)
@@ -231,7 +231,7 @@ class ForkTrust:
         )
 
     def close(self) -> None:
-        """All forks have ended. If a control has not reported, no outcome of a fork counts."""
+        """Note that all forks have ended. If a control has not reported, no outcome of a fork counts."""
         if self._awaited:
             self._distrust(0)
 
@@ -239,7 +239,7 @@ class ForkTrust:
         self._first = min(number, self._first)
 
     def awaits(self, mutant: Mutant, outcome: Outcome) -> bool:
-        """Whether an outcome depends on controls that have not ended yet.
+        """Return whether an outcome depends on controls that have not ended yet.
 
         It does not if the test in which the mutant was forked has decided: that test has controls of its own.
         """
@@ -250,7 +250,7 @@ class ForkTrust:
         return not outcome.verdict.is_killed or baseline.is_early(mutant) or not is_decided_there
 
     def believes(self, outcome: Outcome) -> bool:
-        """Whether all tests that it depends on end in a fork as they do in the original."""
+        """Return whether all tests that an outcome depends on end in a fork as they do in the original."""
         if self._first == sys.maxsize:
             return True
         suite = self._campaign.baseline.suite(outcome.round)

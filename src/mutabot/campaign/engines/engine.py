@@ -1,4 +1,4 @@
-"""The engines, which give mutants their outcomes, and what one leaves to the other.
+"""Run mutants by fork where possible and by replay otherwise.
 
 ``fork`` runs the suite once as the original and forks it where a mutant differs. ``replay`` runs each
 mutant in a process of its own. With ``auto``, ``replay`` judges what ``fork`` cannot.
@@ -92,7 +92,7 @@ def _name(mutant: Mutant, outcome: Outcome) -> str:
 
 
 def _counts(campaign: Campaign, mutant: Mutant, outcome: Outcome) -> bool:
-    """Whether no test was left out whose absence may have led to this outcome."""
+    """Return whether the outcome would be the same if no test had been left out."""
     if outcome.confirmed is None or outcome.verdict is Verdict.SURVIVED:
         return True
     baseline, round = campaign.baseline, outcome.round
@@ -153,13 +153,13 @@ def _believed(trust: ForkTrust, mutant: Mutant, outcome: Outcome, left: Unhandle
 
 
 def _forked_controls(campaign: Campaign, mutants: Collection[Mutant]) -> dict[str, Control]:
-    """The controls that are to be forked, by the ids of their mutants."""
+    """Return the controls that are to be forked, by the ids of their mutants."""
     found = controls_of(campaign.baseline, mutants, forked=True)
     return {one.mutant.id: one for one in found if (FORK, *one.way) not in campaign.proven}
 
 
 def try_controls(campaign: Campaign, mutants: Sequence[Mutant]) -> tuple[int, Unhandled]:
-    """Run the controls alone. Returns how many passed, and what ``fork`` leaves.
+    """Run the controls alone. Return how many passed, and what ``fork`` leaves to replay.
 
     Raises ControlError for a control that ends wrongly.
     """
@@ -181,7 +181,7 @@ def try_controls(campaign: Campaign, mutants: Sequence[Mutant]) -> tuple[int, Un
 
 
 def _tell(campaign: Campaign, left: Unhandled) -> None:
-    """Say what runs in processes of its own, and why."""
+    """Tell the user which mutants run in processes of their own, and why."""
     tests: dict[str, list[str]] = {}
     for test, reason in left.reasons.items():
         tests.setdefault(reason, []).append(test)
@@ -196,7 +196,7 @@ def _tell(campaign: Campaign, left: Unhandled) -> None:
 
 
 def clear_up(campaign: Campaign, suspects: Iterable[tuple[int, str]]) -> None:
-    """Run the suite once more in each round that has suspects, and note in the baseline what they are."""
+    """Run the suite again in each round with suspected flaky tests; note in the baseline which are flaky."""
     baseline, progress = campaign.baseline, campaign.progress
     by_round: dict[int, list[str]] = {}
     for round, test in suspects:

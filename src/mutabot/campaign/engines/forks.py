@@ -55,7 +55,7 @@ _HeldEnd = tuple[events.TestEnd, "Observation | None"]
 
 @dataclass(slots=True)
 class Unhandled:
-    """What ``fork`` leaves to replay.
+    """The mutants that ``fork`` leaves to replay, with the reasons.
 
     Attributes:
         runs: mutants and rounds.
@@ -115,7 +115,7 @@ def run_forks(campaign: Campaign, runs: Iterable[MutantRun], left: Unhandled) ->
 def _taken(
     told: Iterable[Result | tuple[Task, events.Event]], parents: Mapping[int, _ForkRound]
 ) -> Iterator[Outcome]:
-    """The outcomes that follow from the events of fork parents."""
+    """Yield the outcomes that follow from the events of fork parents."""
     for event in told:
         if isinstance(event, Result):
             yield from parents[event.task.key].finish(event)
@@ -134,7 +134,7 @@ def cut(parents: list[_ForkRound], places: int) -> list[_ForkRound]:
 
 @dataclass(slots=True)
 class _ForkOutcome(Run):
-    """What is known of one mutant so far.
+    """The outcome of one mutant, as far as it is known.
 
     Attributes:
         own: its tests that have ended, but for those in ``held`` and ``packed``.
@@ -153,7 +153,7 @@ class _ForkOutcome(Run):
     is_decided: bool = False
 
     def hold(self, end: events.TestEnd, seen: Observation | None) -> None:
-        """One of its tests has ended. ``seen``: what is compared of it, if anything is."""
+        """Add the end of a test of the mutant; ``seen`` is what is compared of it, if anything is."""
         self.held.append((end, seen))
         self.weight += 1 + len(end.trace) + len(end.recording or "") // _CHARACTERS
         if self.weight >= _TOGETHER:
@@ -162,7 +162,7 @@ class _ForkOutcome(Run):
             self.weight = 0
 
     def unpack(self) -> None:
-        """Put what was held where the end of a run is looked for."""
+        """Unpack the ends of tests, which ``hold`` has packed to save memory."""
         unpacked = (one for data in self.packed for one in pickle.loads(zlib.decompress(data)))  # packed here
         for end, seen in (*unpacked, *self.held):
             self.own[end.test] = end
@@ -200,7 +200,7 @@ class _ForkRound:
 
     @property
     def seconds(self) -> float:
-        """What its own tests and its forks take at most, by those of the baseline."""
+        """The longest time (s) that its tests and forks should take, by the baseline."""
         own = self._baseline.seconds(self._round, self._tests)
         return own * (1 + len(self._open)) + _FORK * len(self._open)
 
@@ -211,18 +211,18 @@ class _ForkRound:
 
     @property
     def seconds_awaited(self) -> float:
-        """Seconds that this takes, by the baseline's times."""
+        """The time (s) until no ended fork waits any more, by the baseline."""
         last = max(self._awaited(), default=-1)
         return self._baseline.seconds(self._round, self._tests[len(self._own_ends) : last + 1])
 
     def _awaited(self) -> list[int]:
-        """Numbers of the tests that ended forks wait for, and of the last one if a control has not ended."""
+        """Return the numbers of the tests that ended forks wait for; the last test's if a control runs."""
         awaited = [number for number, mutants in self._waiting.items() if mutants & self._open.keys()]
         is_controlled = any(one.family == CONTROL for one in self.mutants)
         return [*awaited, len(self._tests) - 1] if is_controlled else awaited
 
     def parts(self, places: float) -> list[_ForkRound]:
-        """Fork parents with a part of the mutants each. What equal tests reach is together."""
+        """Split into fork parents with a part of the mutants each; what equal tests reach stays together."""
         worth = max(_FEWEST * places, len(self._open) / _WORTH)
         count = min(math.ceil(min(_PARTS * places, worth)), len(self._open) // _LEAST)
         if count < 2:
@@ -235,7 +235,7 @@ class _ForkRound:
         return found
 
     def task(self, key: int, text: Instrumentation | None) -> Task:
-        """The task that runs the fork parent."""
+        """Return the task that runs the fork parent."""
         campaign, baseline, mutants = self._campaign, self._baseline, self.mutants
         limits = campaign.limits(self._round, self._tests)
         forking = Forking(
@@ -262,7 +262,7 @@ class _ForkRound:
         )
 
     def _keys(self, mutant: Mutant) -> tuple[Key, ...]:
-        """Where a mutant is forked.
+        """Return the keys at which a mutant is forked.
 
         In a test with processes below it that is its start: the mutant may be hit in them.
         """
@@ -275,7 +275,7 @@ class _ForkRound:
         return (*(key for key in keys if key != Activation.EACH_TEST), *tests)
 
     def take(self, event: events.Event) -> Iterator[Outcome]:
-        """Sort in an event. Yields the outcomes that it settles.
+        """Process an event. Yield the outcomes that it settles.
 
         What goes wrong with it is an error of its mutant, or leaves its test to replay.
         """
@@ -331,7 +331,7 @@ class _ForkRound:
         self._left.runs += [(self._open.pop(mutant).mutant, self._round) for mutant in mutants]
 
     def finish(self, result: Result) -> Iterator[Outcome]:
-        """The process is gone: settle what can be settled, and leave the rest to replay."""
+        """Settle what can be settled after the process has ended, and leave the rest to replay."""
         if result.end is None:
             self._left.notes.append(f"the fork parent of round {self._round + 1} died: {result.death()}")
         is_whole = len(self._own_ends) == len(self._tests) and not self._is_off
@@ -356,7 +356,7 @@ class _ForkRound:
         yield from self._settle(event.mutant)
 
     def _test_ended(self, end: events.TestEnd) -> Iterator[Outcome]:
-        """The parent has run a test: the second opinion on the original."""
+        """Compare a test that the parent has run with the baseline, and settle the outcomes that await it."""
         undiverged = self._undiverged.pop(end.test, {})
         if end.lasting != self._baseline.ends[self._round, end.test].lasting:
             self._is_off = True

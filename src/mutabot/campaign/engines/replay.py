@@ -30,7 +30,7 @@ def replay(campaign: Campaign, runs: Iterable[MutantRun]) -> Iterator[Outcome]:
 
 
 def run_alone(campaign: Campaign, hindered: Sequence[tuple[Mutant, Outcome]]) -> Iterator[Outcome]:
-    """Re-run hindered runs with no other task in parallel. These outcomes are final."""
+    """Re-run, with no other task in parallel, the runs that other load delayed. These outcomes are final."""
     if not hindered:
         return
     first = {(one.mutant, one.round): one for _, one in hindered}

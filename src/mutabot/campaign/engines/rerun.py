@@ -1,4 +1,4 @@
-"""Run outcomes once more in fresh processes, and write down what differs.
+"""Re-run outcomes in fresh processes, and record which of them change.
 
 ``--verify N`` runs outcomes chosen at random and compares how they end. Of a campaign over a simulation they
 run over the real middleware, a few of them in any case: what comes out otherwise there, twice, is believed
@@ -46,7 +46,7 @@ RACES = 3
 
 @dataclass(slots=True)
 class Doubts:
-    """What is in doubt in a campaign.
+    """The outcomes of a campaign that are in doubt.
 
     Attributes:
         baseline: what is known about the tests.
@@ -65,17 +65,17 @@ class Doubts:
         self.unreliable = {*self.baseline.doubted, *(test for _, test in self.baseline.inexact), *flaky}
 
     def kills(self) -> list[RunId]:
-        """All kills by a test that ended."""
+        """Return all kills by a test that ended."""
         return [key for key, one in self.outcomes.items() if one.verdict is Verdict.KILLED and one.test]
 
     def in_doubt(self) -> list[RunId]:
-        """The kills that may be chance and were not repeated by an earlier campaign."""
+        """Return the kills that may be chance and were not repeated by an earlier campaign."""
         few = self.isolated_kills()
         kills = (key for key in self.kills() if not self.outcomes[key].repeats)
         return [key for key in kills if self._test(key) in self.unreliable or key in few]
 
     def raced(self) -> list[RunId]:
-        """Outcomes of racy operators that no earlier campaign has repeated."""
+        """Return outcomes of racy operators that no earlier campaign has repeated."""
         return [
             key
             for key, one in self.outcomes.items()
@@ -84,7 +84,7 @@ class Doubts:
         ]
 
     def is_certain(self, key: RunId) -> bool:
-        """Whether a kill was repeated before, or is one by a test that is taken to be deterministic."""
+        """Return whether a kill was repeated before, or its test is taken to be deterministic."""
         test = self._test(key)
         is_deterministic = test not in self.unreliable and self._has_clock(test, key[1])
         return bool(self.outcomes[key].repeats) or is_deterministic
@@ -108,14 +108,14 @@ class Doubts:
         return {key for keys in few if len(keys) <= most[self._test(keys[0])] for key in keys}
 
     def _ran(self, key: RunId) -> tuple[str, ...]:
-        """The tests of the suite that a mutant ran."""
+        """Return the tests of the suite that a mutant ran."""
         outcome, suite = self.outcomes[key], self.baseline.suite(key[1])
         if outcome.test in suite and not outcome.complete:
             return suite[: suite.index(outcome.test) + 1]
         return suite if outcome.tests else ()
 
     def cost(self, key: RunId) -> float:
-        """Seconds that a repeat takes on the original."""
+        """Return the time (s) that a repeat takes on the original."""
         return self.baseline.startup + self.baseline.seconds(key[1], self._ran(key))
 
     def _test(self, key: RunId) -> str:
@@ -127,7 +127,7 @@ class Doubts:
 
 
 def rerun(campaign: Campaign, mutants: Sequence[Mutant], writer: OutcomeWriter, spent: float) -> None:
-    """Verify and repeat, and write down what came of it, flaky tests included.
+    """Verify and repeat outcomes, and record the results, flaky tests included.
 
     ``spent``: seconds that the campaign has taken until now.
     """
@@ -192,12 +192,12 @@ class _Reruns:
         self.campaign.progress.note(f"verify: {result.agreed} of {result.checked} outcomes agree{where}")
 
     def _differs(self, key: RunId) -> bool:
-        """Whether an outcome came out otherwise; tests and messages of a simulation may be others."""
+        """Return whether an outcome changed; over a simulation, tests and messages may differ."""
         first, second = self.doubts.outcomes[key], self.found[key]
         return self._is_changed(key) if self.campaign.real is not None else not same_end(first, second)
 
     def _believe(self, real: Campaign, keys: Sequence[RunId]) -> list[RunId]:
-        """Run these over the real middleware again: what comes out so twice counts, else it is unstable.
+        """Re-run over the real middleware; an outcome that comes out so twice counts, any other is unstable.
 
         Returns the first ones.
         """
@@ -233,14 +233,14 @@ class _Reruns:
             self.campaign.progress.note(f"re-runs: {again} {kinds} confirmed{left}")
 
     def _due(self, raced: Collection[RunId], changed: Collection[RunId]) -> list[RunId]:
-        """What is to be repeated next."""
+        """Return the outcomes to repeat next."""
         found = dict.fromkeys([*self.doubts.in_doubt(), *raced])
         times = {key: RACES if key in raced else 1 for key in found}
         done = self.settled.union(changed)
         return [key for key in found if key not in done and self.times[key] < times[key]]
 
     def summary(self) -> records.Repeats:
-        """How many outcomes of each kind were repeated, and how many of these changed."""
+        """Return how many outcomes of each kind were repeated, and how many of these changed."""
         kills = self.doubts.kills()
         certain = {key for key in kills if key not in self.found and self.doubts.is_certain(key)}
         doubted = set(self.doubts.in_doubt()) - certain
@@ -258,7 +258,7 @@ class _Reruns:
     def _run(
         self, keys: Sequence[RunId], until: float | None = None, over: Campaign | None = None
     ) -> list[RunId]:
-        """Run these in fresh processes, cheapest first. Returns those that were run.
+        """Re-run these in fresh processes, cheapest first. Return those that were run.
 
         None begins after ``until`` (``Request.clock``), and but for the first of all none that would end
         after it with those before it. ``over``: another campaign than this one.
@@ -287,7 +287,7 @@ class _Reruns:
         return self.found[key].verdict is not self.doubts.outcomes[key].verdict
 
     def _settle(self, key: RunId) -> bool:
-        """Write into the journal what a repeat says. Returns whether it came out otherwise."""
+        """Write the result of a repeat into the journal. Return whether the outcome changed."""
         first = self.doubts.outcomes[key]
         if self._is_changed(key):
             self.writer.add_outcome(unconfirmed(first, self.found[key]))
@@ -298,7 +298,7 @@ class _Reruns:
 
 
 def choose(outcomes: Iterable[Outcome], count: int, seed: int) -> list[RunId]:
-    """So many mutants and rounds at random, always the same for equal seeds and outcomes.
+    """Return this many mutants and rounds at random, the same for equal seeds and outcomes.
 
     Outcomes for which no test was run are left out: there is nothing to run again.
     """
@@ -307,7 +307,7 @@ def choose(outcomes: Iterable[Outcome], count: int, seed: int) -> list[RunId]:
 
 
 def unconfirmed(first: Outcome, second: Outcome) -> Outcome:
-    """The outcome of a mutant that ended otherwise when it was run again."""
+    """Return the outcome of a mutant whose re-run ended differently: unstable."""
     text = f"{in_words(first)}; run once more: {in_words(second)}"
     return replace(
         first, verdict=Verdict.UNSTABLE, by=None, test=second.test or first.test, message=text,
@@ -323,7 +323,7 @@ def _disagreement(mutant: Mutant, first: Outcome, second: Outcome) -> records.Di
 
 
 def flaky_of(baseline: Baseline) -> records.Flaky:
-    """The tests that are known to be flaky now: the fork parents give the second opinion."""
+    """Return the tests that are known to be flaky now, also by the runs of fork parents."""
     lines = [f"{test} in round {round + 1}: {why}" for (round, test), why in baseline.unstable.items()]
     known = sum(len(baseline.ran(round)) for round in range(len(baseline.tests)))
     return records.Flaky(tuple(lines), known + len(lines))

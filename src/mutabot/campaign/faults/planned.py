@@ -1,4 +1,4 @@
-"""What users ask of the mutants of any provider: moments, demanded magnitudes, and ladders behind all others.
+"""Apply the settings of any provider's mutants: moments, demanded magnitudes, and ladders last.
 
 An operator declares what of it applies: ``Rule.has_moments``, ``Rule.has_sizes``.
 """
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def planned_by(provider: FaultProvider, project: Project, original: Original) -> Planned:
-    """What a provider plans, at the moments and magnitudes that are asked for.
+    """Return what a provider plans, at the moments and magnitudes that are asked for.
 
     Mutants with sizes come behind all others, whose numbers are the same with and without them.
     """
@@ -41,7 +41,7 @@ def planned_by(provider: FaultProvider, project: Project, original: Original) ->
 def _at_moments(
     planted: Sequence[PlannedMutant], original: Original, project: Project, rules: Mapping[str, Rule]
 ) -> list[PlannedMutant]:
-    """Each mutant whose operator has moments at each of those that are asked for; None is every call."""
+    """Return the mutants; each whose operator has moments stands once for each moment asked for."""
     found = []
     for one in planted:
         rule = rules.get(one.mutant.operator)
@@ -81,7 +81,7 @@ def _why_not(mutant: Mutant, rule: Rule, project: Project, original: Original) -
 
 
 def _calls_at(mutant: Mutant, original: Original) -> Counter[tuple[int, str]]:
-    """How many calls the site has in each test of each round."""
+    """Return how many calls the site has in each test of each round."""
     return Counter(hit.where for hit in original.hits.get(Place.of(mutant), ()))
 
 
@@ -115,7 +115,7 @@ def _with_demanded(
 
 
 def _ladders_last(planted: Sequence[PlannedMutant]) -> list[PlannedMutant]:
-    """Number the mutants so that graded ones come last, ladder by ladder."""
+    """Renumber the mutants so that graded ones come last, ladder by ladder."""
     _, ladders = split_ladders(one.mutant for one in planted if one.reason is None)
     steps = [mutant.id for mutants in ladders.values() for mutant in mutants]
     order = {mutant: (1, number) for number, mutant in enumerate(steps)}

@@ -1,4 +1,4 @@
-"""All providers of faults, those of the core and of packages; and what the core's own plant in calls.
+"""The providers of faults: those of the core, which act on calls and messages, and those of packages.
 
 Operators at places make mutants; what cannot matter is left out, with the reason.
 """
@@ -53,7 +53,7 @@ NO_SIGN = (
 
 
 def _has_negative(original: Original, place: Place, subject: Subject) -> bool:
-    """Whether any call of the same command has a negative value of the subject's quantity."""
+    """Return whether any call of the same command has a negative value of the subject's quantity."""
     command = place.operation, place.pattern
     same = (hits for other, hits in original.hits.items() if (other.operation, other.pattern) == command)
     values = (_value(subject, hit) for hits in same for hit in hits)
@@ -80,11 +80,11 @@ class CallFaults(FaultProvider):
     numbered_with = CALLS
 
     def rules(self) -> Sequence[Operator]:
-        """All operators on calls but those of messages, also those that packages bring."""
+        """Return all operators on calls but those of messages, also those that packages bring."""
         return [rule for rule in load_all() if rule.family != MIDDLEWARE]
 
     def plan(self, project: Project, original: Original) -> Planned:
-        """The mutants of its operators at all places that the tests reach."""
+        """Return the mutants of its operators at all places that the tests reach."""
         operators = [rule for rule in self.rules() if project.asks_for(rule)]
         found = list(_at_places(original, project.vocabulary, operators, self.name))
         found += _not_covered(original, project.vocabulary, operators, self.name)
@@ -95,25 +95,25 @@ class CallFaults(FaultProvider):
         return operator_named(operator).draws
 
     def is_raced(self, operator: str) -> bool:
-        """Whether equal runs with a fault of this operator may end differently."""
+        """Return whether equal runs with a fault of this operator may end differently."""
         return operator_named(operator).is_raced
 
 
 class MessageFaults(CallFaults):
-    """Operators on what goes over a middleware, as messages, requests and settings do."""
+    """Operators on messages, requests and settings that go over a middleware."""
 
     name = MESSAGES
     families = (MIDDLEWARE,)
 
     def rules(self) -> Sequence[Operator]:
-        """The operators on messages."""
+        """Return the operators on messages."""
         return [rule for rule in load_all() if rule.family == MIDDLEWARE]
 
 
 def _at_places(
     original: Original, vocabulary: Vocabulary, operators: Sequence[Operator], provider: str
 ) -> Iterator[PlannedMutant]:
-    """All mutants of these operators at all places that the tests reach, and those that are left out."""
+    """Yield the mutants of these operators at all places that the tests reach, left-out ones included."""
     taken: set[str] = set()
     operations_at = Counter(site for site, _ in {(place.site, place.operation) for place in original.hits})
     ranks = {rule.name: rank for rank, rule in enumerate(load_all())}
@@ -150,7 +150,7 @@ def _at_places(
 def _not_covered(
     original: Original, vocabulary: Vocabulary, operators: Sequence[Operator], provider: str
 ) -> list[PlannedMutant]:
-    """The mutants of these operators at calls that no test reaches: all that the vocabulary allows.
+    """Return the mutants of these operators at calls that no test reaches: all that the vocabulary allows.
 
     What only values could rule out stays: a test that reaches the call must not lower a score.
     """
@@ -171,7 +171,7 @@ def _not_covered(
 
 
 def _answers(original: Original, place: Place, *, of_any: bool) -> RecordedAnswers:
-    """What calls of a place returned; where all of them raised, what the same command returned elsewhere.
+    """Return what calls of a place returned; if all of them raised, what the same command returned elsewhere.
 
     That is taken for what it answers here if it returned nothing wherever it returned; or, with ``of_any``,
     whatever it was.
@@ -233,7 +233,7 @@ def _mutant(rule: Operator, subject: Subject, place: Place, provider: str) -> Mu
 
 
 def _distinct(mutant: Mutant, taken: set[str]) -> Mutant:
-    """Two operations at one site (the object decides) may have quantities of the same name.
+    """Return the mutant with an unused id: operations at one site may have quantities of the same name.
 
     So may one operation whose site nodes of the program share with those of the oracle.
     """
@@ -248,7 +248,7 @@ _Foreseen = tuple[Any, Any]
 
 
 def _foresee(rule: Operator, subject: Subject, hits: list[Hit]) -> tuple[_Foreseen, str | None]:
-    """What the mutant would do to the recorded calls, and why it is left out, if it is."""
+    """Return what the mutant would do to the recorded calls, and why it is left out, if it is."""
     least, most = rule.least_calls(subject), max(Counter(hit.where for hit in hits).values(), default=0)
     if most < least:
         return (None, None), f"takes {least} calls in a test, and no test makes more than {most}"
@@ -279,7 +279,7 @@ def _foresee(rule: Operator, subject: Subject, hits: list[Hit]) -> tuple[_Forese
 def _why_unmet(
     need: Need, subject: Subject, place: Place, original: Original, vocabulary: Vocabulary
 ) -> str | None:
-    """Why a need of an operator is not met; None if it is."""
+    """Return why a need of an operator is not met; None if it is."""
     match need:
         case Need.ERROR if not _has_raised(original, place):
             return "no call raises in the baseline"
@@ -366,7 +366,7 @@ def _calls(hits: int) -> str:
 def _description(
     rule: Operator, subject: Subject, place: Place, seen: _Foreseen | None, *, is_shared: bool
 ) -> str:
-    """What the mutant does, in one line.
+    """Return what the mutant does, in one line.
 
     Args:
         seen: None for a call that no test reaches.
@@ -387,7 +387,7 @@ def _description(
 
 
 def _names(text: str, qualname: str, *, is_shared: bool) -> bool:
-    """Whether the text of a call says which operation it is: a variable, a table or a wrapper may not."""
+    """Return whether the text of a call shows the operation, as a call by variable or wrapper may not."""
     name = qualname if is_shared else qualname.rpartition(".")[2]
     before = r"(?<![\w.])" if is_shared else r"\b"
     return re.search(f"{before}{re.escape(name)}$", text) is not None
@@ -397,7 +397,7 @@ _OWN: tuple[FaultProvider, ...] = (CallFaults(), MessageFaults())
 
 
 def all_providers() -> tuple[FaultProvider, ...]:
-    """Every provider, in the order of their mutants' numbers."""
+    """Return every provider, in the order of their mutants' numbers."""
     return (*_OWN, *brought_providers())
 
 
@@ -409,7 +409,7 @@ def asked_for(project: Project) -> list[FaultProvider]:
 
 
 def texts_of(project: Project, tell: Callable[[str], None]) -> dict[str, tuple[ProgramText, ...]]:
-    """The program text that the baseline is to look at, by the names of the providers that ask for it."""
+    """Return the program text that the baseline has to instrument, by the names of its providers."""
     found: dict[str, tuple[ProgramText, ...]] = {}
     first = 1
     for provider in asked_for(project):
@@ -421,7 +421,7 @@ def texts_of(project: Project, tell: Callable[[str], None]) -> dict[str, tuple[P
 
 
 def provider(name: str) -> FaultProvider:
-    """The provider of this name. Raises ExtensionError if there is none."""
+    """Return the provider of this name. Raises ExtensionError if there is none."""
     own = {one.name: one for one in _OWN}
     known = own if name in own else {one.name: one for one in all_providers()}
     if name in known:
@@ -438,12 +438,12 @@ def family_of(mutant: str) -> str:
 
 
 def rules_of(families: Collection[str]) -> list[Rule]:
-    """The operators of the providers of these families; of other packages nothing is loaded."""
+    """Return the operators of the providers of these families; of other packages nothing is loaded."""
     known = _OWN if set(families) <= set(OF_CALLS) else all_providers()
     wanted = (one for one in known if one in _OWN or not set(one.families).isdisjoint(families))
     return [rule for one in wanted for rule in one.rules()]
 
 
 def operators_of_packages() -> dict[str, str]:
-    """The operators of the packages' providers, with their families. To look at these may take its time."""
+    """Return the operators of the packages' providers, with their families. Slow: it loads the packages."""
     return {rule.name: rule.family for one in brought_providers() for rule in one.rules()}

@@ -1,1 +1,1 @@
-"""Which outcomes of earlier campaigns still hold: what they depend on, by content."""
+"""Reuse of outcomes of earlier campaigns, by the content of what they depend on."""

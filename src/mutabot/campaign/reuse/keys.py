@@ -1,4 +1,4 @@
-"""What an outcome depends on, by content: without a change it need not be run again.
+"""The dependencies of an outcome, by content: without a change it need not be run again.
 
 An outcome has a *key* of five digests: of what all outcomes share (settings, versions, files that are no
 program text), of what those at its place share (tests, entries of the vocabulary), of the mutant's own, of
@@ -71,12 +71,12 @@ class SourceTree:
 
     @cached_property
     def said(self) -> dict[str, Mapping[str, str] | None]:
-        """What each unit of each file says."""
+        """The content of each unit of each file."""
         files = {name: self.file(name) for name in self.digests}
         return {name: file.said if file is not None else None for name, file in files.items()}
 
     def moved(self, text: str, new: SourceTree) -> str | None:
-        """Return a text with the places that it names moved to a new tree; None if one no longer exists."""
+        """Return a text with the lines that it names as in a new tree; None if one no longer exists."""
         gone = False
 
         def place(match: re.Match[str]) -> str:
@@ -106,7 +106,7 @@ _moves = lru_cache(8)(File.moves_to)
 
 @frozen
 class Was:
-    """What an outcome depended on when it was found, or at a revision.
+    """The dependencies of an outcome when it was found, or at a revision.
 
     Attributes:
         common, place, own: as in its key.
@@ -131,7 +131,7 @@ def _digest(data: Any) -> str:
 
 
 class Dependencies:
-    """What the outcomes of a campaign depend on.
+    """The dependencies of the outcomes of a campaign.
 
     Args:
         request, baseline: the campaign.
@@ -183,7 +183,7 @@ class Dependencies:
         }
 
     def _around(self) -> Iterator[tuple[str, str]]:
-        """Yield which Python files exist, as a new one may shadow another; new tests shadow nothing."""
+        """Yield the Python files that exist: a new one may shadow another, a new test cannot."""
         for name in self.tree.digests:
             if not is_test_file(name):
                 yield name, "there"
@@ -198,7 +198,7 @@ class Dependencies:
         parts: Callable[[str], Parts | None],
         tree: Callable[[str], SourceTree],
     ) -> Was:
-        """What an outcome with this key depended on.
+        """Return what an outcome with this key depended on.
 
         Args:
             parts: what a digest stands for.
@@ -220,11 +220,11 @@ class Dependencies:
 
     @property
     def everything(self) -> Parts:
-        """All that any outcome depends on, but for what a mutant does."""
+        """Everything that any outcome depends on, except what a mutant does."""
         return everything_of(self.request, self.files, self.installed)
 
     def key_of(self, outcome: Outcome, mutant: Mutant, executed: str) -> str:
-        """The key of an outcome that is found now; ``executed`` is what ``stored`` made of its units."""
+        """Return the key of a new outcome; ``executed`` is the digest of its units, from ``stored``."""
         noticed = {outcome.test, *(kill.test for kill in outcome.kills)}
         is_noticed = outcome.verdict.is_killed or outcome.test is not None
         whole = is_noticed and not noticed.issubset(self._baseline.tests_reaching(outcome.round, mutant))
@@ -234,7 +234,7 @@ class Dependencies:
         return " ".join(words)
 
     def stored(self, executed: Executed | None) -> str:
-        """The digest that stands for executed units, and for the notes that were read."""
+        """Store executed units, and the files that were read, and return their digest."""
         if executed is None:
             return self._stored({ALL_FILES: "0"})
         found = {
@@ -252,7 +252,7 @@ class Dependencies:
         return found[: found.index(until) + 1] if until in found else found
 
     def place(self, mutant: Mutant, round: int, whole: bool, until: str) -> Parts:
-        """What outcomes at the place of a mutant share."""
+        """Return the dependencies that all outcomes at the place of a mutant share."""
         aside = self._baseline.missing_judges(round, mutant) if self._baseline.unstable else ()
         names = (mutant.operation,) if mutant.operation else tuple(self._operations)
         entries = {k: v for name in names for k, v in self._operations.get(name, {}).items()}
@@ -265,13 +265,13 @@ class Dependencies:
         }
 
     def own(self, mutant: Mutant, round: int) -> str:
-        """What a mutant does, beyond what its id says."""
+        """Return what a mutant does, beyond what its id says."""
         planted = self._baseline.faults.by_id.get(mutant.id)
         does = planted.does if planted is not None else None
         return _digest([mutant.provider, Idle.of(mutant.idle).in_round(round), mutant.pattern, does])
 
     def why(self, was: Was, mutant: Mutant, round: int, *, is_known: bool = True) -> list[str]:
-        """Why an outcome that depended on this may come out otherwise now; empty if it cannot.
+        """Return why an outcome with these dependencies may differ now; empty if it cannot.
 
         ``is_known``: whether anything is known of the mutant now; not if its family is not asked for.
         """
@@ -305,7 +305,7 @@ class Dependencies:
         return _SUITE in place, place.get(_UNTIL, "")
 
     def executed_by(self, mutant: Mutant, round: int) -> Executed | None:
-        """What tests execute of the original that reach a mutant, and what no test does: a mutant might."""
+        """Return the units executed by tests that reach a mutant, and those that no test executes."""
         executed = self._baseline.executed[round]
         if round not in self._idle:
             everywhere = executed.by(self._baseline.suite(round)) or {}
@@ -319,7 +319,7 @@ class Dependencies:
         return together([executed.by(tests), self._idle[round]])
 
     def _once(self, made: Callable[[], list[str]], *of: object) -> list[str]:
-        """Return what is made of these objects, made once; they are kept, so that their ids stay unique."""
+        """Return the texts of these objects, made once; the objects are kept, so their ids stay unique."""
         key = tuple(map(id, of))
         if key not in self._made:
             self._made[key] = of, made()
@@ -343,7 +343,7 @@ class Dependencies:
     def _executed_now(
         self, before: Mapping[str, set[str] | None], tests: Iterable[str], round: int
     ) -> list[str]:
-        """Units that tests execute now and did not before: they may hide what was executed."""
+        """Describe units that tests execute now and did not before: they may shadow what was executed."""
         executed = self._baseline.executed[round].by(tests)
         if executed is None or ALL_FILES in executed:
             return ["its tests start processes now"]
@@ -360,7 +360,7 @@ class Dependencies:
         return found
 
     def _names_of_all(self, tree: SourceTree, tests: Iterable[str]) -> dict[str, set[str] | None]:
-        """All units that there were or are, bar those of other tests."""
+        """Return all units of both trees, except those of other tests."""
         own = {(self.file_of(test), _function_of(test)) for test in tests}
 
         def counts(name: str, unit: str) -> bool:
@@ -380,14 +380,14 @@ class Dependencies:
         return now is None or name not in now.said or (then is not None and name in then.said)
 
     def file_of(self, test: str) -> str:
-        """The test's file relative to the project's root; pytest's root may be a folder above."""
+        """Return the test's file relative to the project's root; pytest's root may be a folder above."""
         name = test.partition("::")[0]
         while name not in self.files and "/" in name:
             name = name.partition("/")[2]
         return name
 
     def new_parts(self) -> Mapping[str, Parts]:
-        """The parts that have come since this was last asked."""
+        """Return the parts that are new since the last call."""
         new = dict(islice(self.parts.items(), self._told, None))
         self._told = len(self.parts)
         return new
@@ -446,7 +446,7 @@ class OutcomeWriter:
 
 
 def _function_of(test: str) -> str:
-    """The qualified name of a test's function."""
+    """Return the qualified name of a test's function."""
     return ".".join(part.partition("[")[0] for part in test.split("::")[1:])
 
 
@@ -458,7 +458,7 @@ def _lines(text: str) -> tuple[int, ...]:
 
 
 def _names(was: Was) -> dict[str, set[str] | None]:
-    """The names of the units that were executed; None for a file of which all counts."""
+    """Return the names of the executed units by file; None for a file that counts as a whole."""
     files = {name: (was.found_in.file(name), lines) for name, lines in (was.executed or {}).items()}
     return {name: None if file is None else file.names_at(lines) for name, (file, lines) in files.items()}
 
@@ -485,7 +485,7 @@ def _differing(names: Mapping[str, set[str] | None], old: SourceTree, new: Sourc
 
 
 def changes(old: Parts, new: Parts) -> list[str]:
-    """Return texts that name what differs, files of the project first."""
+    """Describe the parts that differ, files of the project first."""
     found = []
     for name in {*old, *new}:
         before, now = old.get(name), new.get(name)
@@ -497,7 +497,7 @@ def changes(old: Parts, new: Parts) -> list[str]:
 
 
 def everything_of(request: Request, files: Parts, installed: Parts) -> Parts:
-    """Everything that runs of the tests depend on, for any mutant.
+    """Return everything that runs of the tests depend on, for any mutant.
 
     Args:
         files: the files that count, with their digests.
@@ -512,7 +512,7 @@ def everything_of(request: Request, files: Parts, installed: Parts) -> Parts:
 def _around_files(
     request: Request, files: Parts, installed: Parts, read: Callable[[Path], bytes | None]
 ) -> dict[str, str]:
-    """What all outcomes depend on beside what is in the project's files."""
+    """Return what all outcomes depend on besides the content of the project's files."""
     return {
         **_pytest_parts(request, read),
         **_settings(request),
@@ -536,7 +536,7 @@ def _settings(request: Request) -> dict[str, str]:
 
 
 def role_of(file: str, request: Request) -> str:
-    """Whose calls stand in a file: ``program``, ``oracle``, or empty."""
+    """Return the role of the calls in a file: ``program``, ``oracle``, or empty."""
     configuration = request.configuration
     for role, sources in (("program", configuration.program), ("oracle", configuration.oracle)):
         if any(source in (".", file) or file.startswith(f"{source}/") for source in sources):
@@ -545,7 +545,7 @@ def role_of(file: str, request: Request) -> str:
 
 
 def _pytest_parts(request: Request, read: Callable[[Path], bytes | None]) -> dict[str, str]:
-    """Pytest's arguments, and configuration that it finds in folders above the project."""
+    """Return pytest's arguments, and its configuration files in folders above the project."""
     parts = {"pytest's arguments": " ".join(request.arguments)}
     for depth, folder in enumerate((request.root, *request.root.parents)):
         for name in _CONFIGURATIONS:
@@ -561,7 +561,7 @@ def _pytest_parts(request: Request, read: Callable[[Path], bytes | None]) -> dic
 
 
 def tool_table(text: bytes | None, tool: str) -> Any:
-    """The table of a tool in a ``pyproject.toml``; None if there is none."""
+    """Return the table of a tool in a ``pyproject.toml``; None if there is none."""
     try:
         data = tomllib.loads((text or b"").decode("utf-8"))
     except ValueError:
@@ -578,7 +578,7 @@ def _vocabulary_parts(vocabulary: Vocabulary) -> dict[str, str]:
 
 
 def _operation_parts(vocabulary: Vocabulary, target: str) -> dict[str, str]:
-    """The entry of an operation, and those of the operations that its mutants need."""
+    """Return the entry of an operation, and those of the operations that its mutants need."""
     found: dict[str, str] = {}
     waiting = [target]
     while waiting:
@@ -591,7 +591,7 @@ def _operation_parts(vocabulary: Vocabulary, target: str) -> dict[str, str]:
 
 
 def _meaning(value: Any) -> Any:
-    """What an entry says, without the line it stands in."""
+    """Return the content of an entry, without its line number."""
     data = to_data(value)
     if isinstance(data, dict):
         return {key: _meaning(item) for key, item in data.items() if key != "source"}

@@ -1,4 +1,4 @@
-"""Runs of the original that an earlier campaign made: those that still hold are not made again.
+"""Reuse of an earlier campaign's runs of the original.
 
 A run is kept as the events that its process told, so a baseline is taken from it as from a process. It
 depends on its job and on all that any outcome depends on. As every mutant is compared with it, it also
@@ -43,7 +43,7 @@ _QUICKLY, _AT_ONCE = 1, 1 << 20
 
 
 class OriginalRuns:
-    """The runs with which a campaign begins; use as a context manager around the baseline.
+    """The kept runs of the original; a context manager around the baseline.
 
     Args:
         request: the campaign.
@@ -85,7 +85,7 @@ class OriginalRuns:
         self.after = Snapshot.take(self._request.root, self.before)
 
     def runs_by(self, executor: Executor, request: Request) -> Runs:
-        """Return what runs the original: kept runs where they are asked for again, else this executor.
+        """Return a source of runs of the original: kept runs where possible, otherwise this executor.
 
         What is installed elsewhere is not known here: what other machines ran is not kept.
 
@@ -95,7 +95,7 @@ class OriginalRuns:
         return _KeptRuns(self, executor, request) if request.executor is None else executor
 
     def keep(self, write: Callable[[KeptBaseline], object]) -> None:
-        """Leave to later campaigns what there is new.
+        """Keep the new runs for later campaigns.
 
         That is nothing if files of the project changed meanwhile: nobody knows which of them tests have seen.
         """
@@ -107,7 +107,7 @@ class OriginalRuns:
         write(KeptBaseline(depends, taken, opened, (*self._reused, *self._made)))
 
     def held(self, name: str, task: Task) -> tuple[list[Event], Result] | None:
-        """Return the events and the result of a kept run; None if there is none that can be read."""
+        """Return the events and the result of a kept run; None if none can be read."""
         runs = self._held.get(name)
         if not runs:
             return None
@@ -126,7 +126,7 @@ class OriginalRuns:
         return told, result
 
     def made(self, run: OriginalRun) -> None:
-        """A run has ended in an orderly way."""
+        """Add a run that has ended in an orderly way."""
         self._made.append(run)
 
     def _is_as_now(self, kept: KeptBaseline) -> bool:
@@ -142,7 +142,7 @@ class OriginalRuns:
 
 @dataclass(frozen=True, slots=True)
 class _KeptRuns:
-    """Kept runs, and for all else an executor."""
+    """A source of kept runs, and of an executor's runs for all other tasks."""
 
     original: OriginalRuns
     executor: Executor
@@ -177,7 +177,7 @@ class _KeptRuns:
 
 
 class _Note:
-    """Keeps the events of a run."""
+    """A recorder of the events of a run."""
 
     def __init__(self, name: str) -> None:
         self._name, self._number = name, 0
@@ -218,6 +218,6 @@ def _read(run: OriginalRun) -> list[Event]:
 
 
 def _environment() -> str:
-    """All environment variables that tests can see, as a digest."""
+    """Return all environment variables that tests can see, as a digest."""
     found = {name: text for name, text in usual_environment().items() if name not in _OF_SHELLS}
     return _digest(found | {_UNORDERED: sorted(found.get(_UNORDERED, "").split(os.pathsep))})

@@ -1,4 +1,4 @@
-"""What the code of packages holds that takes part in a run, beside the project's own.
+"""The content of installed packages whose code takes part in a run.
 
 A version tells what an installed package holds, unless somebody works on it: one that is installed editable,
 or brings parts of mutabot, counts by the content of its files, of whatever kind they are.
@@ -24,7 +24,7 @@ _OF_INSTALLERS = (".dist-info", ".egg-info", "__pycache__")
 
 
 def code_of_packages(root: Path) -> dict[str, tuple[tuple[str, str], ...]]:
-    """The files of each such package with the digests of what they hold, without those of the project."""
+    """Return the files of each package that counts by content, with digests, except the project's own."""
     found: dict[str, tuple[tuple[str, str], ...]] = {}
     for distribution in distributions():
         name = (distribution.metadata["Name"] or "").lower()
@@ -38,7 +38,7 @@ def code_of_packages(root: Path) -> dict[str, tuple[tuple[str, str], ...]]:
 
 
 def _places(distribution: Distribution, name: str) -> Iterator[Path]:
-    """Files and folders that hold the code of a distribution which counts by content."""
+    """Yield the files and folders of a distribution whose code counts by content."""
     editable = _editable(distribution)
     if editable is not None:
         yield editable
@@ -54,7 +54,7 @@ def _places(distribution: Distribution, name: str) -> Iterator[Path]:
 
 
 def _of_module(name: str) -> Iterator[Path]:
-    """Where a package lies, or a module with what is beside it."""
+    """Yield the folder of a package, or the file of a module and the files beside it."""
     spec = find_spec(name)
     if spec is None:
         return
@@ -66,7 +66,7 @@ def _of_module(name: str) -> Iterator[Path]:
 
 
 def _editable(distribution: Distribution) -> Path | None:
-    """The folder that an editable distribution is worked on in; None for any other."""
+    """Return the folder in which an editable distribution is developed; None for any other distribution."""
     try:
         told = json.loads(distribution.read_text("direct_url.json") or "{}")
         is_editable, address = bool(told["dir_info"]["editable"]), urlsplit(told["url"])
@@ -76,7 +76,7 @@ def _editable(distribution: Distribution) -> Path | None:
 
 
 def _files(place: Path, root: Path) -> Iterable[tuple[Path, str]]:
-    """Files with their digests, without those below the project's root, which are known as its own."""
+    """Yield files with their digests, except those below the project's root, which are its own."""
     if place.is_file():
         digest = _digest_of(place)
         found = {place: digest} if digest is not None else {}

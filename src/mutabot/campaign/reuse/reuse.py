@@ -1,4 +1,4 @@
-"""Reuse: which outcomes of earlier campaigns still hold, and why the others are run again.
+"""Decide which outcomes of earlier campaigns still hold, and why the others are run again.
 
 What is taken over names lines as they are now. Since a revision, only those mutants are run that the changes
 can have altered. A revision is seen as a campaign would have seen it. Git is asked by its own program: it is
@@ -36,7 +36,7 @@ _SHOWN = 3
 
 
 class Earlier:
-    """The outcomes that a journal holds, and what they depended on.
+    """The outcomes in a journal, and their dependencies.
 
     Args:
         now: what outcomes depend on now.
@@ -52,7 +52,7 @@ class Earlier:
         self.was = cache(lambda key: now.was(key, parts, tree))
 
     def why(self, pair: RunId, mutant: Mutant, *, is_known: bool = True) -> str | None:
-        """Return why an existing outcome may be different now; None if it cannot be."""
+        """Return why an existing outcome may be different now; None if it still holds."""
         names = self._now.why(self.was(self.kept[pair].key), mutant, pair[1], is_known=is_known)
         return in_short(names) if names else None
 
@@ -68,7 +68,7 @@ class Earlier:
         return replace(row, data=data, key=self._now.renewed(row.key, was, mutant, row.round))
 
     def is_unasked(self, row: Kept, mutant: Mutant) -> bool:
-        """Whether it is a survivor that some tests do not reach, and only these could notice what changed."""
+        """Return whether only tests that do not reach this survivor could notice what changed."""
         some, all = (self._now.tests(mutant, row.round, whole=whole) for whole in (False, True))
         if row.verdict != Verdict.SURVIVED or len(some) == len(all):
             return False
@@ -81,7 +81,7 @@ GONE, _UNSOUND = "a line that they name is gone", "they ended in an error or uns
 
 @dataclass(slots=True)
 class Reused:
-    """What became of outcomes that earlier campaigns found.
+    """The outcomes of earlier campaigns: those that were reused, and why others were not.
 
     Attributes:
         done: mutants, by id, and rounds whose outcomes are taken over.
@@ -111,7 +111,7 @@ def reuse(
     progress: Progress,
     others: Sequence[JournalReader] = (),
 ) -> Reused:
-    """Take over the outcomes that still hold, and say why the others do not.
+    """Reuse the outcomes that still hold, and report why the others do not.
 
     Args:
         others: journals of other campaigns of this project, to be looked into beside its own.
@@ -135,7 +135,7 @@ def reuse(
 
 
 def _taken(found: Reused, mutant: Mutant, round: int) -> Kept | None:
-    """Take an outcome from the first source in which it holds, or note why the first one does not hold."""
+    """Reuse an outcome from the first source in which it holds; if there is none, note why."""
     pair = (mutant.id, round)
     first: str | None = None
     for earlier in found.sources:
@@ -182,7 +182,7 @@ def note_outdated(journal: Journal, request: Request, dependencies: Dependencies
 
 
 def text_of(found: Reused) -> str:
-    """Return a text with the number of reused outcomes, and why the rest was not reused."""
+    """Describe how many outcomes were reused, and why the rest was not."""
     reused = len(found.done)
     planned = len(found.done) + len(found.why) + len(found.unsound - found.why.keys()) + found.first
     if reused == planned:
@@ -199,7 +199,7 @@ def text_of(found: Reused) -> str:
 
 
 def reasons_in_words(why: Iterable[str]) -> list[str]:
-    """How many are run again, by the reason."""
+    """Describe how many mutants are run again, by reason."""
     counts = Counter(why)
     parts = [f"{count} run again: {reason}" for reason, count in counts.most_common(_SHOWN)]
     rest = sum(count for _, count in counts.most_common()[_SHOWN:])
@@ -211,7 +211,7 @@ _OPTION = "--since"
 
 @frozen
 class Revision:
-    """A revision of the repository that a project lies in.
+    """A revision of the repository that contains a project.
 
     Attributes:
         project: the project's folder.
@@ -230,7 +230,7 @@ class Revision:
 
     @classmethod
     def find(cls, project: Path, ref: str) -> Revision:
-        """Look it up. Raises UsageError, saying what to do."""
+        """Look up a revision. Raises UsageError, saying what to do."""
         project = project.resolve()
         try:
             top = Path(_text(project, "rev-parse", "--show-toplevel").removesuffix("\n"))
@@ -255,14 +255,14 @@ class Revision:
         return self._name(path) in self.changed
 
     def read(self, path: Path) -> bytes | None:
-        """What a file held then; None if it was not there. What lies outside of the repository is as now."""
+        """Return a file's content at this revision; None if there was none. Outside files are read as now."""
         name = self._name(path)
         if name not in self.changed:
             return read(path)
         return _git(self.top, "cat-file", "blob", f"{self.commit}:{name}") if self.changed[name] else None
 
     def gone(self) -> list[str]:
-        """Files of the project, relative to it, that were there and are not any more."""
+        """Return the files of the project, relative to it, that existed then and do not now."""
         folder = self.project.relative_to(self.top).as_posix()
         prefix = "" if folder == "." else f"{folder}/"
         there = (name for name, was_there in self.changed.items() if was_there and name.startswith(prefix))
@@ -295,7 +295,7 @@ def _commit(project: Path, ref: str) -> str:
 
 
 class _FailedError(UsageError):
-    """Git has failed."""
+    """Raised if git fails."""
 
 
 def _text(folder: Path, *command: str) -> str:
@@ -303,7 +303,7 @@ def _text(folder: Path, *command: str) -> str:
 
 
 def _git(folder: Path, *command: str) -> bytes:
-    """What git says. Raises UsageError if it says nothing."""
+    """Run git and return its output. Raises UsageError if it fails."""
     try:
         done = git(folder, *command)
     except GitError as error:
@@ -315,7 +315,7 @@ def _git(folder: Path, *command: str) -> bytes:
 
 
 def _then(revision: Revision, campaign: Campaign, now: Dependencies) -> Dependencies:
-    """What the same outcomes depended on at a revision, if its configuration was that of now."""
+    """Return the dependencies of the same outcomes at a revision, if its configuration was that of now."""
     root = campaign.request.root
 
     def digests_then(known: Mapping[str, str]) -> dict[str, str]:
@@ -338,7 +338,7 @@ def _then(revision: Revision, campaign: Campaign, now: Dependencies) -> Dependen
 
 
 def _other_configuration(revision: Revision, request: Request) -> str | None:
-    """A file of the configuration or vocabulary that says something else now; None if there is none."""
+    """Return a file of the configuration or vocabulary that differs from now; None if all are equal."""
     files = [request.configuration.file, *request.configuration.vocabulary]
     changed = [name for name in files if revision.is_changed(request.root / name)]
     for name in changed:
@@ -350,7 +350,7 @@ def _other_configuration(revision: Revision, request: Request) -> str | None:
 
 
 def open_others(request: Request, progress: Progress) -> list[JournalReader]:
-    """The journal that was named beside the project's own, if it can be read.
+    """Open the journal that was named beside the project's own, if it can be read.
 
     Raises UsageError if there is none and nothing else says what to run, and JournalError for one that git
     tracks.
@@ -374,7 +374,7 @@ def open_others(request: Request, progress: Progress) -> list[JournalReader]:
 def altered_since(
     revision: Revision, campaign: Campaign, now: Dependencies, found: Reused, mutants: Sequence[Mutant]
 ) -> dict[RunId, str]:
-    """Mutants and rounds that are not taken over and that the changes can have altered, and why.
+    """Return the runs whose outcomes the changes may have altered, with the reasons.
 
     Of a mutant that no journal knows, all counts that its tests execute of the original, and what no test
     does: a mutant might. Where the configuration or the vocabulary has changed, everything counts as changed.
@@ -418,7 +418,7 @@ def only_altered(
     rounds: int,
     progress: Progress,
 ) -> Plan:
-    """The plan without mutants of which nothing is known nor run.
+    """Return the plan with only mutants that the changes may have altered, or whose outcome is known.
 
     What the changes cannot have altered is not run, also where no journal holds an outcome of it: ``found``
     says so from then on.
@@ -443,7 +443,7 @@ def only_altered(
 
 
 def _tell(since: Since, short: str, progress: Progress) -> None:
-    """Print what is run and what is not, by the kind of reason."""
+    """Print which mutants are run and which are not, by the kind of reason."""
     total = sum(since.run.values())
     unjudged = sum(since.not_judged.values())
     progress.note(

@@ -1,4 +1,4 @@
-"""Which files of a project outcomes depend on, and what these hold, by content.
+"""Snapshots of the project's files that outcomes depend on, with digests of their content.
 
 All that tests could import or read, as far as anybody can tell. Of texts and logs, which people and tools
 leave everywhere, only those that something has to do with: which files are opened while the baseline runs, by
@@ -42,7 +42,7 @@ _REPORTS = {
 def counted(
     request: Request, digests: Mapping[str, str], written: Set[str], opened: Set[str] | None
 ) -> dict[str, str]:
-    """The files that all outcomes depend on, with their digests.
+    """Return the files that all outcomes depend on, with their digests.
 
     Those that the configuration itself consists of count by what they say. A note (``_NOTES``) counts if the
     baseline opened it; a mutant that opens another one says so by itself.
@@ -64,12 +64,12 @@ def counted(
 
 
 def is_note(name: str) -> bool:
-    """Whether a file is of the kind that people and tools leave everywhere."""
+    """Return whether people or tools leave files of this kind everywhere, such as notes and caches."""
     return PurePosixPath(name).suffix.lower() in _NOTES
 
 
 def own_files(request: Request) -> set[str]:
-    """The files that the configuration consists of; they count by what they say."""
+    """Return the files of the configuration, which count by their settings."""
     configuration = request.configuration
     vocabulary = (PurePosixPath(name).as_posix() for name in configuration.vocabulary)
     own = {configuration.file, "pyproject.toml", *vocabulary}
@@ -80,7 +80,7 @@ def own_files(request: Request) -> set[str]:
 
 
 def _is_report(path: Path) -> bool:
-    """Whether it is our own JSON or a report on tests, which no robot program reads."""
+    """Return whether it is mutabot's own JSON or a report on tests, which no robot program reads."""
     if path.suffix not in _REPORTS:
         return False
     try:
@@ -116,12 +116,12 @@ class Snapshot:
 
     @property
     def digests(self) -> dict[str, str]:
-        """What all files hold."""
+        """The digests of all files."""
         return {name: file.digest for name, file in self.files.items()}
 
     @classmethod
     def take(cls, root: Path, before: Snapshot | None = None) -> Snapshot:
-        """Read all files; those that the system says are untouched since ``before`` need not be read."""
+        """Read all files, except those that the file system reports untouched since ``before``."""
         known = before.files if before is not None else {}
         found = {}
         for name, path, status in _walk(root):
@@ -140,23 +140,23 @@ class Snapshot:
         return {PurePosixPath(name).parent.as_posix() for name in self.files} | {"."}
 
     def edited_since(self, before: Mapping[str, str]) -> list[str]:
-        """Files that had another digest, or are gone."""
+        """Return the files that had another digest in ``before``, or no longer exist."""
         now = self.digests
         return [name for name, was in before.items() if was not in (WRITTEN, now.get(name))]
 
     def edited_programs(self, before: Snapshot) -> list[str]:
-        """Python files of ``before`` that have another content now, or are gone."""
+        """Return the Python files of ``before`` whose content has changed, or that no longer exist."""
         programs = {name: digest for name, digest in before.digests.items() if name.endswith(".py")}
         return self.edited_since(programs)
 
     def touched_since(self, before: Snapshot) -> set[str]:
-        """Files that were written since ``before``, be it with the same content."""
+        """Return files that were written since ``before``, even with the same content."""
         known = {name: file.status for name, file in before.files.items()}
         return {name for name, file in self.files.items() if file.status != known.get(name)}
 
 
 def counts_by_name(name: str) -> bool:
-    """Whether a file of this name, relative to the root, could matter."""
+    """Return whether a file of this name, relative to the root, could matter."""
     *folders, last = PurePosixPath(name).parts
     is_inside = all(is_name_of_project(folder) for folder in folders)
     return is_inside and not (last.endswith(UNREAD) or last in _FOR_TOOLS or _FOR_PEOPLE.fullmatch(last))
@@ -181,7 +181,7 @@ def _walk(root: Path) -> Iterator[tuple[str, Path, tuple[int, ...]]]:
 
 
 def digest_of(text: bytes) -> str:
-    """What a file holds, as a digest."""
+    """Return the digest of a text."""
     return f"{_HASH}{_new_hash(text).hexdigest()}"
 
 
@@ -215,7 +215,7 @@ class State:
 
     @classmethod
     def now(cls, request: Request, before: Snapshot, after: Snapshot, opened: Set[str] | None) -> State:
-        """The state after the baseline.
+        """Return the state after the baseline.
 
         Args:
             before, after: the files before and after the baseline.
@@ -229,7 +229,7 @@ class State:
 
 
 def read(path: Path) -> bytes | None:
-    """What a file holds; None if it cannot be read."""
+    """Return a file's content; None if it cannot be read."""
     try:
         return path.read_bytes()
     except OSError:
@@ -242,7 +242,7 @@ _BYTES = 1 << 16
 
 
 class OpenedFiles:
-    """Notes which files in some folders are opened; use as a context manager.
+    """A context manager that notes which files in some folders are opened.
 
     Args:
         root: the project's folder.

@@ -39,7 +39,7 @@ _SLACK = 1.05
 
 
 def assign(costs: Mapping[str, float], shards: int) -> dict[str, int]:
-    """The 0-based shard of each item, by its id; costs are more than 0, in any unit."""
+    """Return the 0-based shard of each item, by its id; costs are more than 0, in any unit."""
     room = _SLACK * math.fsum(costs.values()) / shards
     loads = [0.0] * shards
     found: dict[str, int] = {}
@@ -62,7 +62,7 @@ _START, _OPERATION, _SEARCH = 0.1, 0.01, 4
 
 
 def part_of(plan: Plan, shard: Shard | None, baseline: Baseline) -> Plan:
-    """What a shard runs of a plan; all of it without a shard."""
+    """Return the part of a plan that a shard runs; all of it without a shard."""
     if shard is None:
         return plan
     items: dict[str, list[Mutant]] = {}
@@ -76,7 +76,7 @@ def part_of(plan: Plan, shard: Shard | None, baseline: Baseline) -> Plan:
 def write_shard(
     journal: Journal, shard: Shard | None, part: Plan, dependencies: Dependencies | None = None
 ) -> None:
-    """Write down which part of the plan is run; nothing without a shard.
+    """Record in the journal which part of the plan is run; nothing without a shard.
 
     Args:
         part: its mutants.
@@ -89,7 +89,7 @@ def write_shard(
 
 
 def _asked(request: Request) -> dict[str, str]:
-    """What else decides which outcomes a campaign has."""
+    """Return the other settings that decide which outcomes a campaign has."""
     sample = request.sample.text if request.sample is not None else "none"
     return {"rounds": str(request.rounds), "families": ", ".join(request.families), "sample": sample}
 
@@ -175,7 +175,7 @@ def _differing(old: ShardJournal, new: ShardJournal) -> list[str]:
 
 
 def merge(paths: Sequence[Path], target: Path, *, root: Path, room: int) -> list[str]:
-    """Write one journal of the shards' journals and recordings. Returns what is missing, a line each.
+    """Merge the shards' journals and recordings into one journal. Return a line for each missing part.
 
     What was in ``target`` before is kept as by any new campaign.
 
@@ -207,7 +207,7 @@ def merge(paths: Sequence[Path], target: Path, *, root: Path, room: int) -> list
 
 
 def found_in(path: Path) -> Path:
-    """The journal that is meant: a file, or that in a folder. Raises MergeError if there is none."""
+    """Return the journal at a path, a file or a folder. Raises MergeError if there is none."""
     places = (path, path / JOURNAL, path / HOME / JOURNAL)
     found = next((place for place in places if place.is_file()), None)
     if found is None:
@@ -229,7 +229,7 @@ def _opened(stack: ExitStack, path: Path) -> ShardJournal:
 
 
 def _missing(parts: Sequence[ShardJournal]) -> Iterator[str]:
-    """What a whole campaign would have beyond these."""
+    """Yield a line for each part of the whole campaign that these journals lack."""
     first = parts[0]
     of, rounds = first.shard.of, int(first.meta.get("rounds") or 1)
     there = {part.shard.number for part in parts}
@@ -266,7 +266,7 @@ def _missing(parts: Sequence[ShardJournal]) -> Iterator[str]:
 
 
 def _meta(parts: Sequence[ShardJournal]) -> dict[str, Any]:
-    """What the campaign says about itself: that of the first shard, and sums of what was counted."""
+    """Return the campaign's description in the journals: the first shard's, with summed counts."""
     metas = [part.meta for part in parts]
     found = {key: value for key, value in metas[0].items() if key != records.SHARD}
     found["shards"] = parts[0].shard.of
@@ -285,7 +285,7 @@ def _meta(parts: Sequence[ShardJournal]) -> dict[str, Any]:
 
 
 def _summed(said: Sequence[Any]) -> Any:
-    """Return the sum of data of one form: numbers are added, lists concatenated."""
+    """Return the sum of data of one shape: numbers are added, lists concatenated."""
     first = said[0]
     if isinstance(first, dict):
         return {key: _summed([one[key] for one in said]) for key in first}
@@ -293,7 +293,7 @@ def _summed(said: Sequence[Any]) -> Any:
 
 
 def _known(journal: Journal, parts: Sequence[ShardJournal]) -> list[tuple[Mutant, bool]]:
-    """Mutants of earlier campaigns beside the plan: what the last shard says of them counts."""
+    """Return mutants of earlier campaigns beside the plan; the last shard's description counts."""
     planned = parts[0].mutants
     readers = [journal, *(part.journal for part in parts)]
     found = {one.id: (one, outdated) for part in readers for one, outdated in part.known()}

@@ -1,4 +1,4 @@
-"""Vocabulary files: found, read, checked, also by what operations say about each other, and put together."""
+"""Find, read, check and merge vocabulary files."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _SHIPPED = Path(__file__).parent / "shipped"
 
 
 def load_vocabulary(names: Sequence[str], root: Path, families: Iterable[str] = OF_CALLS) -> Vocabulary:
-    """The vocabulary in these files, put together.
+    """Return the vocabulary in these files, merged.
 
     Each name is a file relative to ``root``, or the name of a vocabulary that mutabot ships. What a file
     says of a callable, the clock or a probe goes before what a shipped vocabulary says of it. ``families``,
@@ -52,7 +52,7 @@ def load_vocabulary(names: Sequence[str], root: Path, families: Iterable[str] = 
 
 
 def shipped_vocabularies() -> tuple[str, ...]:
-    """Names of the vocabularies that mutabot and the packages beside it ship."""
+    """Return names of the vocabularies that mutabot and the packages beside it ship."""
     return tuple(sorted(_shipped_files()))
 
 
@@ -63,7 +63,7 @@ def _shipped_files() -> dict[str, Path]:
 
 @dataclass
 class _Merged:
-    """What the files read so far say, and the mistakes in them; whether they must say anything."""
+    """The merged content of the files read so far, and the mistakes in them."""
 
     is_needed: bool
     errors: list[ConfigurationError] = field(default_factory=list)
@@ -127,7 +127,7 @@ class _Merged:
 
 
 def _find(name: str, root: Path) -> tuple[Document, bool]:
-    """The document of this name, and whether mutabot ships it."""
+    """Return the document of this name, and whether mutabot ships it."""
     if (root / name).is_file():
         return Document.read(root / name, name), False
     file = _shipped_files().get(name)

@@ -1,4 +1,4 @@
-"""Tables of a vocabulary turned into operations, clock, wait and probes."""
+"""Read operations, the clock, the wait and probes from the tables of a vocabulary."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def read_operations(place: DocumentPlace, raw: Any) -> list[Operation]:
 
 
 def _check_keys(place: DocumentPlace, table: OperationTable, key: str, forms: Sequence[Form] = ()) -> None:
-    """Note keys that say nothing of an operation with such a name."""
+    """Note keys that have no meaning for an operation with such a name."""
     sides = [schema.SIDES[form] for form in forms if form in schema.SIDES] if forms else [schema.CALLABLE]
     fitting = {one for side in sides for one in (side.written, side.read) if one}
     writes = not forms or forms[0] in WRITTEN
@@ -85,13 +85,13 @@ def _read_callable(place: DocumentPlace, table: OperationTable) -> Operation:
 
 
 def _of_any(table: OperationTable) -> dict[str, str]:
-    """The names of methods as targets: whatever object has them."""
+    """Return the names of methods as targets on an object of any class."""
     names = {"current": table.current, "opposite": table.opposite}
     return {key: f"{ANY}.{name}" for key, name in names.items() if name is not None and schema.is_name(name)}
 
 
 def _check_self(place: DocumentPlace, operation: Operation) -> None:
-    """Note what is said of the object or class of a callable that is no method."""
+    """Note descriptions of the object or class of a callable that is no method."""
     target = operation.target
     if "." in target.partition(":")[2]:
         return
@@ -185,7 +185,7 @@ def _read_result(
 
 
 def _is_command(table: OperationTable, operation: Operation) -> bool:
-    """Whether the call is a command, unless the vocabulary specifies it."""
+    """Return whether the call is a command, unless the vocabulary specifies it."""
     form = operation.named.form if operation.named is not None else None
     patterns, result = operation.patterns, operation.result
     if form is not None and form not in _COMMANDS:
@@ -202,7 +202,7 @@ def _is_command(table: OperationTable, operation: Operation) -> bool:
 def _read_message(
     place: DocumentPlace, table: OperationTable, root: str | None, operation: Operation
 ) -> str | None:
-    """The path to what says which command a call is; None if there is none, or a mistake, which is noted."""
+    """Return the path to the command's name in a call; None if there is none or a mistake, which is noted."""
     what = "argument" if root is None else "field"
     if table.message is None:
         if table.patterns:
@@ -224,14 +224,14 @@ def _read_message(
 
 
 def _rooted(cases: tuple[Case, ...], root: str | None) -> tuple[Case, ...]:
-    """The cases with paths into a message that is written."""
+    """Return the cases with paths into a message that is written."""
     if root is None:
         return cases
     return tuple(replace(case, argument=str(in_message(bare_path(case.argument), root))) for case in cases)
 
 
 def _check_from_self(place: DocumentPlace, operation: Operation) -> None:
-    """Note what a text cannot say that lies in the object itself, and is no argument of the call."""
+    """Note texts of commands that read the object itself, which is no argument of the call."""
     if operation.message is None or Path.parse(operation.message, rooted=True).root != "self":
         return
     for index, pattern in enumerate(operation.patterns):
@@ -289,7 +289,7 @@ def _read_refused(place: DocumentPlace, raw: Any, named: Named | None) -> tuple[
 
 
 def _path_in_answer(text: str) -> Path:
-    """The path into an answer or a message, which may begin without a dot. Raises ValueError."""
+    """Return the path into an answer or a message, which may begin without a dot. Raises ValueError."""
     if not text or text.startswith("["):
         return Path.parse(text, rooted=False)
     return in_message(bare_path(text), None)

@@ -1,4 +1,4 @@
-"""Calls that stand for several commands: texts, ``when``, and a ``mode`` that an argument decides.
+"""Read descriptions of calls that stand for several commands: texts, ``when``, and modes by an argument.
 
 Entries of ``patterns`` tell text commands apart.
 
@@ -93,7 +93,7 @@ def _read_pattern(
 def _arguments(
     place: DocumentPlace, raw: dict[str, Any], notation: Notation, sides: Sides
 ) -> tuple[Quantity, ...]:
-    """The quantities of the fields, and of arguments beside the text."""
+    """Return the quantities of the fields, and of arguments beside the text."""
     inline = {key: value for key, value in raw.items() if key in QuantityTable.model_fields}
     arguments: dict[str, Any] = raw.get("arguments") or {}
     fields = {field.name: field for field in notation.fields}
@@ -160,7 +160,7 @@ _WHEN = 'such as when = { argument = "type", value = "gripper" }'
 
 
 def in_each_mode(place: DocumentPlace, raw: Any) -> list[tuple[tuple[Case, ...], DocumentPlace, Any]]:
-    """A table of quantities with plain modes, once for each case of the arguments that decide about them.
+    """Return a table of quantities, once for each case of the arguments that decide about modes.
 
     There is one case without a condition if nothing decides. Mistakes are noted at the place of the first.
     """
@@ -180,7 +180,7 @@ def in_each_mode(place: DocumentPlace, raw: Any) -> list[tuple[tuple[Case, ...],
 
 
 def _choices(place: DocumentPlace, raw: Any) -> Iterator[tuple[DocumentPlace, dict[str, Any]]]:
-    """The quantities in a table whose mode is a table."""
+    """Yield the quantities in a table whose mode is a table."""
     if not isinstance(raw, dict):
         return
     if isinstance(raw.get("kind"), str):
@@ -192,7 +192,7 @@ def _choices(place: DocumentPlace, raw: Any) -> Iterator[tuple[DocumentPlace, di
 
 
 def _read_choice(place: DocumentPlace, mode: dict[str, Any]) -> tuple[str, tuple[str, ...]]:
-    """The argument that decides, and its values; no argument if there is a mistake, which is noted."""
+    """Return the argument that decides, and its values; ("", ()) if there is a mistake, which is noted."""
     argument = mode.get("argument")
     named = {key: value for key, value in mode.items() if key != "argument"}
     for key, value in named.items():
@@ -217,7 +217,7 @@ def _path_of_choice(text: str) -> Path:
 
 
 def _in_case(raw: Any, cases: Sequence[Case]) -> Any:
-    """The table with the modes that these cases decide; ``by`` where the choice is a mistake."""
+    """Return the table with the modes that these cases decide; ``by`` where the choice is a mistake."""
     if not isinstance(raw, dict):
         return raw
     if not isinstance(raw.get("kind"), str):
@@ -230,7 +230,7 @@ def _in_case(raw: Any, cases: Sequence[Case]) -> Any:
 
 
 def name_of_cases(cases: Sequence[Case]) -> str:
-    """The cases as ids and reports print them, as a notation."""
+    """Return the cases as ids and reports print them, as a notation."""
     text = ", ".join(f"{case.argument}={case.value}" for case in cases)
     return text.replace("{", "{{").replace("}", "}}")
 
@@ -250,7 +250,7 @@ def read_when(place: DocumentPlace, raw: Any) -> tuple[Case, ...]:
 
 
 def _text(value: str | bool | float) -> str:
-    """The value as ``Case`` has it."""
+    """Return the value as ``Case`` has it."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, float) and value.is_integer():

@@ -1,4 +1,4 @@
-"""Tables of a vocabulary turned into quantities, and the rules that a quantity keeps, by its kind."""
+"""Read quantities from the tables of a vocabulary, and check the rules of each kind."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _JOINTS = re.compile(r"j(\d{1,2})(?:\.\.|-)j(\d{1,2})")
 
 
 def _split_axes(text: str) -> tuple[str, ...] | None:
-    """The axes in ``x``, ``xyz``, ``j1j2j3`` or ``j1..j7``; None if it is anything else."""
+    """Return the axes in ``x``, ``xyz``, ``j1j2j3`` or ``j1..j7``; None if it is anything else."""
     joints = _JOINTS.fullmatch(text)
     if joints is not None:
         axes = tuple(f"j{number}" for number in range(int(joints[1]), int(joints[2]) + 1))
@@ -39,7 +39,7 @@ def _split_axes(text: str) -> tuple[str, ...] | None:
 
 
 def _slice_of(path: Path) -> Step | None:
-    """The slice a path ends with, or None."""
+    """Return the slice a path ends with, or None."""
     return path.steps[-1] if path.steps and path.steps[-1].bounds is not None else None
 
 
@@ -74,7 +74,7 @@ _ALIKE = ("kind", "frame", "mode", "noise", "order", "relative", "missing", "tcp
 def read_quantities(
     place: DocumentPlace, raw: dict[str, Any] | None, sides: Sides = CALLABLE, *, is_written: bool = False
 ) -> tuple[Quantity, ...]:
-    """Read a table whose keys are paths to quantities; what a callable returns may be one quantity."""
+    """Read a table whose keys are paths to quantities; the result of a callable may be one quantity."""
     raw = raw or {}
     if not is_written and not sides.is_message and raw and is_quantity(raw):
         name = str(place.path[-1])
@@ -98,7 +98,7 @@ def read_quantities(
 
 
 def in_message(path: Path, root: str | None) -> Path:
-    """The path to a field that is named by its bare path."""
+    """Return the path to a field that is named by its bare path."""
     return Path(root, (Step(attribute=path.root), *path.steps))
 
 
@@ -111,7 +111,7 @@ def bare_path(text: str) -> Path:
 
 
 def is_quantity(raw: dict[str, Any]) -> bool:
-    """Whether a table is a quantity, rather than a table of paths."""
+    """Return whether a table is a quantity, rather than a table of paths."""
     return isinstance(raw.get("kind"), str) or not all(isinstance(item, dict) for item in raw.values())
 
 
@@ -146,7 +146,7 @@ def read_quantity(
 def _leaves(
     raw: dict[str, Any], before: str, place: DocumentPlace
 ) -> Iterator[tuple[str, Any, DocumentPlace]]:
-    """Path, table and place of each quantity; ``arguments.pose.x`` without quotes is nested in TOML."""
+    """Yield path, table and place of each quantity; ``arguments.pose.x`` without quotes is nested in TOML."""
     for key, item in raw.items():
         text = f"{before}{key}" if not before or key.startswith((".", "[")) else f"{before}.{key}"
         if isinstance(item, dict) and item and not is_quantity(item):
@@ -156,7 +156,7 @@ def _leaves(
 
 
 def _path_of(text: str, sides: Sides, is_written: bool) -> Path:
-    """The path to a quantity. Raises ValueError, saying what would be right."""
+    """Return the path to a quantity. Raises ValueError, saying what would be right."""
     if not sides.is_message and not is_written and not text.startswith((".", "[")):
         dotted = f'"[{text}]"' if text.isdigit() else f'".{text}"'
         raise ValueError(f"a path into the result begins with a dot or a bracket: write result.{dotted}")
@@ -211,7 +211,7 @@ _RowRule = tuple[str, object, str]
 def note_faults(
     place: DocumentPlace, table: QuantityTable, sides: Sides, *, is_written: bool, is_vector: bool
 ) -> bool:
-    """Note the rules that a quantity breaks, the first of each key; only its kind if that is wrong here.
+    """Note the rules that a quantity breaks, the first of each key; if its kind is wrong, only that.
 
     ``is_vector`` tells whether it is a slice that stays one quantity. Returns whether there are any.
     """
@@ -249,7 +249,7 @@ def _of_kind(table: QuantityTable, is_written: bool, sides: Sides) -> list[_RowR
 
 
 def _unknown(table: QuantityTable) -> Iterator[tuple[str, str, Sequence[str]]]:
-    """Names that do not exist: the key, the name, and those that do."""
+    """Yield names that do not exist: the key, the name, and those that do."""
     units, of_ladder = (
         units_of(DIMENSIONS.get(table.kind, ())),
         table.ladder.unit if table.ladder is not None else None,
@@ -263,7 +263,7 @@ def _unknown(table: QuantityTable) -> Iterator[tuple[str, str, Sequence[str]]]:
 
 
 def _of_meaning(table: QuantityTable, is_written: bool, is_vector: bool) -> list[_RowRule]:
-    """The rules of unit, mode, axis and order."""
+    """Return the rules of unit, mode, axis and order."""
     a, kind, order, units, unit = (
         _a(table.kind),
         table.kind,
@@ -304,7 +304,7 @@ def _of_meaning(table: QuantityTable, is_written: bool, is_vector: bool) -> list
 
 
 def _of_values(table: QuantityTable, is_written: bool, is_vector: bool) -> list[_RowRule]:
-    """The rules of values, range and clip."""
+    """Return the rules of values, range and clip."""
     a, kind, values, limits, clip = _a(table.kind), table.kind, table.values or [], table.range, table.clip
     is_given, is_measured = table.values is not None, kind in MEASURED
     needs_values = kind in (Kind.OPENING, Kind.OUTPUT) and not (is_given or limits or clip)
@@ -344,7 +344,7 @@ def _of_reading(table: QuantityTable, is_written: bool) -> list[_RowRule]:
 
 
 def _unit(table: QuantityTable) -> str | None:
-    """The unit, where it goes without saying: an opening between 0 and 1 is a fraction."""
+    """Return the unit, which may be left out for an opening between 0 and 1: that is a fraction."""
     if table.unit is None and table.kind is Kind.OPENING:
         numbers = [*(table.values or ()), *(table.range or table.clip or ())]
         if numbers and all(_is_number(number) and 0 <= number <= 1 for number in numbers):
@@ -372,7 +372,7 @@ def _of_ladder(table: QuantityTable) -> list[_RowRule]:
 
 
 def _units_of_ladder(table: QuantityTable) -> tuple[str, ...]:
-    """The units of faults in it: its own measure, a time or a share."""
+    """Return the units that faults in the quantity may have: its own measure, a time or a share."""
     if table.unit in UNITS:
         return units_of((dimension_of(table.unit), *OF_ANY))
     return units_of((*measures_of(table.kind), *OF_ANY))

@@ -1,4 +1,4 @@
-"""The shape of a vocabulary file: which keys there are, and what type their values have.
+"""The schema of a vocabulary file: its keys, and the types of their values.
 
 What the values mean together is checked where the tables are turned into operations. An operation is a Python
 callable, or all that is done under a name on a middleware, which has a key of its own in place of ``call``:
@@ -40,7 +40,7 @@ NAMING = ("call", "method", *dict.fromkeys(key for key, _ in FORMS))
 
 @dataclass(frozen=True)
 class Sides:
-    """Where the quantities of an operation stand in its entry.
+    """The places of an operation's quantities in its entry.
 
     Attributes:
         written, read: the keys of their tables; None where there are none.
@@ -73,12 +73,12 @@ SIDES: Mapping[Form, Sides] = {
 
 
 def is_name(text: str) -> bool:
-    """Whether Python takes a text for a name."""
+    """Return whether a text is a name in Python."""
     return text.isidentifier() and not keyword.iskeyword(text)
 
 
 def is_target(text: str) -> bool:
-    """Whether a text is a target."""
+    """Return whether a text is a target."""
     try:
         check_target(text)
     except ValueError:
@@ -129,7 +129,7 @@ def _check_resolved(text: str) -> str:
 
 
 def _frames(text: str) -> str:
-    """The two frames as operations carry them."""
+    """Return two frames as one text, as operations have them."""
     parts = [part.strip().removeprefix("/") for part in re.split("→|->", text)]
     if len(parts) != 2 or not all(parts):
         raise ValueError(f"{text!r} names no two frames; expected 'base -> tool'")
@@ -137,7 +137,7 @@ def _frames(text: str) -> str:
 
 
 def _type(text: str) -> str:
-    """``package/Name`` for ``package/msg/Name`` and the like."""
+    """Return ``package/Name`` for ``package/msg/Name`` and the like."""
     found = re.fullmatch(r"(\w+)/(?:(?:msg|srv|action)/)?(\w+)", text)
     if found is None:
         raise ValueError(f"{text!r} is not a type; expected package/Name, such as geometry_msgs/PoseStamped")
@@ -145,7 +145,7 @@ def _type(text: str) -> str:
 
 
 def _ladder(raw: Any) -> Any:
-    """The steps alone are a ladder as well."""
+    """Return a ladder's table; a list of steps alone becomes one without a unit."""
     return {"steps": raw} if isinstance(raw, list) else raw
 
 
@@ -295,7 +295,7 @@ class VocabularyTable(Table):
 
 
 def read_idle(place: DocumentPlace, raw: Any) -> Any:
-    """``idle = …`` as data that ``model.answer.restore`` understands; mistakes are noted.
+    """Return ``idle = …`` as data that ``model.answer.restore`` understands; mistakes are noted.
 
     A TOML value is the answer itself; ``{ call = "module:name" }`` names a function that makes it.
     """

@@ -1,4 +1,4 @@
-"""Commands that are not carried out, carried out twice, or turned round."""
+"""Operators on commands: left out, repeated, or replaced by the opposite."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Graded faults: how big each is, is part of it.
+"""Graded faults, whose magnitude is part of the mutant.
 
 Values are off by an amount, a share, noise, with time, in steps or within a band; waits end early, commands
 and readings come late.
@@ -29,7 +29,7 @@ _JOINTS = 7
 
 
 class NumberOperator(ValueOperator):
-    """Changes one number, by a magnitude.
+    """The base class of operators that change one number by a magnitude.
 
     Class attributes:
         fault: the fault in words, behind the name of the quantity, with ``{}`` for the magnitude; empty where
@@ -43,7 +43,7 @@ class NumberOperator(ValueOperator):
 
     @abstractmethod
     def number(self, size: float, value: float, context: Context) -> float:
-        """The new number. ``size``: the magnitude in the quantity's unit, negative in the direction ``-``."""
+        """Return the new number; ``size`` is in the quantity's unit, negative for direction ``-``."""
 
     def fits(self, quantity: Quantity, whole: Subject) -> bool:
         return quantity.is_measured and self.magnitudes(quantity) is not None
@@ -52,7 +52,7 @@ class NumberOperator(ValueOperator):
         return [part + direction for part in _components_of(quantity) for direction in self.directions]
 
     def size_of(self, subject: Subject) -> float:
-        """The magnitude in the quantity's unit."""
+        """Return the magnitude in the quantity's unit."""
         quantity, size = subject.required_quantity, subject.magnitude or 0.0
         unit = self.unit_of(subject)
         if unit is not None and unit != quantity.unit:
@@ -60,7 +60,7 @@ class NumberOperator(ValueOperator):
         return size
 
     def unit_of(self, subject: Subject) -> str | None:
-        """The unit of what is added to the value."""
+        """Return the unit of the number that is added to the value."""
         return subject.unit
 
     def change(self, value: Value, context: Context) -> Value | None:
@@ -84,7 +84,7 @@ class NumberOperator(ValueOperator):
 
 
 def _components_of(quantity: Quantity) -> tuple[str, ...]:
-    """The components of which one is changed: indices of a vector, axes of an orientation; else ``""``."""
+    """Return the indices of a vector or the axes of an orientation; ``("",)`` for other quantities."""
     if quantity.is_whole:
         return ("x", "y", "z")
     bounds = quantity.path.steps[-1].bounds if quantity.path.steps else None
@@ -96,7 +96,7 @@ def _components_of(quantity: Quantity) -> tuple[str, ...]:
 
 
 def _in_component(context: Context, value: Value, change: Callable[[float], float]) -> Value | None:
-    """A value with one number of it changed: of an orientation, the angle by which an axis turns it."""
+    """Return a value with one number changed: of an orientation, the angle about an axis."""
     quantity, component = context.quantity, context.subject.direction.rstrip("+-")
     if quantity.is_whole:
         return _turned(quantity, component, value, change)
@@ -121,7 +121,7 @@ def _turned(quantity: Quantity, axis: str, value: Value, change: Callable[[float
 
 
 def _like(quantity: Quantity, before: Value, after: float) -> float:
-    """A count stays a whole number; any other may have parts."""
+    """Return the new number, rounded if the quantity is a count."""
     return round(after) if quantity.kind is Kind.COUNT and isinstance(before, int) else after
 
 

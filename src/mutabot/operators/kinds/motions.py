@@ -1,4 +1,4 @@
-"""Motions: the other way, or a relative amount taken for an absolute target."""
+"""Operators on motions: wrong direction, and relative amounts mistaken for absolute targets."""
 
 from __future__ import annotations
 
@@ -149,7 +149,7 @@ class ByTo(ValueOperator):
 
 
 async def _value_and_place(values: Mapping[str, Value], context: Context) -> tuple[float, float]:
-    """The value of the call, and where the robot is. Raises Unchanged."""
+    """Return the value of the call, and the robot's position. Raises Unchanged."""
     quantity, value = context.quantity, values.get(context.quantity.name)
     if value is None or not quantity.is_scalar(value):
         raise Unchanged(context.subject.why_missing)
@@ -171,7 +171,7 @@ def _within_turn(quantity: Quantity, angle: float) -> float:
 
 
 def has_direction(quantity: Quantity) -> bool | None:
-    """Whether negative values of a speed or ratio make sense; None if the vocabulary does not say.
+    """Return whether a speed or ratio can be negative; None if the vocabulary does not say.
 
     What the vocabulary allows decides first. Otherwise, a component along an axis, the speed of a joint and
     a vector have a direction. A number of its own may be the speed of a motor or a speed limit.
@@ -185,7 +185,7 @@ def has_direction(quantity: Quantity) -> bool | None:
 
 
 def _is_part_of_vector(path: Path) -> bool:
-    """Whether a path leads to a component of a vector, such as ``linear.x``, or to a slice of one."""
+    """Return whether a path leads to a component of a vector, such as ``linear.x``, or to a slice of one."""
     if not path.steps:
         return path.root in _COMPONENTS
     last = path.steps[-1]

@@ -1,4 +1,4 @@
-"""Readings with the wrong sign or with noise, and labels that are misread."""
+"""Operators on readings: wrong sign, noise, and misread labels."""
 
 from __future__ import annotations
 
@@ -131,7 +131,7 @@ class Misread(ValueOperator):
 
 
 def deviation_of(quantity: Quantity) -> float:
-    """Standard deviation of the noise, in the quantity's unit."""
+    """Return the standard deviation of the noise, in the quantity's unit."""
     if quantity.noise is not None:
         return quantity.noise
     amount, unit = DEFAULT_DEVIATION[quantity.kind]
@@ -139,7 +139,7 @@ def deviation_of(quantity: Quantity) -> float:
 
 
 def disturbed(quantity: Quantity, value: Value, random: Random, deviation: float) -> Value | None:
-    """The orientation turned by a random rotation vector of this standard deviation in each part."""
+    """Return an orientation turned at random, with this standard deviation about each axis."""
     sigma = convert(deviation, quantity.unit or "rad", "rad")
     turn = from_rotation_vector([random.gauss(0.0, sigma) for _ in range(3)])
     return quantity.rotated(value, turn.after)

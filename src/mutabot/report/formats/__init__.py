@@ -1,1 +1,1 @@
-"""Formats of other tools, one file each, with a function ``make``; ``report/format.py`` is the contract."""
+"""Reports in formats of other tools: one file each, with a function ``make``."""

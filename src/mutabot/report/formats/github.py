@@ -20,7 +20,7 @@ _LIMITS = {"warning": 10, "notice": 9}
 
 
 def make(material: Material) -> str:
-    """The report: one command a line."""
+    """Return the report: one command a line."""
     return "".join(f"{line}\n" for line in _lines(material))
 
 
@@ -59,10 +59,10 @@ def _annotation(level: str, result: MutantResult, material: Material) -> str:
 
 
 def _data(text: str) -> str:
-    """The message of a command, which ends with its line."""
+    """Return the message of a command, which ends with its line."""
     return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
 
 
 def _property(text: str) -> str:
-    """A value before the message, which also ends at a comma or at two colons."""
+    """Return a value before the message, which also ends at a comma or at two colons."""
     return _data(text).replace(":", "%3A").replace(",", "%2C")

@@ -41,7 +41,7 @@ _ELEMENT: Mapping[str, str] = {
 
 
 def make(material: Material) -> str:
-    """The report."""
+    """Return the report."""
     campaign = material.campaign
     suites: dict[tuple[str, str, str], list[MutantResult]] = {}
     for result in campaign.mutants:

@@ -38,7 +38,7 @@ _STATUS: Mapping[str, str] = {
 
 
 def make(material: Material) -> str:
-    """The report."""
+    """Return the report."""
     campaign = material.campaign
     return dumps(
         {
@@ -92,7 +92,7 @@ def _mutant(result: MutantResult, material: Material) -> dict[str, Any]:
 
 
 def _replacement(mutant: Mutant, material: Material) -> str:
-    """The replacement: the new text of a mutant of program text, else a description."""
+    """Return the new text of a mutant of program text; the description of any other mutant."""
     text = material.place(mutant.site.span).text
     before, arrow, after = mutant.description.partition(" → ")
     return after if arrow and before == text else mutant.description
@@ -108,7 +108,7 @@ def _location(span: Span, material: Material) -> dict[str, Any]:
 
 
 def _test_files(material: Material) -> dict[str, Any]:
-    """All tests that are known, by their files: what mutants name is among them."""
+    """Return all known tests by their files."""
     found: dict[str, Any] = {}
     for test in material.campaign.tests:
         file, _, name = test.partition("::")

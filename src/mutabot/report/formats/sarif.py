@@ -30,7 +30,7 @@ _HELP = (
 
 
 def make(material: Material) -> str:
-    """The report."""
+    """Return the report."""
     survivors = [*material.campaign.survivors, *material.campaign.accepted]
     rules = {name: index for index, name in enumerate(sorted({one.mutant.operator for one in survivors}))}
     return dumps(
@@ -102,7 +102,7 @@ def _result(result: MutantResult, material: Material, rules: Mapping[str, int]) 
 
 
 def _suppressions(acceptance: Acceptance | None) -> dict[str, Any]:
-    """Why a survivor is accepted; code scanning does not show it then."""
+    """Return a survivor's acceptance, so that code scanning hides the survivor."""
     if acceptance is None:
         return {}
     kind = "inSource" if acceptance.in_source else "external"
@@ -111,7 +111,7 @@ def _suppressions(acceptance: Acceptance | None) -> dict[str, Any]:
 
 
 def _level(result: MutantResult) -> str:
-    """How important a survivor is: whether the robot did something else, as far as that is known."""
+    """Return a survivor's level, which is higher if the robot acted differently."""
     if result.indistinguishable:
         return "note"
     differs = any(one.divergence and not one.indistinguishable for one in result.survived)
@@ -131,7 +131,7 @@ def _location(site: Site, material: Material) -> dict[str, Any]:
 
 
 def _related(site: Site, material: Material) -> dict[str, Any]:
-    """The other places of a fault that stands in several."""
+    """Return the other places of a fault that has several."""
     spans = site.other_spans
     found = [{"id": number, "physicalLocation": _region(one, material)} for number, one in enumerate(spans)]
     return {"relatedLocations": found} if found else {}

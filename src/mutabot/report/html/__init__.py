@@ -1,1 +1,1 @@
-"""Pages that a browser opens from disk: ``folder.py`` writes them, and what is in ``assets/`` shows them."""
+"""The HTML report, which a browser opens from disk: pages, their data and their assets."""

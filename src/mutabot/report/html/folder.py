@@ -1,4 +1,4 @@
-"""The folder of a report: pages, their data and what shows them; no file of a user is ever overwritten.
+"""Write the folder of an HTML report: pages, data and assets. Files of the user are never overwritten.
 
 A mutant's page has how it ended, and what was recorded of it; of originals the latter. Tracks have fewer
 points: what a straight line in time keeps within half a millimetre is left out.
@@ -89,7 +89,7 @@ def campaign_data(campaign: Results, name: str) -> dict[str, Any]:
 
 
 def _row(result: MutantResult, tests: Mapping[str, int]) -> dict[str, Any]:
-    """A mutant as the results document has it, with one letter per round, and the tests that noticed it."""
+    """Return a mutant's row: its results document, a letter per round, and the tests that noticed it."""
     kills: dict[str, list[int]] = {}
     for outcome in result.outcomes:
         for test, by in dict(killing_tests(outcome)).items():
@@ -107,7 +107,7 @@ def _row(result: MutantResult, tests: Mapping[str, int]) -> dict[str, Any]:
 
 @frozen
 class Written:
-    """What was written.
+    """What was written into the folder.
 
     Attributes:
         page: the page to open.
@@ -122,7 +122,7 @@ class Written:
 
 @frozen
 class Contents:
-    """What a report is made from.
+    """The content of a report.
 
     Attributes:
         campaign: the campaign, fit to leave the machine.
@@ -209,7 +209,7 @@ def _write_data(folder: Path, contents: Contents, limit: int) -> int:
 
 
 def _copy_films(folder: Path, contents: Contents) -> dict[str, dict[str, Any]]:
-    """Copy what finds room, the worst survivors' first; what pages say of each, by the mutant's id."""
+    """Copy the films that have room, of the worst survivors first. Return their data by mutant id."""
     found: dict[str, dict[str, Any]] = {}
     left = FILMS_LIMIT
     for result in contents.campaign.worst_first:
@@ -228,7 +228,7 @@ def _copy_films(folder: Path, contents: Contents) -> dict[str, dict[str, Any]]:
 
 
 def _recordings(recorded: Recorded, results: Iterable[MutantResult], limit: int) -> dict[int, list[Any]]:
-    """The recordings of each mutant by its number, one of each before a second of any.
+    """Return the recordings of each mutant by its number, one of each mutant before a second of any.
 
     When one has no room, those behind it have none either.
     """
@@ -257,7 +257,7 @@ _EXACT = 1e4
 
 
 def script(name: str, data: Any) -> bytes:
-    """Return a script that hands data to the page under a name.
+    """Return a script that passes data to the page under a name.
 
     The data are a text that is parsed as JSON: no key of theirs means anything to the language.
     """
@@ -284,7 +284,7 @@ _DRAWN, _MISS_DRAWN = 1e-3, 5.0
 
 
 def thinned(track: Track, times: Sequence[float]) -> Any:
-    """A track as data: times in ms and numbers in steps, each as the difference from the one before."""
+    """Return a track as data: times in ms and numbers in steps, each as the difference from the last."""
     path = TrackPath(track, times)
     when = path.when
     if not when:
@@ -309,7 +309,7 @@ def thinned(track: Track, times: Sequence[float]) -> Any:
 
 
 def kept_points(times: Sequence[float], rows: Sequence[Row], misses: Sequence[float]) -> list[int]:
-    """Return the points to keep: on a line between two of them, all others lie within ``misses`` per axis.
+    """Return the points to keep: the lines between them miss no point by more than ``misses`` per axis.
 
     From each kept point on, the slopes are narrowed to those that pass every point so far; the last point
     within them is kept next. Each point is looked at once.
@@ -328,13 +328,13 @@ def kept_points(times: Sequence[float], rows: Sequence[Row], misses: Sequence[fl
 
 
 def _slopes(times: Sequence[float], rows: Sequence[Row], first: int, last: int) -> tuple[list[float], float]:
-    """The slope of each axis between two points, and the time between them."""
+    """Return the slope of each axis between two points, and the time between them."""
     span = max(times[last] - times[first], 1e-9)
     return [(one - other) / span for one, other in zip(rows[last], rows[first], strict=True)], span
 
 
 def _gaps(times: Sequence[float], when: Sequence[float]) -> list[list[int]]:
-    """The gaps, from and to in ms, in which a thing did not exist."""
+    """Return the gaps, from and to in ms, in which a thing did not exist."""
     there, ends = {*when}, [*times[1:], times[-1] + 1e-3]
     runs = groupby(zip(times, ends, strict=True), key=lambda moment: moment[0] in there)
     absent = [list(run) for is_there, run in runs if not is_there]
@@ -342,7 +342,7 @@ def _gaps(times: Sequence[float], when: Sequence[float]) -> list[list[int]]:
 
 
 def _turned_like(before: Row, row: Row) -> Row:
-    """Return the pose with the one of its two quaternions that is nearer to the previous one."""
+    """Return the pose, with the sign of its quaternion that is nearer to the previous one."""
     if sum(a * b for a, b in zip(before[3:], row[3:], strict=True)) < 0:
         return (*row[:3], *(-value for value in row[3:]))
     return row
@@ -370,7 +370,7 @@ _NOTHING: tuple[Any, ...] = (None, (), [], {}, "")
 def mutant_page(
     result: MutantResult, suggestion: Suggestion | None = None, film: Mapping[str, Any] | None = None
 ) -> dict[str, Any]:
-    """Return all but the recordings: the mutant of the results document, without what is empty.
+    """Return a mutant's data in the results document, without its recordings and empty values.
 
     Args:
         suggestion: what was suggested for it; None if nothing was looked for.
@@ -391,7 +391,7 @@ def mutant_page(
 
 
 def told(value: Any) -> Any:
-    """Return data without what is empty."""
+    """Return data without empty values."""
     if isinstance(value, dict):
         return {key: told(item) for key, item in value.items() if item not in _NOTHING}
     return [told(item) for item in value] if isinstance(value, list) else value
@@ -403,7 +403,7 @@ _LONGEST = 120
 
 @dataclass(slots=True)
 class Recorded:
-    """The recordings of a campaign, as pages want them.
+    """The recordings of a campaign, in the form that pages need.
 
     Attributes:
         evidence: where they are read from.
@@ -416,7 +416,7 @@ class Recorded:
     originals: dict[tuple[int, str], Any] = field(default_factory=dict)
 
     def of(self, result: MutantResult) -> Iterator[dict[str, Any]]:
-        """The recordings of a mutant; the round and test farthest from the original come first."""
+        """Yield the recordings of a mutant; the round and test farthest from the original come first."""
         for round, test in self._places(result):
             original, mutant = mapped(self.evidence.pair(result.mutant.id, round, test), self.clean)
             if mutant is not None:
@@ -440,7 +440,7 @@ class Recorded:
                 yield number, test
 
     def _original(self, round: int, test: str, recording: Recording | None) -> int | None:
-        """The number of the file with the original's recording; None if there is none."""
+        """Return the number of the script with the original's recording; None if there is none."""
         if recording is None:
             return None
         key = (round, test)

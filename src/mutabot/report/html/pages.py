@@ -20,7 +20,7 @@ _ROOM = 4_000_000
 
 
 class ReportPages:
-    """The files of a report, such as ``write_folder`` writes, of a campaign that may still run.
+    """The files of a report, as ``write_folder`` writes them, of a campaign that may still run.
 
     Args:
         journal: the path of its journal.
@@ -42,11 +42,11 @@ class ReportPages:
 
     @staticmethod
     def legible(text: str) -> str:
-        """Return a text with a sign in the place of every character that a page cannot show."""
+        """Return a text in which characters that a page cannot show are replaced."""
         return legible(text)
 
     def read(self, version: int) -> None:
-        """Read the journal again: later scripts hold its current data.
+        """Read the journal again, so that later scripts contain its current data.
 
         ``version``: stands in the data of the campaign, by which a browser knows them.
         """

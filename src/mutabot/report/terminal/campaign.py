@@ -1,4 +1,4 @@
-"""A campaign on the terminal: its plan, the summary of a run, the table of mutants, and operators."""
+"""Print a campaign on the terminal: its plan, the summary of a run, its mutants, and operators."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def _circumstances(results: Results) -> str:
 
 
 def _earlier(results: Results) -> Iterator[RenderableType]:
-    """What the last campaign did not find itself, and a later one that ended before it ran anything."""
+    """Yield results of earlier campaigns, and a note on a later one that ended before it ran anything."""
     if results.attempt == "running":
         yield Text("A new campaign is still running its baseline; these are the previous results.")
     elif results.attempt is not None:
@@ -83,7 +83,7 @@ def _earlier(results: Results) -> Iterator[RenderableType]:
 
 
 def _mutants(results: Results) -> Iterator[RenderableType]:
-    """One row per mutant, one letter per round."""
+    """Yield a row per mutant, with one letter per round."""
     if not results.mutants:
         return
     many = results.rounds > _MANY_ROUNDS

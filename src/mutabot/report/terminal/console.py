@@ -27,10 +27,10 @@ _CONTROLS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f]")
 
 
 class _Console(Console):
-    """A console whose lines do not end in blanks, and whose reader may leave early, as ``head`` does."""
+    """A console that strips blanks at line ends and stops if its reader leaves early, as ``head`` does."""
 
     def print(self, *objects: Any, **options: Any) -> None:
-        """Print one object as its lines; other calls are as in ``Console``."""
+        """Print one object as its lines; several objects as in ``Console``."""
         if len(objects) != 1 or options:
             super().print(*objects, **options)
             return
@@ -44,7 +44,7 @@ class _Console(Console):
 
 
 def _without_blanks(line: Sequence[Segment]) -> list[Segment]:
-    """A line without the blanks at its end."""
+    """Return a line without trailing blanks."""
     found = list(line)
     while found and not found[-1].control:
         last = found.pop()
@@ -55,10 +55,10 @@ def _without_blanks(line: Sequence[Segment]) -> list[Segment]:
 
 
 class Breakable(Text):
-    """A text that breaks between words, and in a word that is too long after a sign that joins its parts."""
+    """A text that breaks between words, and within too long words after punctuation."""
 
     def wrap(self, console: Console, width: int, **options: Any) -> Lines:
-        """Wrap it to a width."""
+        """Wrap the text to a width."""
         whole = Text(style=self.style)
         for part in re.split(r"(\s+)", self.plain):
             pieces = _pieces(part, width) if len(part) > width else [part]
@@ -91,7 +91,7 @@ def make_console(file: IO[str] | None = None, *, width: int | None = None, stder
 
 
 def plain(text: str) -> str:
-    """Return a program's text without what would confuse the terminal."""
+    """Return a program's text without characters that confuse the terminal."""
     return _CONTROLS.sub("", ESCAPES.sub("", text)).expandtabs(4)
 
 
@@ -106,7 +106,7 @@ def below(text: str, indent: int = 2, style: str = "") -> RenderableType:
 
 
 def make_table(columns: Sequence[str] = (), *, header: bool = True) -> Table:
-    """Make an empty table. ``>name`` is a column of numbers, ``*name`` takes the room that is left."""
+    """Make an empty table. ``>name`` is a column of numbers, ``*name`` takes the remaining width."""
     look = box.SIMPLE_HEAD
     table = Table(
         box=look,
@@ -129,7 +129,7 @@ def make_table(columns: Sequence[str] = (), *, header: bool = True) -> Table:
 
 
 def short_place(span: Span, width: int = 24) -> str:
-    """Return ``file:line``; a long path loses its first folders. What stands in no line has line 0."""
+    """Return ``file:line``, dropping the first folders of a long path. Line 0 means the whole file."""
     place = span.place
     if len(place) <= width:
         return place
@@ -140,7 +140,7 @@ def short_place(span: Span, width: int = 24) -> str:
 
 
 def print_section(console: Console, section: Section, at_most: int | None = None) -> None:
-    """Print a section, of many rows and lines the first. Neighbouring columns of texts share a cell."""
+    """Print a section, with at most ``at_most`` rows and lines. Neighbouring text columns share a cell."""
     style = "bold red" if section.is_alarm else "bold"
     console.print(Text(f"\n{plain(section.title)}", style=style, overflow="fold"))
     groups: list[list[int]] = []
@@ -164,7 +164,7 @@ def print_section(console: Console, section: Section, at_most: int | None = None
 
 @frozen
 class VerdictMark:
-    """How an outcome is shown: a letter, so that colour is not needed, its colour, and the legend's words."""
+    """The display of an outcome: a letter, its colour, and its text in the legend."""
 
     letter: str
     style: str
@@ -189,7 +189,7 @@ _ORDER = [_BY_CHECK, _BY_EXCEPTION, *_OTHERS.values(), _NOT_RUN]
 
 
 def mark_of(outcome: Outcome | None) -> VerdictMark:
-    """Return the mark of an outcome; None is one that has not been run."""
+    """Return the mark of an outcome; that of None means that it has not been run."""
     if outcome is None:
         return _NOT_RUN
     if outcome.verdict is Verdict.KILLED:
@@ -198,13 +198,13 @@ def mark_of(outcome: Outcome | None) -> VerdictMark:
 
 
 def marks_in(outcomes: Iterable[Outcome | None]) -> list[tuple[VerdictMark, int]]:
-    """Return the marks that occur and how often, in the order of the legend."""
+    """Return the marks that occur with their counts, in the order of the legend."""
     marks = [mark_of(outcome) for outcome in outcomes]
     return [(mark, marks.count(mark)) for mark in _ORDER if mark in marks]
 
 
 def letters(rounds: Sequence[Outcome | None], *, many: bool = False) -> Text:
-    """Return one letter per round, or how often each occurs."""
+    """Return one letter per round, or the counts of letters if there are many."""
     if many:
         parts = [Text(f"{mark.letter}{count}", style=mark.style) for mark, count in marks_in(rounds)]
     else:
@@ -213,7 +213,7 @@ def letters(rounds: Sequence[Outcome | None], *, many: bool = False) -> Text:
 
 
 def legend(outcomes: Iterable[Outcome | None]) -> Text:
-    """Explain the letters that occur."""
+    """Return the explanation of the letters that occur."""
     # Spaces that do not break keep a letter and its words on one line.
     parts = [
         Text.assemble((mark.letter, mark.style), f" {mark.words}".replace(" ", "\N{NO-BREAK SPACE}"))

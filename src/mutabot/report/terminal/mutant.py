@@ -1,4 +1,4 @@
-"""One mutant on the terminal: the main facts on one screen, or everything; and its suggested check."""
+"""Print one mutant on the terminal: the main facts on one screen, or everything."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def _quantity_text(name: str | None, quantity: Quantity | None) -> str:
 
 
 def _rounds(result: MutantResult, *, everything: bool) -> Section:
-    """Rounds that ended alike, with the details of the first; on one screen the most informative ones."""
+    """Return the rounds, equal ones together with the details of the first; on one screen only a few."""
     groups: dict[Any, list[int]] = {}
     for number, outcome in enumerate(result.rounds):
         groups.setdefault(outcome and (end_in_words(outcome), outcome.place), []).append(number)
@@ -144,7 +144,7 @@ def _details(outcome: Outcome) -> Iterator[str]:
 
 
 def _happened(result: MutantResult) -> Iterator[Section]:
-    """What the robot did in the most informative round and test; nothing where nothing was recorded."""
+    """Yield what the robot did in the most informative round and test; nothing without recordings."""
     number, diverged = telling(result) or (0, None)
     if diverged is None:
         return
@@ -163,7 +163,7 @@ def _sentences(diverged: Diverged) -> Iterator[str]:
 
 
 def suggested_sections(result: MutantResult, found: Suggestion | None) -> Iterator[Section]:
-    """Yield the section of a survivor; nothing for other mutants."""
+    """Yield the section of a survivor's suggested check; nothing for other mutants."""
     if not result.is_survivor or result.mutant.ladder:
         return
     if found is not None and found.code:

@@ -1,4 +1,4 @@
-"""Progress of a campaign: a bar with the times on a terminal, and a plain line now and then elsewhere.
+"""Show a campaign's progress: bars with times on a terminal, plain lines elsewhere.
 
 Both print survivors as they are found, and count how mutants ended.
 """
@@ -31,7 +31,7 @@ _TOLD = ("survived", "not covered")
 
 
 class Pace:
-    """The steps of one stage.
+    """The pace of the steps of one stage.
 
     Args:
         total: how many there are; None if that is not known.
@@ -52,19 +52,19 @@ class Pace:
 
     @property
     def spent(self) -> float:
-        """Seconds since it began."""
+        """Seconds since the stage began."""
         return self._clock() - self._began
 
     @property
     def left(self) -> float | None:
-        """Seconds that the rest will take; None as long as too little is known to tell."""
+        """Seconds until the stage ends; None if too few steps are done to estimate that."""
         if self.total is None or self.done == 0 or self.done < _TELLING * self.total:
             return None
         return self.spent / self.done * max(0, self.total - self.done)
 
     @property
     def words(self) -> str:
-        """``0:08 elapsed, 0:20 left``; only the time it took when all is done."""
+        """The times as text: ``0:08 elapsed, 0:20 left``; only the elapsed time when all is done."""
         if self.total is not None and self.done >= self.total:
             return f"took {clock_text(self.spent)}"
         left = self.left
@@ -79,7 +79,7 @@ def clock_text(seconds: float) -> str:
 
 
 class Tally:
-    """Counts how mutants ended, each in each round by its last outcome."""
+    """Counts the last outcomes of mutants in each round."""
 
     def __init__(self) -> None:
         self._states: dict[tuple[str, int], str] = {}
@@ -87,7 +87,7 @@ class Tally:
         self._told: set[str] = set()
 
     def add(self, end: MutantEnd) -> str | None:
-        """Count an outcome. Returns what to tell of it: that a survivor is found, or none any more."""
+        """Count an outcome. Return a message if a survivor is new, or no longer one."""
         key, state = (end.mutant.id, end.outcome.round), end.state
         before = self._states.get(key)
         if before == state:
@@ -109,7 +109,7 @@ class Tally:
 
     @property
     def words(self) -> str:
-        """``killed 35, survived 4``; empty if nothing is counted."""
+        """The counts as text: ``killed 35, survived 4``; empty if there are none."""
         return ", ".join(f"{state} {self._counts[state]}" for state in _ORDER if self._counts[state])
 
 
@@ -133,21 +133,21 @@ def _column(width: int | None = None, ratio: int | None = None) -> Column:
 
 
 def make_progress(console: Console) -> Bar | Lines:
-    """Make the progress that fits the console; each is one as ``mutabot.campaign`` wants it."""
+    """Return the progress display that suits the console."""
     return Bar(console) if console.is_terminal else Lines(console)
 
 
 class _Times(ProgressColumn):
-    """How long a stage has taken, and what is left of it."""
+    """A column with the elapsed and the remaining time of a stage."""
 
     def render(self, task: Task) -> Text:
-        """Return both."""
+        """Return both times as text."""
         pace = task.fields["pace"]
         return Text(pace.words if isinstance(pace, Pace) else "")
 
 
 class Bar:
-    """A bar per stage on a terminal, each on one line: texts are cut before the bar is."""
+    """A bar per stage on a terminal, in one line each, in which texts are cut before the bar."""
 
     def __init__(self, console: Console) -> None:
         console.width -= _SPARE
@@ -178,7 +178,7 @@ class Bar:
             self._progress.console.print(Text(plain(text), style="red" if end.state in _TOLD else ""))
 
     def advance(self, line: str | None = None) -> None:
-        """Advance the progress bar, and show the counts beside it, or ``line`` as long as there are none."""
+        """Advance the progress bar, and show the counts beside it, or ``line`` if there are none."""
         self._pace.advance()
         if self._task is not None:
             text = self._tally.words or plain(line or "").partition("\n")[0]
@@ -186,7 +186,7 @@ class Bar:
 
     @property
     def left(self) -> float | None:
-        """Seconds that the rest of the stage will take; None if that cannot be estimated yet."""
+        """Seconds until the stage ends; None if that cannot be estimated yet."""
         return self._pace.left
 
     def note(self, text: str) -> None:
@@ -208,7 +208,7 @@ class Bar:
 
 
 class Lines:
-    """Plain lines: the start and end of each stage, survivors, and how far it is every half minute.
+    """Plain lines: the start and end of each stage, survivors, and the progress every half minute.
 
     That line comes also while nothing ends: a CI that sees no output for minutes ends a job.
     """
@@ -232,14 +232,14 @@ class Lines:
             self._print(text)
 
     def advance(self, line: str | None = None) -> None:
-        """Count, and print how far it is if the last line about that is long enough ago."""
+        """Count a step, and print the progress if the last line about it is long enough ago."""
         self._pace.advance()
         if self._pace.done == self._pace.total or time.monotonic() - self._last >= self._every:
             self._tell(line)
 
     @property
     def left(self) -> float | None:
-        """Seconds that the rest of the stage will take; None if that cannot be estimated yet."""
+        """Seconds until the stage ends; None if that cannot be estimated yet."""
         return self._pace.left
 
     def note(self, text: str) -> None:

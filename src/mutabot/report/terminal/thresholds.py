@@ -1,4 +1,4 @@
-"""The page of thresholds on the terminal: a row for each ladder, with its magnitudes as a bar."""
+"""Print thresholds on the terminal: a row for each ladder, with its magnitudes as a bar."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def _row(one: Ladder) -> tuple[str, ...]:
 
 
 def bar(ladder: Ladder) -> str:
-    """Return one sign per magnitude: whether no round, some or all notice it, or the robot refuses it."""
+    """Return a bar with a sign per magnitude: noticed in no, some or all rounds, or refused."""
     refused = ladder.refused_from
     return "".join(
         "×" if refused is not None and size >= refused else
@@ -61,7 +61,7 @@ def _noticed_by(ladder: Ladder) -> str:
 
 
 def _sections(thresholds: Thresholds) -> dict[str, list[str]]:
-    """What needs a look, by its heading."""
+    """Return the ladders that need attention, by heading."""
     known = [(f"{one.place} {one.name}", one) for one in thresholds.ladders]
     return {
         "Out of order: a larger fault was missed": [
@@ -75,7 +75,7 @@ def _sections(thresholds: Thresholds) -> dict[str, list[str]]:
 
 
 def _confidence(thresholds: Thresholds) -> str:
-    """What the table says about further rounds, and what it cost."""
+    """Return a text on how further rounds may differ, and on the cost."""
     parts = []
     first = max(thresholds.ladders, key=lambda one: len(one.counted), default=None)
     if first is not None and first.median is None:

@@ -1,1 +1,1 @@
-"""A call of an operation on its way: found, understood, mutated, recorded."""
+"""Interception of calls of operations: find them, read them, mutate them, and record them."""

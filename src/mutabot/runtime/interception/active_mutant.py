@@ -1,4 +1,4 @@
-"""Apply one mutant at its site, and recognise calls that the robot refuses, by exceptions and by data."""
+"""Apply one mutant at its site, and recognise calls that the robot refuses."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class RefusedCalls:
     _watched: dict[str, tuple[SiteCall, tuple[Refused, ...]]] = field(default_factory=dict)
 
     def start(self, known: Iterable[RefusedAt]) -> None:
-        """A test begins, of which these are known."""
+        """Begin a test with these known refusals."""
         self._known = {(one.span, one.operation, one.pattern): frozenset(one.numbers) for one in known}
         self._watched.clear()
 
@@ -65,7 +65,7 @@ class RefusedCalls:
         return made.number in self.at(made.site[0], made.call.operation.target, pattern)
 
     def begins(self, made: SiteCall) -> None:
-        """Note a call of the original: refusals from now on belong to it, as they would to a mutated call."""
+        """Note a call of the original, to which refusals from now on belong."""
         if self.on_refused is None:
             return
         self._watched.pop(made.call.operation.target, None)
@@ -75,12 +75,12 @@ class RefusedCalls:
             self._watched[made.call.operation.target] = (replace(made, call=call), refused)
 
     def returned(self, made: SiteCall, result: Any) -> None:
-        """Look whether the answer to a call of the original's says that the robot refuses it."""
+        """Check whether the answer to a call of the original shows that the robot refuses it."""
         if self.on_refused is not None and answered(made.call, result) is not None:
             self.on_refused(made)
 
     def heard(self, name: str, message: Any) -> None:
-        """Look whether a message says that the robot refuses a call of the original's."""
+        """Check whether a message shows that the robot refuses a call of the original."""
         for target, (made, refused) in list(self._watched.items()):
             if self.on_refused is not None and heard(refused, name, message) is not None:
                 del self._watched[target]
@@ -88,13 +88,13 @@ class RefusedCalls:
 
 
 def refused_of(call: Call) -> tuple[Refused, ...]:
-    """Return how the robot says that it refuses this command."""
+    """Return the ways in which the robot can refuse this command."""
     own = call.pattern.refused if call.pattern is not None else ()
     return own or call.operation.refused
 
 
 def answered(call: Call, result: Any) -> str | None:
-    """Return the text with which the answer to a command refuses it; None if it does not refuse."""
+    """Return the text with which the answer to a command refuses it; None if it does not."""
     for refused in refused_of(call):
         if refused.topic is None:
             found = _found(refused, result)
@@ -106,7 +106,7 @@ def answered(call: Call, result: Any) -> str | None:
 
 
 def heard(refused: Iterable[Refused], name: str, message: Any) -> str | None:
-    """Return the text with which a message of this name refuses an earlier command; None if it does not.
+    """Return the text with which a message of this name refuses a command; None if it does not.
 
     Of an action, messages are its results, and the words by which its goals end.
     """
@@ -146,7 +146,7 @@ def _means(wanted: Any, value: Any) -> bool:
 
 
 def _same(value: Any, wanted: Any) -> bool:
-    """Whether they are equal; a truth value is no number."""
+    """Return whether both are equal; a truth value is no number."""
     try:
         return isinstance(value, bool) is isinstance(wanted, bool) and bool(value == wanted)
     except Exception:  # a value of the user's may compare in any way
@@ -155,7 +155,7 @@ def _same(value: Any, wanted: Any) -> bool:
 
 @dataclass
 class ActiveMutant:
-    """A mutant of calls that is at work.
+    """An active mutant of calls.
 
     Attributes:
         mutant: the mutant.
@@ -222,19 +222,19 @@ class ActiveMutant:
         self._does_nothing = self.rule.does_nothing
 
     def _fails(self, error: BaseException, how: str = "") -> None:
-        """Note that neither the robot nor the program, but the operator or the vocabulary is at fault."""
+        """Report that the operator or the vocabulary failed, not the robot or the program."""
         text = f"operator {self.mutant.operator}{how}: {in_words(error)}"
         self.evidence.failure = self.evidence.failure or text
 
     def is_here(self, site: CallPlace, call: Call) -> bool:
-        """Whether a call at this place is the mutant's, by its operation and text command."""
+        """Return whether the mutant acts at this place and on this operation and text command."""
         own = self.mutant.site
         pattern = call.pattern.text if call.pattern is not None else None
         is_own = self.mutant.operation == call.operation.target and self.mutant.pattern == pattern
         return is_own and (own.span, own.role) == site
 
     async def apply(self, adapter: Adapter, made: SiteCall) -> tuple[Any, Reply | None]:
-        """Let the robot do what the mutant makes of a call.
+        """Make a call as the mutant changes it, and return its result and the reply.
 
         Unless the operation is async, nothing here suspends. Returns what the program receives, and the
         robot's last answer.
@@ -275,7 +275,7 @@ class ActiveMutant:
         return await handed(), last
 
     async def catch_up(self, is_async: bool, hits: int) -> None:
-        """Make the calls that were deferred until after a command of the program's, which is over.
+        """Make the calls that were deferred until after a command of the program, which is over.
 
         One that must be awaited waits for a command that is awaited as well, and one from within the command
         for the next: ``hits`` had been when it began. Raises what the robot raises.
@@ -294,7 +294,7 @@ class ActiveMutant:
                     self._acts(late.passage)
 
     def look_back(self, *, at_all: bool = False) -> None:
-        """Look whether the program has written to what it got in the place of the robot's own memory."""
+        """Check whether the program has written to a copy that it got instead of the robot's own memory."""
         if self._handed is None or self.evidence.failure is not None:
             return
         if self._handed.look(at_all=at_all):
@@ -319,7 +319,7 @@ class ActiveMutant:
                 self.watched = ()
 
     def passed_by(self, call: Call) -> None:
-        """Note another call: if it is the same command, refusals from now on belong to that call.
+        """Note another call; if it is the same command, refusals from now on belong to it.
 
         Unless the mutated call was several commands, and the robot has told of some: it will tell of the
         others first.
@@ -335,7 +335,7 @@ class ActiveMutant:
         self._commands += 1
 
     def refused_as(self, said: str | None) -> None:
-        """Note the text with which the robot refused a mutated call; None if it did not refuse."""
+        """Note the text with which the robot refused a mutated call; None if it did not."""
         if said is not None and self.evidence.said is None:
             self.evidence.said = said
 
@@ -351,7 +351,7 @@ class ActiveMutant:
         return replace(found, variant=mutant.variant)
 
     def _idle_answer(self, idle: Idle, adapter: Adapter, call: Call) -> Reply:
-        """Return what the command answers while the robot does nothing: what it answered in the baseline.
+        """Return the command's answer if the robot does nothing, as recorded in the baseline.
 
         Where that changed from call to call it tells something about the world, which stands still now: so
         the robot's last answer in this test goes first, if it has given one.
@@ -364,7 +364,7 @@ class ActiveMutant:
         return Reply().never() if first == LOST else Reply({}, restore(first, call_context(call)))
 
     def note(self, passage: CallRecord) -> None:
-        """Note what became of a call that is over, or of whose mutant this process dies."""
+        """Note the record of a call that is over, or that ends this process."""
         if passage.acted_at_once:
             self._acts(passage)
         elif passage.away:
@@ -400,12 +400,12 @@ async def _not_yet(call: Call, proceed: Proceed) -> Reply:
 
 
 async def _one_is_due(call: Call, proceed: Proceed) -> Reply:
-    """Pass on, unchanged, a call after which an exchanged one is due."""
+    """Pass on, unchanged, a call after which a deferred one is made."""
     return await proceed(call.as_is("an earlier one is made after it"))
 
 
 def _held(call: Call) -> Call:
-    """Return a call that is made later: what the vocabulary describes of its arguments is copied.
+    """Return a call that is made later, with copies of its described arguments.
 
     The program may use a pose again for the next call; an argument that is no data is the same object then. A
     message is data.
@@ -416,7 +416,7 @@ def _held(call: Call) -> Call:
 
 @dataclass(slots=True)
 class _MutatedCall:
-    """One call at the mutant's site: performs what the operator makes of it, and notes how the robot took it.
+    """A call at the mutant's site: performs what the operator makes of it, and notes the robot's reaction.
 
     Attributes:
         does_nothing: whether the operator is to let the robot do nothing.
@@ -470,7 +470,7 @@ class _MutatedCall:
         return reply
 
     def is_own(self, error: BaseException) -> bool:
-        """Whether the operator's own code raised an exception, not the robot, pytest or an event loop."""
+        """Return whether an exception is the operator's own, not the robot's, pytest's or an event loop's."""
         error = error.error if isinstance(error, Carried) else error
         if any(one.matches(error) for one in self.raised):
             return False
@@ -496,7 +496,7 @@ class _MutatedCall:
         return result
 
     def result(self, last: Reply | None, reply: Reply) -> Any:
-        """Return what the program gets of a reply: the robot's own answer where nothing in it is changed."""
+        """Return the program's result for a reply: the robot's own answer if nothing in it is changed."""
         call = self.passage.call
         if self.is_answered and reply.payload is self.kept:
             reply = replace(reply, payload=self.answer)
@@ -507,7 +507,7 @@ class _MutatedCall:
 
     @property
     def _is_usual(self) -> bool:
-        """Whether the robot refuses this call in the original too: it is left to the tests."""
+        """Whether the robot refuses this call in the original too, so that the tests judge it."""
         return self.made.number in self.mutant.usual
 
     def _last_words(self) -> None:
@@ -518,11 +518,11 @@ class _MutatedCall:
 
 
 def is_refusal(error: BaseException, names: Iterable[str]) -> bool:
-    """Whether an operation raised a refusal, or a group of nothing else."""
+    """Return whether an operation raised a refusal, or a group of nothing else."""
     names = frozenset(names)
     return all(is_named(leaf, names) for leaf in leaves(error))
 
 
 def with_refusal(refusals: tuple[Refusal, ...], error: BaseException) -> tuple[Refusal, ...]:
-    """Append a refusal to those of a test, and keep only the last ones of a program that retries for ever."""
+    """Append a refusal to those of a test, keeping only the last ones if a program retries for ever."""
     return (*refusals, Refusal(error))[-REFUSALS:]

@@ -73,7 +73,7 @@ class Invocation:
     text: str | None = field(default=None, compare=False)
 
     def bind(self, signature: Signature) -> None:
-        """Read the arguments by a signature. If they do not fit, the call itself will say what is wrong."""
+        """Bind the arguments to a signature. If they do not fit, the call itself will raise."""
         self.signature = signature
         try:
             bound = signature.bind(*self.args, **self.kwargs)
@@ -94,7 +94,7 @@ class Invocation:
         return None
 
     def start_of(self, path: Path) -> Any:
-        """Return what a path begins at: an argument, or the instance as ``self``."""
+        """Return the object at which a path begins: an argument, or the instance as ``self``."""
         return self.instance if path.root == "self" else self.get(path.root or "")
 
     def changed(self, arguments: Mapping[str, Any]) -> tuple[tuple[Any, ...], dict[str, Any]]:
@@ -125,7 +125,7 @@ class Invocation:
             kwargs[name] = value
 
     def copied(self, names: Collection[str] | None = None) -> Invocation:
-        """Return the same call with copies of all arguments, or of those of these names alone.
+        """Return the same call with copies of all arguments, or of those with these names.
 
         The program may use an object again for its next call.
         """
@@ -161,7 +161,7 @@ class SiteCall:
 
 
 class CallCheck(Protocol):
-    """What is asked before each call of an operation, see ``guarding.OperationGuard``."""
+    """The interface of a check before each call of an operation."""
 
     def check(self, invocation: Invocation) -> None:
         """Raise if the call must not be made."""
@@ -209,7 +209,7 @@ class Adapter:
         self._last_written: dict[str | None, dict[str, Value]] = {}
 
     def reset(self) -> None:
-        """Forget earlier answers and commands: a new test begins."""
+        """Begin a test: forget earlier answers and commands."""
         self._last_answers.clear()
         self._last_written.clear()
         self.lately.clear()
@@ -237,7 +237,7 @@ class Adapter:
         )  # fmt: skip
 
     def _read_message(self, invocation: Invocation, path: Path) -> None:
-        """Find what says which command a call is: text, bytes, or anything else by what it prints."""
+        """Read the text, bytes or printed object that identifies the command of a call."""
         if path.root == "self" and invocation.instance is None:
             self._tell("message", f"{self.operation.target} is called on no object, so it has no self")
         start = invocation.start_of(path)
@@ -250,7 +250,7 @@ class Adapter:
             invocation.text = _text(invocation.message)
 
     def _read_command(self, invocation: Invocation) -> tuple[Pattern | None, dict[str, Value]]:
-        """Find which of the operation's commands a call is, if any, and the values it writes."""
+        """Return the command of a call, if it has one, and the values that it writes."""
         undecided = []
         for pattern in self.operation.patterns:
             said: Mapping[str, Value] | None = {}
@@ -296,7 +296,7 @@ class Adapter:
         return self._read([(one, result) for one in quantities], "result")
 
     def _read(self, quantities: list[tuple[Quantity, Any]], key: str) -> dict[str, Value]:
-        """Read quantities, each from what its path begins at."""
+        """Read quantities, each from the object at which its path begins."""
         values: dict[str, Value] = {}
         for quantity, start in quantities:
             try:
@@ -314,7 +314,7 @@ class Adapter:
         return values
 
     def _tell_undecided(self, patterns: list[Pattern], invocation: Invocation) -> None:
-        """Report the argument whose value is in no mode of the vocabulary."""
+        """Report the argument whose value fits no mode of the vocabulary."""
         cases = [case for pattern in patterns for case in pattern.when if case.key == "mode"]
         for argument in dict.fromkeys(case.argument for case in cases):
             known = tuple(dict.fromkeys(case.value for case in cases if case.argument == argument))
@@ -351,7 +351,7 @@ class Adapter:
         return invocation.caller(wrapped, args, kwargs)
 
     def _changed(self, call: Call, values: Mapping[str, Value]) -> dict[str, Any]:
-        """Return the arguments that are others where a call has these other values, or is its opposite."""
+        """Return the changed arguments of a call with these values, or of its opposite."""
         invocation, pattern = call.payload, call.pattern
         fields, beside = self._parts[pattern.text] if pattern is not None else ((), self.operation.arguments)
         changed: dict[str, Any] = {}
@@ -379,13 +379,13 @@ class Adapter:
         return Reply(values, result)
 
     def observe_message(self, name: str, message: Any) -> None:
-        """Note a message that the program may receive without a call of this operation at any site."""
+        """Note a message that the program may receive without calling this operation."""
         named = self.operation.named
         if named is not None and named.node is None and named.fits(Form.RECEIVE, name, None):
             self.lately[self.operation.target] = self._read_result(self.operation.result, message)
 
     def to_result(self, call: Call, reply: Reply, original: Reply | None) -> Any:
-        """Return what the program receives: the result itself, or a copy with changed values."""
+        """Return the program's result: the result itself, or a copy with changed values."""
         result = reply.payload
         before: Mapping[str, Value] = original.values if original is not None else {}
         for quantity in call.pattern.result if call.pattern is not None else self.operation.result:
@@ -396,7 +396,7 @@ class Adapter:
         return result
 
     def _check_result(self, invocation: Invocation, result: Any) -> None:
-        """Report a coroutine that is never awaited, and a call that succeeded against its signature."""
+        """Report a coroutine that is not awaited, and a successful call that contradicts its signature."""
         if type(result) is CoroutineType:
             text = f"{self.operation.target} returns a coroutine but is not a coroutine function"
             self._tell("call", f"{text}; name the coroutine function behind it")
@@ -406,7 +406,7 @@ class Adapter:
             self._tell("signature", text)
 
     def _other(self, target: str, invocation: Invocation) -> Any:
-        """Return another attribute of the same object, or of its module where that is not possible."""
+        """Return another attribute of the same object, or of its module if that is not possible."""
         module, _, qualname = target.partition(":")
         name = qualname.rpartition(".")[2]
         instance, receiver = invocation.instance, invocation.where.receiver
@@ -419,7 +419,7 @@ class Adapter:
         return getattr(owner, name)
 
     async def _where_is(self, invocation: Invocation, pattern: Pattern | None, quantity: Quantity) -> float:
-        """Return where a quantity is: ask the robot; for a topic, take the last message."""
+        """Return the current value of a quantity: ask the robot; for a topic, take the last message."""
         own = pattern.current if pattern is not None else None
         reading = self.readings.get(own or self.operation.current or "")
         if reading is None:
@@ -442,7 +442,7 @@ class Adapter:
         return await value if inspect.isawaitable(value) else value
 
     def last_answer(self, call: Call) -> Reply | None:
-        """Return what the robot answered last to this command in the running test.
+        """Return the robot's last answer to this command in the running test.
 
         It is a copy, so that the program cannot change it, or the object where that cannot be copied safely.
         None if it has not answered yet, or if that object is no more.
@@ -452,7 +452,7 @@ class Adapter:
         return Reply({}, found) if found is not _GONE else None
 
     def _remember(self, call: Call, result: Any) -> None:
-        """Note an answer as it is now, by its value: nothing of the program's is kept alive."""
+        """Store a copy of an answer, without keeping objects of the program alive."""
         key = call.pattern.text if call.pattern is not None else None
         if key not in self.remembers:
             return
@@ -469,7 +469,7 @@ _GONE = object()
 
 
 def _weakly(answer: Any) -> Callable[[Mapping[str, Any]], Any]:
-    """Return a function that gives an answer as long as the program keeps it."""
+    """Return a function that returns an answer as long as the program keeps it."""
     try:
         reference = weakref.ref(answer)
     except TypeError:
@@ -478,14 +478,14 @@ def _weakly(answer: Any) -> Callable[[Mapping[str, Any]], Any]:
 
 
 def snapshot(value: Any) -> Any:
-    """Return an answer as it is now: a program may change the list or array it got."""
+    """Return a copy of an answer's list or array, which a program may change."""
     if type(value) in _CHANGEABLE or is_of_numpy(value):
         return copy.copy(value)
     return tuple(map(snapshot, value)) if type(value) is tuple else value
 
 
 def call_context(call: Call) -> dict[str, Any]:
-    """Return what a call knows before it is made, by name: the instance as ``self``, and the arguments."""
+    """Return the names that paths of a call can begin with: the instance as ``self``, and the arguments."""
     invocation: Invocation = call.payload
     known = {} if invocation.instance is None else {"self": invocation.instance}
     return {**(invocation.values or {}), **known}
@@ -537,7 +537,7 @@ def _changed_text(pattern: Pattern, call: Call, text: str) -> str:
 
 
 def _names(invocation: Invocation, argument: str) -> tuple[str, ...]:
-    """Return what a vocabulary may call the value of an argument that decides what the call means."""
+    """Return the names by which a vocabulary may denote the value of an argument."""
     path = Path.parse(argument, rooted=True)
     start = invocation.start_of(path)
     try:
@@ -565,7 +565,7 @@ def _unread(quantity: Quantity, error: Exception) -> PathError:
 
 
 def _strange(quantity: Quantity, found: Any) -> StrangeValueError:
-    """Say what to describe instead of an object that is no plain data."""
+    """Return an error that says what to describe instead of an object that is no plain data."""
     path, kind = str(quantity.path), class_name(type(found))
     what = f"{path or 'the result'} is of {kind}, which is not plain data, so its value is left as it is"
     part = next((name for name in ("x", "y", "z") if hasattr(type(found), name)), "magnitude")
@@ -573,6 +573,6 @@ def _strange(quantity: Quantity, found: Any) -> StrangeValueError:
 
 
 def is_mock(value: Any, kind: str = "NonCallableMock") -> bool:
-    """Return whether a value is a mock of a class of ``unittest.mock``, whatever it says that it is."""
+    """Return whether a value is a mock of a class of ``unittest.mock``, whatever class it claims to have."""
     module = sys.modules.get("unittest.mock")
     return module is not None and issubclass(type(value), getattr(module, kind))

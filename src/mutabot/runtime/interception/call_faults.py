@@ -1,4 +1,4 @@
-"""Faults of a call beside other values: it is late, cancelled, fails, or its process dies of it."""
+"""Faults of a call beside changed values: delay, cancellation, failure, and death of the process."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def why_not(means: MiddlewareControls | None, call_fault: CallFault) -> str:
 
 
 async def before(call: Call, at_end: Callable[[], None]) -> None:
-    """Carry out the faults that come before a call; ``at_end`` is called before one ends this process."""
+    """Apply the faults that come before a call; ``at_end`` is called before one ends this process."""
     means = _means(call)
     if CallFault.JUMPED in call.call_faults and means.jump is not None:
         means.jump(call.call_faults[CallFault.JUMPED])
@@ -60,21 +60,21 @@ async def before(call: Call, at_end: Callable[[], None]) -> None:
 
 
 def perform(call: Call, action: Callable[[], Any]) -> Any:
-    """Make a call, or have it made later: what goes out without an answer is not waited for."""
+    """Make a call now or later; calls that send without an answer are not waited for."""
     if CallFault.LATE not in call.call_faults or _is_answered(call):
         return action()
     return _means(call).goes_out(call.call_faults[CallFault.LATE], partial(_quietly, action))
 
 
 async def after(call: Call, result: Any) -> None:
-    """Apply the fault to what a call began; ``result`` is what the call returned."""
+    """Apply the fault to the action that a call has started; ``result`` is the call's result."""
     cancel = _means(call).cancel if CallFault.CANCELLED in call.call_faults else None
     if cancel is not None:
         await cancel(result)
 
 
 def heard_of(call: Call, reply: Reply) -> Reply:
-    """Return the part of a reply that the program receives: a wait for one message gets only the first."""
+    """Return the part of a reply that the program receives; a wait for one message gets the first only."""
     means: MiddlewareControls | None = call.payload.where.means
     if means is None or not means.once or not reply.more:
         return reply
@@ -83,7 +83,7 @@ def heard_of(call: Call, reply: Reply) -> Reply:
 
 
 def hand_over(call: Call, reply: Reply, result: Callable[[Reply], Any]) -> Callable[[], Awaitable[Any]]:
-    """Return how the program gets a reply that is missing or changed; ``result`` makes the program's object.
+    """Return how the program gets a missing or changed reply; ``result`` makes the program's object.
 
     Raises LookupError if the middleware has no way. The result raises what the middleware raises for an
     answer that never comes, and what the program gets instead of a reading.
@@ -109,7 +109,7 @@ def hand_over(call: Call, reply: Reply, result: Callable[[Reply], Any]) -> Calla
 
 
 def missing(name: str) -> BaseException:
-    """Return what the program gets in the stead of a reading: an exception of this class (``module:Name``).
+    """Return the exception (``module:Name``) that replaces a missing reading.
 
     Raises LookupError if there is none, or if it is no exception.
     """
@@ -150,13 +150,13 @@ def _is_answered(call: Call) -> bool:
 
 
 def _quietly(perform: Callable[[], Any]) -> None:
-    """What goes out late may find its node gone: then it is lost."""
+    """Ignore errors of a late call whose node may be gone."""
     with suppress(Exception):
         perform()
 
 
 def _is_node() -> bool:
-    """Return whether this process was started by the tests, rather than being the one that runs them."""
+    """Return whether the tests started this process, rather than being run in it."""
     member = sys.modules.get("mutabot.runtime.processes.member")  # it stands on this module
     return member is not None and bool(member.is_member())
 

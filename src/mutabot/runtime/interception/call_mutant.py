@@ -1,4 +1,4 @@
-"""A mutant of calls as the fault of its process: it acts where the dispatcher meets its site."""
+"""The active fault of mutants of calls, which act where the dispatcher meets their site."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class CallMutant(ActiveFault):
             self._active = ActiveMutant(mutant, operation, context.refusals_of(operation), *told)
 
     def prepare_process(self) -> None:
-        """What the program calls while it is imported counts for every test that comes after."""
+        """Activate the mutant: calls while the program is imported count for all tests."""
         self.context.passing.mutant = self._active
         if self._is_early:
             self._start()
@@ -53,14 +53,14 @@ class CallMutant(ActiveFault):
         self._active.start(seed, context.round, context.test, moment, usual)
 
     def end_test(self) -> None:
-        """Leave the mutant active: what runs between tests is mutated as well."""
+        """Leave the mutant active, since calls between tests are mutated as well."""
 
     def begin_count(self) -> None:
-        """The mutant counts by itself."""
+        """Do nothing, as the mutant resets its own evidence."""
 
     @property
     def evidence(self) -> Evidence:
-        """What it did in the running test."""
+        """What the mutant did in the running test."""
         if self._active is None:
             return Evidence()
         self._active.look_back()

@@ -1,4 +1,4 @@
-"""The way of a call: from the program to the robot, and back.
+"""Pass calls of operations from the program to the robot and back.
 
 Every call of an operation goes it, mutated or not, plain or async. ``Dispatcher.handler`` tells the calls
 that count from all others; ``Dispatcher.dispatch`` has the phases of the way in their order. It is a
@@ -47,7 +47,7 @@ _ALONE = object()
 
 
 def is_untracked() -> bool:
-    """Whether calls in this context are not the program's: see ``Untracked``."""
+    """Return whether calls in this context are not attributed to the program."""
     return _runs.get() == _UNTRACKED
 
 
@@ -78,7 +78,7 @@ class Untracked:
 
 @dataclass(slots=True, eq=False)
 class Dispatcher:
-    """Lets each call of an operation go its way.
+    """Carries out each intercepted call of an operation.
 
     Attributes:
         locator: finds the site of a frame; None for calls that are neither the program's nor the oracle's.
@@ -116,13 +116,13 @@ class Dispatcher:
     calls: Counter[tuple[Span, str, str | None]] = field(default_factory=Counter)
 
     def handler(self, adapter: Adapter) -> Handler:
-        """Return what stands around an operation."""
+        """Return the handler for an operation."""
         named = adapter.operation.named
         # how many ticks and sleeps of a rate there are is a matter of time
         is_counted = named is None or named.form not in (Form.TICK, Form.SLEEP)
 
         def alone(wrapped: Any, instance: Any, args: Any, kwargs: Any, where: Where) -> Any:
-            """Make a call around which nothing stands but its guard."""
+            """Make a call without interception, except by its guard."""
             __tracebackhide__ = True
             if adapter.guard is not None:
                 adapter.guard.check(Invocation(_bound(wrapped, instance), instance, args, kwargs, where))
@@ -181,12 +181,12 @@ class Dispatcher:
         return site
 
     def _given(self, frame: FrameType, adapter: Adapter, in_operation: bool) -> CallPlace | None:
-        """The place where a robot's function was passed on; None if an operation calls it by its name."""
+        """Return the place where a robot's function was passed on; None if it was called by its name."""
         is_named = adapter.operation.last_name in frame.f_code.co_names
         return None if in_operation and is_named else self.given.get(adapter)
 
     def _is_direct(self, frame: FrameType | None, where: Where) -> bool:
-        """Whether the program itself makes the call, rather than a library that it calls."""
+        """Return whether the program itself makes the call, rather than a library that it calls."""
         if where.code is not None or where.site is not None:
             return where.code is None
         ours = packages()
@@ -198,7 +198,7 @@ class Dispatcher:
     async def dispatch(
         self, adapter: Adapter, site: CallPlace, invocation: Invocation, is_async: bool, is_direct: bool
     ) -> Any:
-        """Carry out one call of an operation, and note it.
+        """Carry out one call of an operation, and record it.
 
         Args:
             adapter: its operation's.
@@ -255,7 +255,7 @@ class Dispatcher:
                 pass
 
     async def _perform(self, adapter: Adapter, made: SiteCall) -> Reply:
-        """Let the robot do what the program says."""
+        """Make the call unchanged."""
         __tracebackhide__ = True
         call = made.call
         self.refused.begins(made)
@@ -285,7 +285,7 @@ class Dispatcher:
 
 
 async def _awaited(on_its_way: Coroutine[Any, Any, Any], invocation: Invocation | None) -> Any:
-    """Await a call on its way, or make it as if there were no handler around it."""
+    """Await a call that has begun, or make it as if it had no handler."""
     __tracebackhide__ = True
     try:
         result = await on_its_way
@@ -299,7 +299,7 @@ async def _awaited(on_its_way: Coroutine[Any, Any, Any], invocation: Invocation 
 
 
 def _from_here(error: BaseException) -> TracebackType | None:
-    """Return the traceback of an exception that is caught here, without mutabot's frames below this one."""
+    """Return the traceback of an exception that is caught here, without the frames below this one."""
     here = error.__traceback__
     if here is not None:
         here.tb_next = without_ours(here.tb_next)
@@ -307,7 +307,7 @@ def _from_here(error: BaseException) -> TracebackType | None:
 
 
 def _bound(wrapped: Callable[..., Any], instance: Any) -> Callable[..., Any]:
-    """A method that is called through its class, bound: its arguments are then those of any other call."""
+    """Return a method bound to its instance if it is called through its class."""
     if instance is None or not isinstance(wrapped, wrapt.PartialCallableObjectProxy):
         return wrapped
     function = getattr(wrapped, "__wrapped__")  # noqa: B009  # its stubs do not name it
@@ -316,7 +316,7 @@ def _bound(wrapped: Callable[..., Any], instance: Any) -> Callable[..., Any]:
 
 
 def is_coroutine_function(wrapped: Callable[..., Any]) -> bool:
-    """Whether what a call gives is to be awaited: also of mocks, and of objects that are called."""
+    """Return whether the result of a call has to be awaited; mocks and callable objects included."""
     function = wrapped.__func__ if type(wrapped) is MethodType else wrapped
     if type(function) is FunctionType and not function.__dict__:  # the most of them
         return bool(function.__code__.co_flags & inspect.CO_COROUTINE)
@@ -344,7 +344,7 @@ _callers: ModuleCache[tuple[int, int, bool], tuple[Caller, dict[str, Any]]] = Mo
 
 
 def caller_of(frame: FrameType, is_async: bool) -> Caller:
-    """Return what makes a call as if this frame did, where it stands now.
+    """Return the frame of a caller, with its current position.
 
     Warnings with ``stacklevel=2``, ``sys._getframe(1)`` and ``inspect.stack()[1]`` tell by whom a function
     was called. Between the program and an operation there are frames of ours; the last of them has the
@@ -376,7 +376,7 @@ def _made(code: CodeType, instruction: int, is_async: bool) -> CodeType:
 
 
 def _all_in_line(units: int) -> bytes:
-    """Return a table of places that gives the first line to all of a code, and no columns.
+    """Return a line table that gives all of a code the first line and no columns.
 
     An entry covers up to eight code units. The format: CPython, Objects/locations.md (3.11 to 3.13). To
     compile a tree takes ten times as long, and every fork calls from places where nothing has called before.

@@ -1,4 +1,4 @@
-"""Recognise frames that carry operations out, and remove mutabot's own frames from tracebacks.
+"""Recognise frames that carry out operations, and remove mutabot's frames from tracebacks.
 
 An exception keeps the frames that it came through, and these what a call was given: ours would keep it longer
 than the robot's own do.
@@ -21,19 +21,19 @@ borders: dict[int, CodeType] = {}
 
 
 def border(function: F) -> F:
-    """Mark a function: calls below its frames are made by an operation, not by the program."""
+    """Mark a function whose frames carry out an operation, so that calls below are not the program's."""
     code = cast("FunctionType", function).__code__
     borders[id(code)] = code
     return function
 
 
 def is_border(code: CodeType) -> bool:
-    """Whether frames of this code carry an operation out."""
+    """Return whether frames of this code carry out an operation."""
     return id(code) in borders
 
 
 def is_within_border(frame: FrameType | None) -> bool:
-    """Whether an operation is further out on the stack."""
+    """Return whether an outer frame carries out an operation."""
     while frame is not None and id(frame.f_code) not in borders:
         frame = frame.f_back
     return frame is not None
@@ -53,7 +53,7 @@ class ModuleCache(Generic[K, V]):
         self._keys: dict[weakref.ref[ModuleType], set[K]] = {}
 
     def keep(self, names: dict[str, Any], key: K, value: V) -> V:
-        """Remember what was found out about ``names``, if they are those of a module."""
+        """Store a fact about ``names`` if they are the global names of a module."""
         module = sys.modules.get(names.get("__name__", ""))
         if type(module) is ModuleType and vars(module) is names:
             self.known[key] = value
@@ -66,7 +66,7 @@ class ModuleCache(Generic[K, V]):
 
 
 def without_ours(traceback: TracebackType | None) -> TracebackType | None:
-    """Remove mutabot's frames from a traceback, which leaves those of the operation itself.
+    """Remove mutabot's frames from a traceback; those of the operation stay.
 
     None of them may be running any more. The frames of the operation lead back to them: what they held is let
     go. What stands between the program and the operation is all ours, also what a package brought; in the
@@ -88,5 +88,5 @@ def without_ours(traceback: TracebackType | None) -> TracebackType | None:
 
 
 def is_ours(frame: FrameType) -> bool:
-    """Whether it runs code of mutabot."""
+    """Return whether a frame runs code of mutabot."""
     return str(frame.f_globals.get("__name__", "")).partition(".")[0] == GROUP

@@ -1,4 +1,4 @@
-"""Guards: what is asked before each call of an operation, whoever makes it, and can keep it from the robot.
+"""Guards, which are asked before each call of an operation and can keep it from the robot.
 
 A guard sees the values that go out: they are read once more from the arguments that the operation is called
 with, after everything that may have changed them. So it makes no difference which provider has a fault at
@@ -29,7 +29,7 @@ class GuardedCall(BaseException):  # it is no error of the program's
 
 
 class CallGuard(ABC):
-    """Says which calls of operations must not reach the robot. The base of those that packages bring.
+    """The base class of guards, which decide which calls of operations must not reach the robot.
 
     It lives in each process of the tests.
 
@@ -41,11 +41,11 @@ class CallGuard(ABC):
         self.table = table
 
     def start_test(self) -> None:  # noqa: B027  # most guards remember nothing
-        """A test begins."""
+        """Begin a test."""
 
     @abstractmethod
     def why_not(self, call: Call, unread: Mapping[str, str]) -> str | None:
-        """Why a call must not reach the robot, in a sentence; None if it may.
+        """Return why a call must not reach the robot, in a sentence; None if it may.
 
         Args:
             call: the call as the robot would get it, values in the units of their quantities. Its pattern is
@@ -72,12 +72,12 @@ class CallGuards:
 
     @classmethod
     def load(cls, declared: Iterable[tuple[str, Mapping[str, Any]]], *parts: Any) -> CallGuards | None:
-        """The guards that a job names; None if it names none. Raises ExtensionError."""
+        """Return the guards that a job names; None if it names none. Raises ExtensionError."""
         made = tuple(_made(reference, table) for reference, table in declared)
         return cls(made, *parts) if made else None
 
     def start_test(self) -> None:
-        """A test begins."""
+        """Begin a test for all guards."""
         for guard in self.guards:
             guard.start_test()
 
@@ -91,7 +91,7 @@ class CallGuards:
 
 @dataclass(slots=True)
 class OperationGuard:
-    """What stands before one operation.
+    """The check before each call of one operation.
 
     Attributes:
         guards: those of this process.
@@ -107,14 +107,14 @@ class OperationGuard:
         self.reader.on_problem = self._note
 
     def check(self, invocation: Invocation) -> None:
-        """Ask before a call is made. Raises GuardedCall if it must not be."""
+        """Check a call before it is made. Raises GuardedCall if it must not be."""
         __tracebackhide__ = True
         why = self._why_not(invocation)
         if why is not None:
             self.guards.refuse(f"{self.reader.operation.target}: {why}")
 
     def check_opposite(self, target: str) -> None:
-        """Ask before the opposite of the operation is called, which has a guard only in the vocabulary."""
+        """Check a call of the opposite operation, which may have no guard of its own."""
         if target not in self.guards.targets:
             self.guards.refuse(f"{target}: no guard can read it, since the vocabulary does not describe it")
 

@@ -1,4 +1,4 @@
-"""Answers that are the robot's own memory, and copies of values.
+"""Copies of values, and of answers that are the robot's own memory.
 
 To write to an array that a simulator hands out is to command the robot. A mutated reading is a copy of it:
 what the program writes to the copy is lost, so such a run says nothing of the tests.
@@ -37,7 +37,7 @@ def copied(value: Any) -> Any:
 
 
 def is_live(answer: Any, quantities: Iterable[Quantity]) -> bool:
-    """Whether somebody else holds an answer, or a part of it that the vocabulary describes.
+    """Return whether an object other than the program holds an answer or a described part of it.
 
     To be asked as soon as the answer is there, by the one function that has it.
     """
@@ -50,7 +50,7 @@ def is_live(answer: Any, quantities: Iterable[Quantity]) -> bool:
 
 
 def _is_held(value: Any, known: int) -> bool:
-    """``known``: the references to it that are no more than how one comes here."""
+    """Return whether a value is held elsewhere; ``known`` is the number of its references here."""
     if issubclass(type(value), (*_FIXED, tuple)):  # of a tuple, the parts may be written to
         return False
     if sys.getrefcount(value) > known:
@@ -66,7 +66,7 @@ def _is_held(value: Any, known: int) -> bool:
 
 
 def _parts(answer: Any, path: Path) -> Iterator[Any]:
-    """What lies on the way to a quantity, bar the answer itself and copies of parts of it."""
+    """Yield the parts of an answer on the way to a quantity, except the answer itself and fresh copies."""
     value = answer
     for step in path.steps:
         if step.bounds is not None:
@@ -90,7 +90,7 @@ while is_live(_NEW, (_FIRST,)):
 
 
 class HandedCopies:
-    """Copies of live answers that the program has of a mutated reading.
+    """Copies of live answers that the program got from a mutated reading.
 
     Attributes:
         written: whether it has written to one.
@@ -112,7 +112,7 @@ class HandedCopies:
                 self._handed.append((after, _content(after)))
 
     def look(self, *, at_all: bool = False) -> bool:
-        """Return whether the program has written to a value that it was handed; forget those it dropped.
+        """Return whether the program has written to a copy; forget copies that it dropped.
 
         Without ``at_all`` only the last ones are looked at: a program may keep every reading that it takes.
         """
@@ -137,7 +137,7 @@ _IN_RECORD = sys.getrefcount(_record[0])
 
 
 def _content(value: Any) -> dict[Any, Any]:
-    """Return what is in an object itself, to be compared later; its parts are looked at by themselves."""
+    """Return the content of an object itself, for a later comparison, without that of its parts."""
     if hasattr(value, "tobytes") and hasattr(value, "dtype"):
         return {None: (str(value.dtype), value.tobytes())}
     if isinstance(value, list):
@@ -156,7 +156,7 @@ def _slots(kind: type) -> tuple[str, ...]:
 
 
 def _is_as_before(value: Any, before: dict[Any, Any]) -> bool:
-    """Whether an object holds the same objects as before, or equal plain values."""
+    """Return whether an object holds the same objects as before, or equal plain values."""
     now = _content(value)
     return all(
         _is_alike(before.get(key, _MISSING), now.get(key, _MISSING))
@@ -166,7 +166,7 @@ def _is_as_before(value: Any, before: dict[Any, Any]) -> bool:
 
 
 def _is_remembered(value: Any, key: Any) -> bool:
-    """Return whether a new attribute is a value that the object caches for itself, which is no write."""
+    """Return whether a new attribute is a value that the object caches for itself."""
     if isinstance(value, dict) or not isinstance(key, str):
         return False
     return key.startswith("_") or isinstance(getattr(type(value), key, None), cached_property)

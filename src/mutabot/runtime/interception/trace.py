@@ -1,4 +1,4 @@
-"""The trace: which sites a test hits, in which order, with which values.
+"""The trace: which sites a test reaches, in which order, with which values.
 
 Whose call it is, and exactly where it stands: from the frames of the running program.
 """
@@ -41,7 +41,7 @@ _TOLD = 2000
 
 @dataclass(slots=True)
 class Recorder:
-    """Sites of the session, and the trace of the running test.
+    """The sites of the session, and the trace of the running test.
 
     Attributes:
         on_site: told about each site when it is first reached.
@@ -67,7 +67,7 @@ class Recorder:
     _indexes: dict[SiteSeen, int] = field(default_factory=dict)
 
     def start(self) -> None:
-        """A new test begins."""
+        """Begin a new test."""
         self.trace, self.when = [], []
         self.truncated = False
         if self.answers is not None:
@@ -88,7 +88,7 @@ class Recorder:
             self.on_hit(*self.trace[-1])
 
     def index_of(self, seen: SiteSeen) -> int:
-        """Return the index of a site that was reached here or, under another index, in another process."""
+        """Return the index of a site that was reached here or in another process."""
         key = replace(seen, index=-1)
         index = self._indexes.get(key)
         if index is None:
@@ -107,7 +107,7 @@ class Recorder:
     def told_of(
         self, index: int, written: Any, read: Any, began: float | None, ended: float | None = None
     ) -> RecordedCall:
-        """Return one call at the site of this index; ``ended`` is ``began`` where that is not known."""
+        """Return one call at the site of this index; ``ended`` is ``began`` if it is not known."""
         site = self.sites[index]
         place = f"{site.span.file}:{site.span.line}"
         role = Role.ORACLE if site.oracle else Role.PROGRAM
@@ -116,7 +116,7 @@ class Recorder:
 
 
 def seen_by(made: SiteCall) -> SiteSeen:
-    """Return the site of a call, whose index is not known."""
+    """Return the event of a site whose index is not known."""
     (span, role), call = made.site, made.call
     pattern = call.pattern.text if call.pattern is not None else None
     return SiteSeen(
@@ -140,7 +140,7 @@ class Answers:
     _varying: set[int] = field(default_factory=set)
 
     def start(self) -> None:
-        """A new test begins."""
+        """Begin a new test."""
         self._first.clear()
         self._varying.clear()
 
@@ -172,14 +172,14 @@ class Answers:
 
 
 def _can_be_lost(call: Call) -> bool:
-    """Whether it sends the goal of an action to a server that may never answer."""
+    """Return whether it sends the goal of an action to a server that may never answer."""
     named, means = call.operation.named, call.payload.where.means
     is_goal = named is not None and named.form is Form.GOAL
     return is_goal and means is not None and means.lost is not None
 
 
 def _frozen(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return copies of the values: a program may change its lists and arrays later."""
+    """Return copies of values whose lists and arrays a program may change later."""
     found: dict[str, Any] = {
         name: list(value) if isinstance(value, list) else value for name, value in values.items()
     }
@@ -187,7 +187,7 @@ def _frozen(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 class Locator:
-    """Finds the nearest frame that lies in the configured program or oracle paths.
+    """Finds the nearest frame in the program or the oracle.
 
     Args:
         root: absolute path of the project.
@@ -211,7 +211,7 @@ class Locator:
         self._interpreted = [one for one in front_ends() if one is not PYTHON]
 
     def locate(self, frame: FrameType | None, *, in_operation: bool = False) -> CallPlace | None:
-        """Span and role of the call that is running in ``frame`` or the nearest frame around it.
+        """Return span and role of the call that runs in ``frame`` or the nearest frame around it.
 
         None if an operation makes the call: its frame is nearer. ``in_operation``: whether this context is
         that of an operation, which may have begun a task of its own. What runs the loop is no part of it.
@@ -239,11 +239,11 @@ class Locator:
         return self._span(code, _DEFINITION, PYTHON.definition_of, code), role
 
     def relative(self, filename: str) -> str:
-        """The path relative to the root, with forward slashes."""
+        """Return the path relative to the root, with forward slashes."""
         return os.path.relpath(real_path(filename), self._root).replace(os.sep, "/")
 
     def is_of_project(self, filename: str) -> bool:
-        """Whether a file is the user's own: it lies under the root and is not installed."""
+        """Return whether a file is the user's own: below the root and not installed."""
         relative = self.relative(filename)
         return not (relative.startswith("..") or "site-packages" in relative or filename.startswith("<"))
 
@@ -256,7 +256,7 @@ class Locator:
         return os.path.realpath(os.path.join(self._root, path))
 
     def _in_interpreter(self, frame: FrameType) -> CallPlace | None:
-        """Find the site in a frame of an interpreter that runs a file of the program or the oracle."""
+        """Return the site in a frame of an interpreter that runs a file of the program or the oracle."""
         for front_end in self._interpreted:
             filename = front_end.file_of(frame)
             role = self.role(filename) if filename is not None else None
@@ -267,7 +267,7 @@ class Locator:
     def _span(
         self, code: CodeType, instruction: int, find: Callable[[_Asked], tuple[Extent, str]], asked: _Asked
     ) -> Span:
-        """The place of an instruction of the code, found once."""
+        """Return the span of an instruction of the code, cached."""
         key = (id(code), instruction)
         known = self._spans.get(key)
         if known is None:

@@ -1,1 +1,1 @@
-"""Processes that continue from the state of another: forks for mutants, copies of a session."""
+"""Forked processes that continue a running session: mutants, and copies of a fork server."""

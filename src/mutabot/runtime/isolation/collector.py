@@ -1,4 +1,4 @@
-"""Freeze objects in copies of the fork server until the program or its tests could notice.
+"""Freeze objects for the garbage collector in copies of the fork server, until code could notice.
 
 The objects that exist before any test are frozen: a collection would write to each, and so take from every
 fork what it shares with its parent. They are thawed before the first question or collection of the program's
@@ -32,14 +32,14 @@ _is_frozen = False
 
 
 def watch() -> None:
-    """Thaw objects from now on before anybody can notice. To be called before user code is imported."""
+    """Thaw objects before code could notice, from now on. Call it before user code is imported."""
     listen(_QUESTIONS, lambda event, arguments: _thaw())
     for name in _FUNCTIONS:
         setattr(gc, name, _thawing(getattr(gc, name)))
 
 
 def freeze() -> None:
-    """Freeze all objects that there are, unless some are frozen already."""
+    """Freeze all existing objects, unless some are frozen already."""
     global _is_frozen  # noqa: PLW0603  # a process has one collector
     if gc.get_freeze_count():
         return

@@ -1,4 +1,4 @@
-"""Keep a forked process apart from its parent: open files, output, random state, and private files.
+"""Separate a forked process from its parent: open files, output, random state, and private files.
 
 A process with private files, and all that it starts, sees the project as it is on disk, and its own changes.
 
@@ -38,7 +38,7 @@ _OF_THE_LAYER = (".overlay.origin", ".overlay.uuid", ".overlay.impure", ".overla
 
 
 def private_folders(root: str) -> tuple[str, ...]:
-    """The folders that become private: the project, and those of temporary files and of shared memory."""
+    """Return the folders that become private: the project, temporary files, and shared memory."""
     return _private_folders(root, tempfile.gettempdir())
 
 
@@ -75,7 +75,7 @@ class PrivateFiles:
         self._own = self.home
 
     def make(self) -> str | None:
-        """Make them.
+        """Make files private in this process.
 
         Returns why that is not possible, in words, and nothing has changed then, bar the namespace; None if
         it is done.
@@ -99,7 +99,7 @@ class PrivateFiles:
         return self.why_not
 
     def forbids_fork(self) -> str | None:
-        """Why open files or missing namespaces forbid a fork right now; None if they do not."""
+        """Return why open files or missing namespaces forbid a fork right now; None if they do not."""
         if self.why_not is not None:
             return f"its files are not private: {self.why_not}"
         folders = private_folders(self.root)
@@ -132,7 +132,7 @@ class PrivateFiles:
         os.utime(file, (after, after))
 
     def enter(self, name: str) -> str:
-        """In a process that was just forked, separate it from its parent, which waits.
+        """Separate a process that was just forked from its parent, which waits.
 
         ``name`` is unlike that of any other fork. Returns the folder of the process. Raises OSError if it
         cannot be kept apart.
@@ -148,11 +148,11 @@ class PrivateFiles:
         return folder
 
     def _go_back(self) -> None:
-        """Go where nothing is covered; the working folder is the root then."""
+        """Return to the mounts without overlays; the working folder is the root then."""
         call("setns", self._bare, _CLONE_NEWNS, what="there is no way back to the files on disk")
 
     def go_on_apart(self, folder: str) -> None:
-        """In a process that was just forked, continue with private files, while its parent waits.
+        """Continue with private files in a process that was just forked, while its parent waits.
 
         What the parent did to its files is copied. ``folder`` lies in the home, which both have. Raises
         OSError if that is not possible.
@@ -174,7 +174,7 @@ class PrivateFiles:
         os.chdir(place)
 
     def _lay(self) -> None:
-        """Lay an overlay over each private folder."""
+        """Mount an overlay over each private folder."""
         folders = (*private_folders(self.root), os.path.dirname(os.path.dirname(self.home)))
         if self._below is None:  # the same in all forks, and the list is long
             self._below = _mounts_below(folders)
@@ -195,7 +195,7 @@ class PrivateFiles:
                             _mount(_path(descriptor), inner, None, _MS_BIND | _MS_REC)
 
     def _has_memory(self) -> bool:
-        """Mount a file system in memory in the process's own folder, if that can hold layers."""
+        """Mount a file system in memory in the process's folder. Return whether it can hold layers."""
         if not self._is_privileged:  # many kernels keep no attributes there for ordinary users
             return False
         folder = os.path.join(self._own, _IN_MEMORY)
@@ -208,7 +208,7 @@ class PrivateFiles:
 
 
 def may_be_private() -> bool:
-    """Return whether this system lets a process have private files, by trying it in a child."""
+    """Return whether this system allows private files, by trying it in a child."""
     pid = os.fork()
     if pid == 0:
         try:
@@ -220,7 +220,7 @@ def may_be_private() -> bool:
 
 
 def _copy(source: str, target: str, links: dict[tuple[int, int], str]) -> None:
-    """Copy what is in the upper layer of an overlay: with what it deletes, owners, times and rights.
+    """Copy the upper layer of an overlay, with deletions, owners, times and rights.
 
     ``links`` takes files that have several names, by device and inode.
     """
@@ -263,7 +263,7 @@ def _copy_status(source: str, target: str, status: os.stat_result) -> None:
 
 
 def _enter_namespace() -> bool:
-    """Enter a mount namespace; True if that needed no user namespace."""
+    """Enter a mount namespace. Return whether that needed no user namespace."""
     user, group = os.geteuid(), os.getegid()
     try:
         call("unshare", _CLONE_NEWNS)
@@ -282,7 +282,7 @@ def _enter_namespace() -> bool:
 
 
 def _is_part(folder: str, folders: Collection[str], mounted: list[str]) -> bool:
-    """Return whether the overlay over another folder covers this one, without a mount in between."""
+    """Return whether the overlay over another folder covers this one."""
     between = [point for point in mounted if is_below(folder, point)]
     return any(
         is_below(folder, other) and not any(point != other and is_below(point, other) for point in between)
@@ -292,13 +292,13 @@ def _is_part(folder: str, folders: Collection[str], mounted: list[str]) -> bool:
 
 
 def _layers(own: int, number: int, *, in_memory: bool) -> str:
-    """Where the layers over a folder lie; what was copied from the parent lies on the disk."""
+    """Return the path of the layers of a folder; those copied from the parent are on disk."""
     on_disk = f"{_path(own)}/{_LAYERS}/{number}"
     return f"{_path(own)}/{_IN_MEMORY}/{number}" if in_memory and not os.path.isdir(on_disk) else on_disk
 
 
 def _lay_over(folder: str, lower: int, layers: str) -> None:
-    """Cover a folder by an overlay with these layers."""
+    """Mount an overlay with these layers over a folder."""
     os.makedirs(f"{layers}/work")
     with suppress(FileExistsError):  # it was copied
         os.mkdir(f"{layers}/{_UPPER}")
@@ -313,7 +313,7 @@ def _lay_over(folder: str, lower: int, layers: str) -> None:
 
 
 def _mounts_below(folders: Collection[str]) -> list[str]:
-    """Return the mount points below these folders, outermost first, since an overlay would hide them."""
+    """Return the mount points below these folders, outermost first, as an overlay would hide them."""
     with open("/proc/self/mountinfo", "rb") as file:
         points = [mount_point(line) for line in file]
     found = dict.fromkeys(
@@ -325,14 +325,14 @@ def _mounts_below(folders: Collection[str]) -> list[str]:
 
 
 def mount_point(line: bytes) -> str:
-    """Where a file system is mounted, by a line of ``/proc/self/mountinfo``: in bytes, some of them octal."""
+    """Return the mount point in a line of ``/proc/self/mountinfo``, in which some bytes are octal."""
     field = line.split(b" ")[4]
     return os.fsdecode(re.sub(rb"\\([0-7]{3})", lambda match: bytes([int(match[1], 8)]), field))
 
 
 @contextmanager
 def _opened(paths: list[str]) -> Iterator[list[int]]:
-    """Open descriptors of these folders, which stay valid if something is mounted over their names."""
+    """Open descriptors of these folders, which stay valid when something is mounted over them."""
     descriptors: list[int] = []
     try:
         descriptors.extend(os.open(path, os.O_PATH | os.O_CLOEXEC) for path in paths)
@@ -352,7 +352,7 @@ def _mount(source: str, target: str, options: str | None, flags: int, kind: str 
 
 
 def is_below(path: str, folder: str) -> bool:
-    """Whether a path is a folder or lies in it."""
+    """Return whether a path is a folder or lies in it."""
     return path == folder or path.startswith(folder.rstrip("/") + "/")
 
 
@@ -362,7 +362,7 @@ _Shared = tuple[int, int, int, int]
 
 
 def _written() -> Iterator[tuple[str, int]]:
-    """Paths of the files that are open for writing and have a name, and how they are open."""
+    """Yield the paths of named files that are open for writing, and how they are open."""
     for descriptor, status in descriptors():
         is_named = stat.S_ISREG(status.st_mode) and status.st_nlink > 0
         mode = fcntl.fcntl(descriptor, fcntl.F_GETFL) & os.O_ACCMODE
@@ -371,7 +371,7 @@ def _written() -> Iterator[tuple[str, int]]:
 
 
 def isolate_files(log: os.stat_result, instead: int | None = None) -> None:
-    """In a process that was just forked, give open files and descriptors positions of their own.
+    """Give open files positions of their own, in a process that was just forked.
 
     An open file has one position for parent and child; the child opens its own. Of a deleted temporary file,
     such as those that pytest captures output in, it makes a copy. What leads to the parent's log leads
@@ -395,7 +395,7 @@ def isolate_files(log: os.stat_result, instead: int | None = None) -> None:
 
 
 def _renew(descriptor: int, status: os.stat_result, copies: dict[_Shared, int]) -> None:
-    """Let a descriptor lead to the same file, but to an opening of it that is this process's own."""
+    """Replace a descriptor by a new opening of the same file, with a position of its own."""
     try:
         position = os.lseek(descriptor, 0, os.SEEK_CUR)
     except OSError:  # a namespace, which has no positions
@@ -416,7 +416,7 @@ def _renew(descriptor: int, status: os.stat_result, copies: dict[_Shared, int]) 
 
 
 def _opened_again(descriptor: int, position: int, flags: int) -> int | None:
-    """Open a file a second time; None if it is mutabot's own, in a folder that tests do not see."""
+    """Open a file a second time; return None if it is mutabot's own, in a folder hidden from tests."""
     path = os.readlink(f"/proc/self/fd/{descriptor}")
     try:
         opened = os.open(path, flags & ~(os.O_CREAT | os.O_EXCL | os.O_TRUNC) | os.O_CLOEXEC)
@@ -427,7 +427,7 @@ def _opened_again(descriptor: int, position: int, flags: int) -> int | None:
 
 
 def _in_memory(descriptor: int, position: int) -> int:
-    """A private copy of a file in memory, at the same position."""
+    """Return a private copy of a file in memory, at the same position."""
     copied, offset = os.memfd_create("copy"), 0
     while chunk := os.pread(descriptor, _CHUNK, offset):
         offset += os.pwrite(copied, chunk, offset)

@@ -1,4 +1,4 @@
-"""The fork parent: runs the suite once as the original, and forks where a mutant first differs.
+"""The fork parent, which runs the suite once as the original and forks each mutant where it first differs.
 
 At the first hit of a site the parent forks a child for each of the site's mutants. A child inherits all that
 came before, takes on its mutant, and goes on to the end of the session, as the whole suite would with the
@@ -52,7 +52,7 @@ _LOOKS = 0.5
 
 @dataclass(slots=True)
 class Child:
-    """A forked process that runs.
+    """A running fork.
 
     Attributes:
         mutant: id of its mutant.
@@ -78,7 +78,7 @@ class Child:
     is_unwanted: bool = False
 
     def is_out_of_time(self, now: float) -> bool:
-        """Whether it is to be ended."""
+        """Return whether its time is up, so that it has to be ended."""
         return now >= self.deadline.until and not self.overdue and self.deadline.is_over(self.pids.fork)
 
 
@@ -128,7 +128,7 @@ class ForkParent:
                 self._live.setdefault(key, []).append(mutant)
 
     def begin_test(self, test: str) -> None:
-        """A test is about to begin: fork for the mutants that differ from its start on, or below it."""
+        """Fork, before a test begins, the mutants that differ from its start on."""
         self._is_overtaken()  # also if no place is reached before
         self._test, self._number = test, self._numbers[test]
         self._copied, self._test_controls = False, 0
@@ -146,7 +146,7 @@ class ForkParent:
         return self._live.keys()
 
     def reach(self, *keys: Key, is_due: Callable[[Mutant], bool] = lambda mutant: True) -> None:
-        """Fork for each mutant that differs from these keys on and has no process yet.
+        """Fork each mutant that differs from these keys on and has no process yet.
 
         In a child this process is its mutant from here on. ``is_due``: whether a mutant does differ.
         """
@@ -155,7 +155,7 @@ class ForkParent:
             self._fork([mutant for mutant in here if is_due(mutant)])
 
     def places(self) -> dict[int, frozenset[int]]:
-        """The alternatives of the program text that are live in the running test, by place."""
+        """Return the alternatives of the program text that are live in the running test, by place."""
         if self._places is None:
             found: dict[int, set[int]] = {}
             for _, place, index in of_kind((key for key, here in self._live.items() if here), TEXT):
@@ -164,7 +164,7 @@ class ForkParent:
         return self._places
 
     def tell_undiverged(self, hits: Mapping[int, int]) -> None:
-        """Report, at the end of a test, which mutants of the program text did not differ from the original.
+        """Report, at the end of a test, which mutants of the program text did not differ in it.
 
         ``hits``: evaluations of each place in this test, and before any. If the test has forked copies of
         this process they are not all: a mutant may have differed in one, as in processes that were started
@@ -199,7 +199,7 @@ class ForkParent:
                 self._fork_each([self._test_control_of(due[0]), *due] if self._number >= 0 else due)
 
     def _wanted(self, mutants: list[Mutant]) -> list[Mutant]:
-        """The mutants to fork: after an interruption only controls, on which other outcomes depend."""
+        """Return the mutants to fork; after an interruption only controls, which other outcomes need."""
         if not self._is_stopped():
             return mutants
         unwanted = tuple(one.id for one in mutants if one.family != Identity.family)
@@ -208,7 +208,7 @@ class ForkParent:
         return [one for one in mutants if one.family == Identity.family]
 
     def _test_control_of(self, mutant: Mutant) -> Mutant:
-        """The identity at this mutant's place, which shows what forking alone does to the test."""
+        """Return the identity control at this mutant's place, which shows the effect of forking."""
         self._test_controls += 1
         name = Identity.name
         self._of_control = self.active[mutant.id].control()
@@ -238,7 +238,7 @@ class ForkParent:
             self.pipe.send(TestControls(self._test, self._test_controls))
 
     def _is_overtaken(self) -> bool:
-        """Whether processes were started before any test: what they did, they did as the original."""
+        """Return whether processes were started before any test, which ran as the original."""
         if self._number < 0:
             self._overtaken = self._overtaken or self.has_started()
         return self._overtaken
@@ -268,7 +268,7 @@ class ForkParent:
                 namespaces.leave_out(monotonic() - began)
 
     def _fork_one(self, mutant: Mutant, began: float) -> namespaces.ForkedPids | None:
-        """Fork; None in the child, which becomes this mutant and continues at the time ``began``."""
+        """Fork. Return None in the child, which becomes this mutant and continues at the time ``began``."""
         slot = self._slots.get(mutant.id, -1)
         self._finished[slot], self._tests[slot] = 0, self._number
         # random registers a hook that seeds anew in every child
@@ -300,7 +300,7 @@ class ForkParent:
         return pids
 
     def _begin_child(self, mutant: Mutant, began: float) -> None:
-        """Let go of what is the parent's, and become the mutant."""
+        """Release what belongs to the parent, and become the mutant."""
         os.setsid()  # it leads its group and session, as a test process does
         self.pipe.go_on_apart()
         try:
@@ -333,7 +333,7 @@ class ForkParent:
         self._tests[slot] = number
 
     def finish(self) -> None:
-        """Wait for the children that still run after all tests, without holding a token."""
+        """Wait, after all tests, for children that still run, without holding a token."""
         self._give_back()
         while self._children:
             self._is_stopped()
@@ -341,7 +341,7 @@ class ForkParent:
                 self._give_back()
 
     def _is_stopped(self) -> bool:
-        """Whether the campaign was interrupted: then mutants that still run are ended, and no more begin."""
+        """Return whether the campaign was interrupted, so that no more mutants begin and others are ended."""
         if not self._stopped and os.path.exists(os.path.join(self.files.home, STOP)):
             self._stopped = True
             unwanted = [one for one in self._children.values() if not self._is_to_end(one)]
@@ -353,11 +353,11 @@ class ForkParent:
         return self._stopped
 
     def _is_to_end(self, child: Child) -> bool:
-        """Whether a child may end by itself after an interruption: controls, and those that reported all."""
+        """Return whether a child may end by itself after an interruption, as controls may."""
         return child.is_control or bool(self._finished[self._slots[child.mutant]])
 
     def _limit(self, test: int) -> Limit:
-        """What a fork may take for a test, by its number; -1 before any."""
+        """Return the time limit of a fork for a test, by its number; -1 before any."""
         if test < 0:
             return self.forking.startup
         return self.forking.limits.get(self._name_of(test), self.forking.limit)
@@ -367,7 +367,7 @@ class ForkParent:
         return self.tests[min(test, len(self.tests) - 1)] if test >= 0 else ""
 
     def _take_token(self) -> None:
-        """The parent's token went to the child: wait for another, from the pool or from a child's end."""
+        """Wait for a token, from the pool or from a child's end, as the parent's went to the child."""
         with self._pool() as opened:
             pool = None if self.forking.serial else opened  # then no other child may run meanwhile
             while (pool is None and self._children) or (pool is not None and not self._take_free(pool)):
@@ -392,7 +392,7 @@ class ForkParent:
 
     @contextmanager
     def _pool(self) -> Iterator[int | None]:
-        """The pipe of the token pool, open only for this moment: tests may count open descriptors."""
+        """Open the pipe of the token pool for a moment only, since tests may count open descriptors."""
         try:
             pool = os.open(self.forking.tokens, os.O_RDWR | os.O_NONBLOCK | os.O_CLOEXEC)
         except OSError:  # the test gave up the right to: what ends is all that there is
@@ -408,7 +408,7 @@ class ForkParent:
         self.pipe.send(TokensHeld(count))
 
     def _wait(self, other: int | None = None) -> list[int]:
-        """Wait until children end or run out of time, or ``other`` can be read; return those that ended."""
+        """Wait until children end or exceed their limit, or ``other`` is readable. Return the ended ones."""
         until = min((child.deadline.until for child in self._children.values()), default=float("inf"))
         timeout = min(max(0.0, until - monotonic()), _LOOKS) * 1e3 + 1.0
         poll, children = select.poll(), {os.pidfd_open(pid): pid for pid in self._children}
@@ -421,7 +421,7 @@ class ForkParent:
                 os.close(descriptor)
 
     def _reap(self, ready: list[int]) -> bool:
-        """Look after children that ended or whose time is up. True if the parent now has a token to spare.
+        """Handle children that ended or exceeded their limit. Return whether the parent has a token to spare.
 
         One child at a time: each brings one token.
         """
@@ -436,7 +436,7 @@ class ForkParent:
         return bool(ready)
 
     def _note_progress(self, child: Child, now: float) -> None:
-        """A child whose time seems to be up may have begun another test meanwhile."""
+        """Read whether a child whose time seems to be up has begun another test meanwhile."""
         is_late = now >= child.deadline.until and not child.is_test_control
         test = self._tests[self._slots[child.mutant]] if is_late else child.test
         if test != child.test:

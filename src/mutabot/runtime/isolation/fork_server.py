@@ -1,4 +1,4 @@
-"""The fork server: a session that has collected its tests, and forks a copy of itself for each job.
+"""The fork server, a session that has collected its tests and forks a copy of itself for each job.
 
 All that lies before the first test, such as imports and collection, is done once. A copy is cut off from
 what it would share, and runs its job like a session of its own. It also does what was to be done at exit
@@ -33,7 +33,7 @@ ForkRequest = tuple[str, int]
 
 @dataclass(slots=True)
 class ForkServer:
-    """The server's side.
+    """The server in its own process.
 
     Attributes:
         descriptor: a socket on which each message is the folder of a job, with the writing end of a pipe.
@@ -54,7 +54,7 @@ class ForkServer:
     _copies: dict[int, int] = field(default_factory=dict)
 
     def serve(self, has_started: bool) -> ForkRequest | None:
-        """Fork a copy for each job that comes, until no more can come.
+        """Fork a copy for each job that comes, until no more can come. Return the request in a copy.
 
         ``has_started``: whether the program has started processes by now, of which no job would know.
         Returns what to do in a copy; None in the server when it is done.
@@ -85,7 +85,7 @@ class ForkServer:
         return None
 
     def _wait(self, jobs: socket.socket) -> bool:
-        """Wait until there is a job (True) or copies have ended, and reap those."""
+        """Wait until there is a job, and return True, or reap copies that have ended."""
         poll = select.poll()
         for descriptor in (jobs.fileno(), *self._copies):
             poll.register(descriptor, select.POLLIN)
@@ -95,7 +95,7 @@ class ForkServer:
         return jobs.fileno() in ready
 
     def _bury(self, pidfd: int) -> None:
-        """End whatever a copy has left running, before its number can go to another process."""
+        """End whatever a copy has left running, before another process can get its number."""
         pid = self._copies.pop(pidfd)
         for end in (os.killpg, os.kill):
             with contextlib.suppress(ProcessLookupError, PermissionError):
@@ -105,7 +105,7 @@ class ForkServer:
         self.pipe.send(ForkEnded(pid, os.waitstatus_to_exitcode(status)))
 
     def _fork(self, jobs: socket.socket) -> bool:
-        """True in the copy."""
+        """Fork for the next job. Return True in the copy."""
         server = os.getpid()
         sys.stdout.flush()
         sys.stderr.flush()
@@ -123,7 +123,7 @@ class ForkServer:
         return True
 
     def _begin(self, home: str) -> str:
-        """In the copy, redirect output into its own folder, which is ``home``."""
+        """Redirect the copy's output into its own folder, and return the folder."""
         old = os.stat(os.path.join(self.home, self.log))
         log = open_file(os.path.join(home, self.log), os.O_WRONLY | os.O_CREAT | os.O_APPEND)
         isolate_files(old, log)

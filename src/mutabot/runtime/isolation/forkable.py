@@ -21,7 +21,7 @@ _loops: weakref.WeakSet[Any] = weakref.WeakSet()
 
 
 def track_event_loops() -> None:
-    """Note the loops that are made from now on."""
+    """Keep track of event loops that are made from now on."""
     # most processes have no loop, and need not import asyncio for it
     wrapt.register_post_import_hook(_track, "asyncio.selector_events")
 
@@ -38,12 +38,12 @@ def _track(selector_events: Any) -> None:
 
 
 def open_loops() -> list[Any]:
-    """The loops that are not closed."""
+    """Return the event loops that are not closed."""
     return [loop for loop in list(_loops) if not loop.is_closed()]
 
 
 def running_loop() -> Any:
-    """The loop that runs in this thread, or None; to be asked before a fork."""
+    """Return the loop that runs in this thread, or None; call it before a fork."""
     events = sys.modules.get("asyncio.events")
     return events._get_running_loop() if events is not None else None
 
@@ -57,7 +57,7 @@ def go_on_running(loop: Any) -> None:
 
 
 def own_event_loops() -> None:
-    """In a process that was just forked, give each event loop descriptors of its own."""
+    """Give each event loop descriptors of its own, in a process that was just forked."""
     for loop in open_loops():
         old, new = loop._selector, selectors.DefaultSelector()
         for key in list(old.get_map().values()):
@@ -114,7 +114,7 @@ def _threads() -> str | None:
 
 
 def count_threads() -> int:
-    """How many threads there are, bar those that wait for a tracer."""
+    """Return how many threads there are, except those that wait for a tracer."""
     threads = os.listdir(f"{_SELF}/task")
     if len(threads) == 1:
         return 1
@@ -159,7 +159,7 @@ def _open_since(known: frozenset[tuple[int, str]], maps: list[str]) -> str | Non
 
 
 def open_now() -> frozenset[tuple[int, str]]:
-    """What of this process a fork would share, bar files and folders, which can be opened again."""
+    """Return the open descriptors that a fork would share, except files and folders."""
     return frozenset([*_open(), *_shared_memory(_maps())])
 
 
@@ -172,14 +172,14 @@ def _open() -> Iterator[tuple[int, str]]:
 
 
 def descriptors() -> Iterator[tuple[int, os.stat_result]]:
-    """The descriptors that are open, and what they lead to."""
+    """Yield the descriptors that are open, and what they lead to."""
     for name in os.listdir(f"{_SELF}/fd"):
         with suppress(OSError):  # the descriptor of the listing itself
             yield int(name), os.fstat(int(name))
 
 
 def _shared_memory(maps: list[str]) -> Iterator[tuple[int, str]]:
-    """Memory to which a fork and its parent would both write: where it is, in the place of a descriptor."""
+    """Yield shared writable memory, with its address in the place of a descriptor."""
     for line in maps:
         place, rights = line.split(maxsplit=2)[:2]
         if rights[1] == "w" and rights[3] == "s":

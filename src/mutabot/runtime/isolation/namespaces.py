@@ -38,7 +38,7 @@ class ForkedPids(NamedTuple):
 
 
 def left_out() -> float:
-    """Seconds by which the monotonic clock of this process is behind the system's."""
+    """Return the seconds by which this process's monotonic clock is behind the system's."""
     return _left_out
 
 
@@ -60,7 +60,7 @@ def leave_out(seconds: float) -> None:
 
 @cache
 def keeps_ids() -> bool:
-    """Whether forks can have the id of this process.
+    """Return whether forks can have the id of this process.
 
     An ordinary user's process could enter another process namespace, but its later children could not return.
     """
@@ -72,7 +72,7 @@ def keeps_ids() -> bool:
 
 
 def asks_for_id(root: str) -> str | None:
-    """A file of the project that is loaded and asks for its process's id, as its text says."""
+    """Return a loaded file of the project whose text asks for the process's id; None if there is none."""
     files = {getattr(module, "__file__", None) or "" for module in list(sys.modules.values())}
     own = (file for file in files if file.startswith(f"{root}/") and "/site-packages/" not in file)
     return next((file[len(root) + 1 :] for file in sorted(own) if _mentions_id(file)), None)
@@ -88,7 +88,7 @@ def _mentions_id(file: str) -> bool:
 
 
 def fork() -> ForkedPids | None:
-    """Fork this process, with its process id if ``keeps_ids``; return None in the fork.
+    """Fork this process, with its id if ``keeps_ids``. Return None in the fork.
 
     Raises OSError if that is not possible.
     """
@@ -116,7 +116,7 @@ def end_first(first: int | None) -> None:
 
 
 def _start_first() -> int:
-    """Start the first process of a namespace. It wakes up for no signal, and keeps no file open by itself."""
+    """Start the first process of a namespace, which ignores signals and keeps no file open."""
     flags = _CLONE_VM | _CLONE_FILES | _CLONE_NEWPID
     function = ctypes.cast(_libc().pause, ctypes.c_void_p)
     top = (ctypes.addressof(_stack()) + _STACK_BYTES) & ~15
@@ -128,7 +128,7 @@ def _start_first() -> int:
 
 
 def _fork_as(pid: int) -> int:
-    """Fork, as ``os.fork`` does, a process with this id in its namespace; 0 in it.
+    """Fork a process with this id in its namespace. Return 0 in it, as ``os.fork`` does.
 
     The C library needs to do nothing: this is the only thread, and has the same id there.
     """
@@ -157,7 +157,7 @@ def _enter(path: str, kind: int) -> None:
 
 
 def call(name: str, *arguments: Any, what: str = "") -> int:
-    """Call a function of the C library. Raises OSError, with ``what`` that means if it fails."""
+    """Call a function of the C library. Raises OSError, whose text has ``what``, if it fails."""
     result: int = getattr(_libc(), name)(*arguments)
     if result < 0:
         number, reason = ctypes.get_errno(), os.strerror(ctypes.get_errno())
@@ -182,7 +182,7 @@ _PR_SET_PDEATHSIG = 1  # <linux/prctl.h>
 
 
 def die_with_parent(parent: int | None = None, pipe: int | None = None) -> None:
-    """Ask the kernel to end this process when its parent dies; end it now if that is already gone.
+    """Ask the kernel to end this process when its parent dies; end it now if the parent is gone.
 
     It is if it is not ``parent``, or if nobody has the reading end of this ``pipe``.
     """
@@ -199,7 +199,7 @@ def _nobody_listens(descriptor: int) -> bool:
 
 
 def leave(status: int) -> NoReturn:
-    """End this process with this exit code, after the threads and exit handlers that come first."""
+    """End this process with this exit code, after threads and exit handlers have ended."""
     threads: Any = threading
     try:
         threads._shutdown()

@@ -1,1 +1,1 @@
-"""Readings that mutabot takes itself: probes, the clock, the objects they belong to."""
+"""Readings by mutabot itself: probes, the clock, checks, and the objects that they belong to."""

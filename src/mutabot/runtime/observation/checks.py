@@ -36,7 +36,7 @@ _OPERATORS: dict[type[ast.cmpop], str] = {
 
 
 class Looks:
-    """What the checks of the running test compared.
+    """The checks of the running test, with what they compared.
 
     It keeps texts and numbers alone, by place and text: a test may count the objects that the collector of
     garbage knows, between two of its checks.
@@ -52,7 +52,7 @@ class Looks:
         self.more: set[str] = set()
 
     def clear(self) -> None:
-        """Another test begins."""
+        """Begin another test."""
         for kept in (self._seen, self._least, self._times, self.more):
             kept.clear()
 
@@ -87,7 +87,7 @@ class Looks:
 
 
 def margin(left: Any, operator: str, right: Any) -> float | None:
-    """Return how far the sides of ``left operator right`` are apart; None if that is no matter of degree.
+    """Return how far the sides of ``left operator right`` are apart; None if they are no numbers.
 
     Arrays and sequences count by their element that is nearest to end otherwise.
     """
@@ -102,7 +102,7 @@ def margin(left: Any, operator: str, right: Any) -> float | None:
 
 
 def _is_approximate(value: Any) -> bool:
-    """Whether ``pytest.approx`` made it; its module has moved between releases."""
+    """Return whether ``pytest.approx`` made it; its module has moved between releases."""
     kind = type(value)
     return kind.__module__.startswith("_pytest.") and kind.__name__.startswith("Approx")
 
@@ -123,7 +123,7 @@ def _least(found: Iterator[float]) -> float | None:
 
 
 def _pairs(left: Any, right: Any) -> list[tuple[float, float]]:
-    """Numbers that stand against each other; none if there is anything else."""
+    """Return the pairs of compared numbers; none if there is anything else."""
     ones, others = _numbers(left), _numbers(right)
     if ones is None or others is None:
         return []
@@ -150,7 +150,7 @@ def _without_numpy(value: Any) -> Any:
 
 
 def _in_words(value: Any) -> str | None:
-    """Return a plain value as people read it; None for others, whose ``repr`` may have effects."""
+    """Return a plain value as text; None for others, whose ``repr`` may have side effects."""
     value = _without_numpy(value)
     if _is_approximate(value):
         inner = _in_words(value.expected)
@@ -174,7 +174,7 @@ def _words(left: Any, operator: str, right: Any) -> str:
 
 
 class Checks:
-    """Puts the noting of checks into test files.
+    """Instruments test files so that checks are noted.
 
     Args:
         root: absolute path of the project.
@@ -190,13 +190,13 @@ class Checks:
         self._found: dict[_Location, int] = {}
 
     def install(self) -> None:
-        """Look at all test files that pytest rewrites from now on."""
+        """Instrument all test files that pytest rewrites from now on."""
         looks, told = self._looks, self._told
         setattr(builtins, CHECKED, lambda number, *compared: looks.checked(*told[number], *compared))
         loading.hook_pytest(self._wants, self._insert, self._look)
 
     def _look(self, tree: ast.Module, source: bytes, path: str) -> None:
-        """Number the comparisons and calls that decide about assertions, by where they stand."""
+        """Number the comparisons and calls that decide about assertions, by their positions."""
         # columns count bytes of UTF-8, whatever the file is written in
         lines = (
             decode_source(source).encode().splitlines(keepends=True)
@@ -219,7 +219,7 @@ _Location = tuple[int, int, int | None, int | None]
 
 
 def _decides(node: ast.AST) -> ast.expr | None:
-    """What a statement checks: the condition of an assertion, or a call whose name says that it asserts."""
+    """Return what a statement checks: an assertion's condition, or a call whose name says that it asserts."""
     match node:
         case ast.Assert(test=test):
             return test
@@ -229,7 +229,7 @@ def _decides(node: ast.AST) -> ast.expr | None:
 
 
 def _deciding(test: ast.expr | None) -> Iterator[ast.Compare | ast.Call]:
-    """The comparisons and calls of which a condition is made up."""
+    """Yield the comparisons and calls that a condition consists of."""
     if isinstance(test, ast.BoolOp):
         for value in test.values:
             yield from _deciding(value)
@@ -244,7 +244,7 @@ def _position(node: ast.expr) -> _Location:
 
 
 def _segment(lines: Sequence[bytes], node: ast.expr) -> bytes:
-    """The source text of an expression, given all lines with their ends."""
+    """Return the source text of an expression, given all lines with their ends."""
     last = node.end_lineno or node.lineno
     found = b"".join(lines[node.lineno - 1 : last])
     after = len(lines[last - 1]) - (node.end_col_offset or 0)
@@ -252,7 +252,7 @@ def _segment(lines: Sequence[bytes], node: ast.expr) -> bytes:
 
 
 class _Inserter(ast.NodeTransformer):
-    """Puts lines after those that work out the conditions of assertions, and after calls that assert."""
+    """Inserts statements that note conditions of assertions and calls that assert."""
 
     def __init__(self, found: dict[_Location, int]) -> None:
         self._found = found

@@ -1,4 +1,4 @@
-"""The program's time, and which objects of a class the present test uses.
+"""The program's time, and the objects of a class that the running test uses.
 
 The time is read at every call that advances the simulation, or counted in fixed steps. A probe on a method
 or attribute is read from those objects that are ``self`` of an intercepted call in the running test, in the
@@ -56,7 +56,7 @@ class Instances:
         self._fixtures: Callable[[], Iterable[Any]] | None = None
 
     def watch(self, names: Iterable[str]) -> None:
-        """Note the objects of each of these that turns out to be a class, from now on."""
+        """Note, from now on, the objects of those of these names that are classes."""
         for name in names:
             if name and name not in self._names:
                 self.is_watching = True
@@ -81,7 +81,7 @@ class Instances:
         wrapt.register_post_import_hook(imported, module_name)
 
     def start(self, fixtures: Callable[[], Iterable[Any]] | None = None) -> None:
-        """A new test begins: nothing has been used in it.
+        """Begin a new test, which has used no object yet.
 
         ``fixtures`` tells what objects its fixtures hold. None in a process below the tests, which goes on
         with what it has made.
@@ -92,23 +92,23 @@ class Instances:
             self._made[True].clear()
 
     def let_go(self) -> None:
-        """The running test is over: what it used is kept no longer."""
+        """Release the objects that the running test used, as it is over."""
         self._used.clear()
 
     def used(self, instance: Any) -> None:
-        """An object is ``self`` of an intercepted call."""
+        """Note an object that is ``self`` of an intercepted call."""
         for name in self._names_of(type(instance)):
             used = self._used.setdefault(name, {})
             if id(instance) not in used and len(used) < MOST:
                 used[id(instance)] = _held(instance, self._references_to(instance))
 
     def _references_to(self, instance: Any) -> int:
-        """How many weak references to an object are kept here."""
+        """Return how many weak references to an object are kept here."""
         made = (by_id for by_name in self._made.values() for by_id in by_name.values())
         return sum(id(instance) in by_id for by_id in made)
 
     def of(self, name: str) -> list[Any]:
-        """The current objects of this class that a probe is read from."""
+        """Return the current objects of this class from which a probe is read."""
         return _alive(self._used.get(name, {})) or self._made_last(name, True) or self._held_by_fixtures(name)
 
     def _made_last(self, name: str, is_of_test: bool) -> list[Any]:
@@ -143,7 +143,7 @@ def _alive(holds: dict[int, Any]) -> list[Any]:
 
 
 def _is_importing() -> bool:
-    """Whether a module is being imported: what it makes then is there for all tests that follow."""
+    """Return whether a module is being imported, whose objects exist for all later tests."""
     frame = sys._getframe(1)
     while frame.f_back is not None:
         if frame.f_code.co_name == "<module>" and frame.f_back.f_globals.get("__name__") in _IMPORTERS:
@@ -158,7 +158,7 @@ def _forget(made: dict[int, weakref.ref[Any]], key: int, gone: weakref.ref[Any])
 
 
 def _held(instance: Any, known: int) -> Callable[[], Any]:
-    """Keep an object that the program may let go before its test ends, unless somebody would miss that.
+    """Return a reference to an object that keeps it alive until its test ends, if nobody could notice.
 
     ``known``: the weak references to it that are kept here.
     """
@@ -205,7 +205,7 @@ def _inherited(owner: Any) -> Callable[..., None]:
 
 
 class ClockReader:
-    """Pass the calls of the clock's tick on to a meter.
+    """Passes the calls of the clock's tick on to a meter.
 
     Args:
         clock: what the vocabulary says.
@@ -227,7 +227,7 @@ class ClockReader:
         self._is_direct = not clock.time and self._step is None and clock.unit == "s"
 
     def handle(self, wrapped: Callable[..., Any], instance: Any, args: Any, kwargs: Any) -> Any:
-        """Stand around the tick."""
+        """Handle a call of the tick."""
         __tracebackhide__ = True
         result = wrapped(*args, **kwargs)
         if self._is_direct and type(result) is float and isfinite(result):  # the way of most simulators
@@ -261,7 +261,7 @@ class ClockReader:
         self._on_tick(meter.simulated or 0.0)
 
     def _time(self, result: Any, *call: Any) -> float | None:
-        """Simulated time in s after the call; None, and a problem, if there is none."""
+        """Return simulated time (s) after the call; None, with a problem reported, if there is none."""
         try:
             value = self._path.get(self._start(*call) if self._path.root is not None else result)
         except PathError as error:
@@ -280,7 +280,7 @@ class ClockReader:
         return convert(number, self._clock.unit, "s")
 
     def _start(self, *call: Any) -> Any:
-        """The object or argument at which the path begins. Raises PathError if the call has none."""
+        """Return the object or argument at which the path begins. Raises PathError if there is none."""
         invocation = Invocation(*call)
         invocation.bind(signature_of(invocation.wrapped) or ANYTHING)
         start, known = invocation.start_of(self._path), tuple(invocation.values or ())
@@ -312,7 +312,7 @@ class ProgramTime:
     instances: Instances
 
     def now(self) -> float:
-        """Simulated seconds since the test's first tick, 0 before. Raises LookupError without a clock."""
+        """Return simulated seconds since the test's first tick, 0 before. Raises LookupError."""
         meter = self.meter()
         if self.vocabulary.clock is None or meter is None:
             raise LookupError("the vocabulary names no clock")
@@ -323,7 +323,7 @@ class ProgramTime:
         return self.now() if self.vocabulary.clock is not None and self.meter() is not None else None
 
     async def wait(self, seconds: float) -> None:
-        """Let so much time pass. Raises LookupError where the vocabulary does not say how."""
+        """Let some seconds pass. Raises LookupError if the vocabulary does not say how."""
         wait = self.vocabulary.wait
         if wait is None:
             raise LookupError("the vocabulary does not say what lets the program's time pass (wait = …)")

@@ -81,7 +81,7 @@ def take(probes: tuple[Probe, ...], instances: Instances) -> Reading:
 
 
 def _read(target: str, instances: Instances) -> Iterator[tuple[str, Any]]:
-    """The probe's values, each under its name."""
+    """Yield the probe's values, each under its name."""
     module_name, _, qualname = target.partition(":")
     module = sys.modules.get(module_name)
     if module is None:
@@ -102,7 +102,7 @@ def _read(target: str, instances: Instances) -> Iterator[tuple[str, Any]]:
 
 
 def is_bound(owner: type, name: str) -> bool:
-    """Return whether this attribute of a class is read from its objects, rather than from the class."""
+    """Return whether a class attribute is read from objects, rather than from the class."""
     raw = next((vars(base)[name] for base in owner.__mro__ if name in vars(base)), _MISSING)
     if raw is _MISSING:
         return not hasattr(owner, name)  # an attribute that its objects may have
@@ -126,7 +126,7 @@ def _attribute(owner: Any, name: str) -> Any:
 
 
 def _value(found: Any) -> Any:
-    """What a callable without arguments returns; anything else is a value itself."""
+    """Return the result of a callable without arguments; anything else is a value itself."""
     if not callable(found):
         return found
     needed = needed_arguments(found)
@@ -143,7 +143,7 @@ def _value(found: Any) -> Any:
 
 
 def needed_arguments(found: Callable[..., Any]) -> list[str]:
-    """The arguments that must be given."""
+    """Return the arguments that must be given."""
     if _needs_none(found):
         return []
     try:
@@ -155,7 +155,7 @@ def needed_arguments(found: Callable[..., Any]) -> list[str]:
 
 
 def _needs_none(found: Callable[..., Any]) -> bool:
-    """Whether that can be seen at a glance: probes are read often, and signatures are slow."""
+    """Return whether a callable clearly needs no arguments; fast, as signatures are slow to read."""
     function = getattr(found, "__func__", found)
     if type(function) is not FunctionType or hasattr(function, "__wrapped__"):
         return False
@@ -165,7 +165,7 @@ def _needs_none(found: Callable[..., Any]) -> bool:
 
 
 def flatten(value: Any, name: str) -> dict[str, Any]:
-    """A nested value as flat parts. Raises UnreadableError for what is no plain data."""
+    """Return a nested value as flat parts. Raises UnreadableError if it is no plain data."""
     return dict(islice(_parts(value, name), LIMIT))
 
 
@@ -194,7 +194,7 @@ def _parts(value: Any, name: str) -> Iterator[tuple[str, Any]]:
 
 
 def _fields_of(value: Any) -> Any:
-    """The fields of a dataclass or named tuple by name; any other value unchanged."""
+    """Return the fields of a dataclass or named tuple by name; any other value unchanged."""
     if hasattr(type(value), "_asdict"):
         return value._asdict()
     if is_dataclass(value) and not isinstance(value, type):
@@ -212,7 +212,7 @@ _TIMED = 3
 
 @dataclass(slots=True)
 class Along:
-    """The readings of the running test.
+    """The readings during the running test.
 
     Attributes:
         read: reads the probes.
@@ -229,16 +229,16 @@ class Along:
     _last: dict[str, Any] | None = None
 
     def start(self, stride: int) -> None:
-        """A new test begins; it is not read along the way if ``stride`` is 0."""
+        """Begin a new test; it is read only at its end if ``stride`` is 0."""
         self.entries, self._last = [], None
         self.step, self._commands, self._thins_at = stride, 0, FIRST
 
     def stop(self) -> None:
-        """What comes now is no more part of the test."""
+        """Stop reading, as the test is over."""
         self.step = 0
 
     def after(self, call: int) -> None:
-        """A command, the test's ``call``-th call, is over."""
+        """Read the probes, if due, after the test's ``call``-th call, a command."""
         self._commands += 1
         is_main = threading.current_thread() is threading.main_thread()
         if not self.step or self._commands % self.step or not is_main:
@@ -254,7 +254,7 @@ class Along:
 
 
 def rehearse(read: Callable[[], Reading]) -> Reading:
-    """Read the probes, and see whether reading them along the way as well would change nothing."""
+    """Read the probes, and note why they cannot be read along the way as well, if so."""
     first = read()
     if not first.values:
         return first
@@ -299,7 +299,7 @@ _ACCIDENTS = re.compile(r"0x[0-9a-fA-F]{6,}|pytest-\d+")
 
 
 def plain(value: Any) -> Any:
-    """The value as JSON-like data.
+    """Return the value as JSON-like data.
 
     What is no plain data becomes ``{"opaque": type}``, so that two of them are equal whatever they hold. A
     digest stands for what is large.
@@ -369,7 +369,7 @@ def _digest(data: bytes) -> str:
 
 
 class TestRecording:
-    """The recording of the running test; nothing is recorded where it is not asked for.
+    """The recording of the running test, if recordings are asked for.
 
     Args:
         clock: tells its simulated time, s, as long as no feed does.
@@ -388,13 +388,13 @@ class TestRecording:
         self._filmed: str | None = None
 
     def film(self, pictures: Pictures) -> None:
-        """Film a test that is still to come."""
+        """Film a later test."""
         from pkgutil import resolve_name  # noqa: PLC0415  # no campaign films
 
         self._film, self._filmed = resolve_name(pictures.writer)(pictures.file), pictures.test
 
     def start(self, test: str, *, is_wanted: bool) -> None:
-        """A test begins."""
+        """Begin to record a test."""
         tapes.stop()
         film = self._film if test == self._filmed else None
         self._tape = tapes.begin(film) if is_wanted else None
@@ -420,7 +420,7 @@ class TestRecording:
             self._tape.recording.fault = time
 
     def text(self, calls: Sequence[RecordedCall]) -> str | None:
-        """All of it and the calls, as ``TestEnd.recording``; None where nothing is recorded."""
+        """Return the recording and the calls as a text for ``TestEnd.recording``; None without one."""
         if self._tape is None:
             return None
         tape, recording = self._tape, self._tape.recording

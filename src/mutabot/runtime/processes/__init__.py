@@ -9,7 +9,7 @@ from typing import Any
 
 
 class _LateInspect:
-    """Stands for ``inspect`` in ``dataclasses``, which seldom needs it before Python 3.12."""
+    """Stands for ``inspect`` in ``dataclasses``, which hardly needs it before Python 3.12."""
 
     def __getattr__(self, name: str) -> Any:
         found: Any = sys.modules.get("inspect")

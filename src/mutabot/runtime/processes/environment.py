@@ -34,7 +34,7 @@ FRAMES = 2
 
 
 def listen(events: Iterable[str], hear: Hear) -> None:
-    """Let ``hear`` have these events from now on."""
+    """Call ``hear`` for each of these audit events from now on."""
     if not _listeners:
         sys.addaudithook(_hear)
     for event in events:
@@ -61,7 +61,7 @@ _folder = ""
 
 
 def carry(folder: str) -> None:
-    """Let every process that is started from now on find its way to the processes of this folder."""
+    """Let every process that is started from now on find the folder of this campaign's processes."""
     global _folder  # noqa: PLW0603  # a copy of a fork server has a folder of its own
     if not _folder:
         _hook_starts()
@@ -70,7 +70,7 @@ def carry(folder: str) -> None:
 
 
 def _set_variables() -> None:
-    """Set the variables in this process's environment again, which tests may have changed."""
+    """Set the variables again in this process's environment, which tests may have changed."""
     environment = {"PYTHONPATH": with_startup(os.environ.get("PYTHONPATH")), VARIABLE: _folder}
     for name, value in environment.items():
         if os.environ.get(name) != value:
@@ -78,7 +78,7 @@ def _set_variables() -> None:
 
 
 def _hook_starts() -> None:
-    """Hear of every start, and complete the environment that a process is given.
+    """Complete the environment of every process at its start.
 
     ``subprocess`` and ``multiprocessing`` have their processes started by the same function.
     """
@@ -102,7 +102,7 @@ def _hook_starts() -> None:
 
 
 def _completing(start: Callable[..., Any]) -> Callable[..., Any]:
-    """A function of ``os`` that completes the environment of the program it starts."""
+    """Return a function of ``os`` that completes the environment of the program it starts."""
 
     @wraps(start)
     def started(*arguments: Any, **options: Any) -> Any:
@@ -142,13 +142,13 @@ def _replace(fork_exec: Callable[..., Any]) -> None:
 
 
 def with_startup(path: str | None) -> str:
-    """A ``PYTHONPATH`` with the start-up module first."""
+    """Return a ``PYTHONPATH`` with the start-up module first."""
     others = [entry for entry in (path or "").split(os.pathsep) if entry and entry != STARTUP]
     return os.pathsep.join([STARTUP, *others])
 
 
 def completed(environment: Sequence[bytes]) -> list[bytes]:
-    """An environment, as ``NAME=value`` each, with these variables."""
+    """Return an environment, as ``NAME=value`` each, with these variables."""
     given = dict(entry.partition(b"=")[::2] for entry in environment)
     path = given.get(b"PYTHONPATH")
     given[b"PYTHONPATH"] = os.fsencode(with_startup(os.fsdecode(path) if path is not None else None))
@@ -159,7 +159,7 @@ def completed(environment: Sequence[bytes]) -> list[bytes]:
 def write_wake(
     folder: str, join: str, key: str, names: Iterable[str], files: Iterable[str], own: Iterable[str] = ()
 ) -> None:
-    """Say what is of interest.
+    """Write the file that says which processes join the campaign, and how.
 
     Args:
         folder: the folder of the campaign's processes.
@@ -190,7 +190,7 @@ def _write(path: str, data: bytes, flags: int) -> None:
 
 
 def _folders_of(names: Iterable[str]) -> list[str]:
-    """Where another interpreter finds what the inside needs."""
+    """Return the folders in which another interpreter finds these modules."""
     from importlib.util import find_spec  # noqa: PLC0415  # as above
 
     places: list[str] = []
@@ -204,7 +204,7 @@ _NUMBER = struct.Struct("=q")
 
 
 class Announced:
-    """Announce, in the test process, which test is running to all processes below it.
+    """Tells all processes below the test process which test is running.
 
     The file is not memory-mapped: a process that truncates it would otherwise end this process.
 
@@ -221,7 +221,7 @@ class Announced:
         _write(self._now, bytes(mmap.PAGESIZE), os.O_TRUNC)
 
     def begin(self, test: str) -> int:
-        """A test begins. Returns its number."""
+        """Announce a test that begins. Return its number."""
         _write(self._tests, json.dumps(test).encode() + b"\n", os.O_APPEND)
         self.number += 1
         _write(self._now, _NUMBER.pack(self.number), 0)
@@ -246,16 +246,16 @@ class Now:
 
     @property
     def number(self) -> int:
-        """The number of the running test; between tests that of the last one, 0 before any."""
+        """The number of the running test; after a test still its number, 0 before the first."""
         number: int = _NUMBER.unpack_from(self._memory)[0]
         return number
 
     def note_unwritten(self) -> None:
-        """This process could not: that takes no room on any disk."""
+        """Note, in shared memory, that this process could not write its events."""
         _NUMBER.pack_into(self._memory, _NUMBER.size, 1)
 
     def name_of(self, number: int) -> str:
-        """The node id of a test."""
+        """Return the node id of a test."""
         if number >= len(self._names):
             lines = read_file(os.path.join(self._folder, TESTS)).splitlines()
             self._names = ["", *map(json.loads, lines)]
@@ -274,7 +274,7 @@ _APART = {"-I", "-E", "-S"}
 
 
 def starts_a_killer(event: str, arguments: tuple[Any, ...]) -> bool:
-    """Whether an audit event is the start of a program that may end others, itself or by a shell.
+    """Return whether an audit event starts a program that may end others, directly or by a shell.
 
     Nobody can know from outside whom such a program ends.
     """
@@ -298,7 +298,7 @@ def _words(executable: Any, command: Any) -> list[str]:
 
 
 class ProcessWatch:
-    """What the test process notes of the processes that the tests start, from now on.
+    """Watches, in the test process, the starts of processes by the tests.
 
     Args:
         tell_unseen: told the command of each process that does not find its way to the campaign, and why.
@@ -345,7 +345,7 @@ class ProcessWatch:
 
 
 def _why_unseen(event: str, arguments: tuple[Any, ...]) -> str | None:
-    """Why a Python process that is being started cannot join the campaign; None if it can."""
+    """Return why a Python process that is being started cannot join the campaign; None if it can."""
     words = _words(*arguments[:2])
     if not words or not os.path.basename(words[0]).startswith("python"):
         return None

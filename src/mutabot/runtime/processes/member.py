@@ -1,4 +1,4 @@
-"""A process below the tests that is part of a campaign: it runs the session of its test process's job.
+"""A process below the tests that is part of a campaign and runs the session of its job.
 
 It finds, mutates and records calls as the test process does. What it sees goes into its own file at once.
 Which test runs is looked up at each call, since a process may outlive the test that started it. Of a job
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 
 class TextOnly:
-    """What ``runtime.session.Session`` is of a job without calls, of which it loads nothing.
+    """A session of a job that concerns the program text alone.
 
     Args:
         job: what to do.
@@ -62,7 +62,7 @@ class TextOnly:
         self._fault: TextMutant | None = None
 
     def install(self) -> None:
-        """Instrument the program from now on, and the mutant with it."""
+        """Instrument the program from now on, with the mutant."""
         self.text = SessionText.of(self.job, self.pipe, self.acted)
         if self.job.mutant is not None:
             activation = self.job.active[self.job.mutant.id]
@@ -70,14 +70,14 @@ class TextOnly:
             self._fault.prepare_process()
 
     def start_test(self, test: str) -> None:
-        """A test begins."""
+        """Begin a test."""
         self.test = test
         self.meter = Meter()
         if self.text is not None:
             self.text.start_test(test)
 
     def look_back(self, *, at_all: bool = False) -> None:
-        """Do nothing: no mutant has handed out anything."""
+        """Do nothing, as no mutant has passed on a copy."""
 
     @property
     def evidence(self) -> Evidence:
@@ -90,14 +90,14 @@ class TextOnly:
         return self.job.round
 
     def untracked(self) -> AbstractContextManager[None]:
-        """Do nothing: no calls are tracked."""
+        """Do nothing, as no calls are tracked."""
         return nullcontext()
 
     def change_file(self, path: str, content: bytes) -> None:
-        """The test process has done so."""
+        """Do nothing, as the test process has changed the file."""
 
     def acted(self) -> None:
-        """The mutant changed something for the first time in a test."""
+        """Report that the mutant changed something for the first time in a test."""
         self.pipe.send(events.Acted(self.test))
 
 
@@ -110,7 +110,7 @@ _member: Member | None = None
 
 
 def join(folder: str) -> None:
-    """Be a member of the campaign whose processes have this folder."""
+    """Join the campaign whose processes have this folder."""
     global _member  # noqa: PLW0603  # one process, one member
     if _member is None:
         job = read_job(os.path.dirname(folder))
@@ -119,12 +119,12 @@ def join(folder: str) -> None:
 
 
 def is_member() -> bool:
-    """Return whether this process was started by the tests, rather than being the one that runs them."""
+    """Return whether the tests started this process, rather than being run in it."""
     return _member is not None
 
 
 class Member:
-    """This process, as part of a campaign. Also what a session sends its events to.
+    """This process as part of a campaign, to which its session sends events.
 
     Args:
         folder: the folder of the campaign's processes.
@@ -150,7 +150,7 @@ class Member:
         self._is_over = False
 
     def begin(self) -> None:
-        """Put the session in place."""
+        """Start the session."""
         carry(self._folder)
         self.session.install()
         hook_script()
@@ -159,7 +159,7 @@ class Member:
         self._watch_text()
 
     def go_on(self) -> None:
-        """In a process that was forked, continue with the parent's session, and report it."""
+        """Continue with the parent's session in a process that was forked, and report it."""
         session = self.session
         for site in () if isinstance(session, TextOnly) else session.recorder.sites:
             self.file.send(site)
@@ -181,7 +181,7 @@ class Member:
         self._watch_exits()
 
     def _watch_calls(self, session: Session) -> None:
-        """Write down what the session sees of calls."""
+        """Report each call that the session records."""
 
         def hit(site: int, written: Any, read: Any, answer: Any) -> None:
             self.file.send(events.Called(site, written, read, answer, monotonic()))
@@ -203,7 +203,7 @@ class Member:
             messages.on_heard = partial(heard, messages.on_heard)
 
     def turn(self) -> None:
-        """Look whether another test has begun."""
+        """Check whether another test has begun."""
         if self._now.number != self._test:
             self._take_away()
             self.poll()
@@ -220,7 +220,7 @@ class Member:
             self.session.fault.end_test()
 
     def send(self, line: events.Event) -> None:
-        """Write an event of the session, if it is new."""
+        """Send an event of the session, if it is new."""
         match line:
             case events.Acted(in_call=None):
                 self.poll()
@@ -230,7 +230,7 @@ class Member:
                 self.file.send(line)
 
     def poll(self) -> None:
-        """Report what the mutant did, and what was found, since the last report."""
+        """Report what the mutant did, and which targets were found, since the last report."""
         session = self.session
         now, before = session.evidence, self._told
         if now.hits != before.hits or now != before:
@@ -276,7 +276,7 @@ class Member:
             self.file.send(events.Used(*used, meter.exceeded, meter.guarded))
 
     def _watch_text(self) -> None:
-        """Report places of the program text when first reached, since the process may end at any time."""
+        """Report places of the program text as they are reached, since the process may end at any time."""
         text = self.session.text
         if text is None:
             return
@@ -318,7 +318,7 @@ class Member:
         return {module for name in names if (module := name.partition(":")[0]) in sys.modules}
 
     def _watch_exits(self) -> None:
-        """Watch for uncaught exceptions, ends by ``os._exit``, and signals to other processes."""
+        """Report uncaught exceptions, ends by ``os._exit``, and signals to other processes."""
         main, thread, leave = sys.excepthook, threading.excepthook, os._exit
 
         def in_main(kind: type[BaseException], error: BaseException, traceback: Any) -> None:
@@ -390,7 +390,7 @@ def watch_forks(folder: str, session: Session | TextOnly) -> None:
 
 
 def _after_fork() -> None:
-    """In a process that the program has forked, begin a member of its own."""
+    """Begin a member in a process that the program has forked."""
     global _member  # noqa: PLW0603  # see above
     if _watched is not None and not sys._getframe(1).f_code.co_filename.startswith(OURS):
         folder, session = _watched

@@ -1,4 +1,4 @@
-"""The processes below a test process: what it passes to them, and how it combines their events."""
+"""The processes below a test process: what it passes to them, and how their events are merged."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _JOIN = "mutabot.runtime.processes.member"
 
 
 class Members:
-    """The processes below one test process; every Python that it starts from now on takes part.
+    """The processes below one test process; every Python process that it starts takes part.
 
     Args:
         home: the home of the test process.
@@ -50,12 +50,12 @@ class Members:
         self._watch = ProcessWatch(self._say_unseen)
 
     def start_test(self, test: str) -> None:
-        """A test begins: some may be there from before."""
+        """Begin a test, during which earlier processes may still run."""
         self.children.number = self._running.begin(test)
         self._present = [one for one in self.children.records.values() if is_alive(one.began.pid)]
 
     def merged(self, end: events.TestEnd) -> events.TestEnd:
-        """The end of the running test with what members did in it; an error if that cannot be known."""
+        """Return the end of the running test with what members did in it; an error if that is not known."""
         self._take_all()
         here = sorted(self._here(), key=lambda one: (one.name, one.began.time))
         job, watch, index_of = self._session.job, self._watch, self._session.recorder.index_of
@@ -71,12 +71,12 @@ class Members:
         return replace(end, failure=end.failure or self.children.doubt)
 
     def have_begun(self) -> bool:
-        """Whether there has been any until now."""
+        """Return whether any member has begun until now."""
         self._take_all()
         return bool(self.children.records)
 
     def texts_seen(self) -> list[events.TextsSeen]:
-        """What members saw of the program text, over all tests."""
+        """Return what members observed in the program text, over all tests."""
         self._take_all()
         return self._texts
 
@@ -89,7 +89,7 @@ class Members:
                 yield one
 
     def _take_all(self) -> None:
-        """Take what is new, and what of it concerns the session and no test alone."""
+        """Read new events, and handle those that concern the session rather than a test."""
         for event in self.children.read():
             match event:
                 case events.Began(unable=why) if why is not None:
@@ -106,7 +106,7 @@ class Members:
                     self._session.pipe.send(event)
 
     def _with_recorded(self, end: events.TestEnd, here: list[ChildRecord], known: Known) -> events.TestEnd:
-        """The calls of all processes by their times, in what is recorded."""
+        """Return the end of a test whose recording has the calls of all processes by their times."""
         recorder, recording = self._session.recorder, self._session.recording
         if end.recording is None:
             return end

@@ -1,1 +1,1 @@
-"""The program text: alternatives compiled beside the original, and what is seen of both."""
+"""Instrumented program text: alternatives compiled beside the original, and what is observed."""

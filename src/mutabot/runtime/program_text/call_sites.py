@@ -1,4 +1,4 @@
-"""Calls that may be those of operations are seen where they are written.
+"""Instrument calls in the text that may be calls of operations.
 
 Files of the program and of the oracle are compiled with a question at each call whose last name is that of an
 operation: ``x.f(args)`` becomes ``S[17](x)(args)``, and ``f(args)`` becomes ``S[17](f)(args)``. The answer is
@@ -40,7 +40,7 @@ _PLACE = "handed_to"
 
 
 def is_handed_on(node: ast.expr) -> bool:
-    """Whether the value of an expression is handed on."""
+    """Return whether the value of an expression is passed on."""
     return isinstance(getattr(node, "ctx", None), ast.Load) and hasattr(node, _PLACE)
 
 
@@ -89,7 +89,7 @@ Guards = tuple[tuple[dict[str, Any], str, Any], ...]
 
 @dataclass(slots=True, eq=False)
 class CallSite:
-    """A call in the text, or a place where something is handed on.
+    """A call in the text, or a place where a callable is passed on.
 
     Attributes:
         path: its file, as code objects name it.
@@ -131,7 +131,7 @@ _ASK: Guards = (({}, "", NOTHING),)
 
 @dataclass(slots=True, eq=False)
 class CallSites(SourceStep):
-    """Puts the questions into files, and answers them.
+    """Instruments files with a hook at each call site, and answers the hooks.
 
     Of a file that is compiled without, calls are seen by what they call.
 
@@ -164,22 +164,22 @@ class CallSites(SourceStep):
     _parts: dict[int, list[Any]] = field(default_factory=dict)
 
     def install(self) -> None:
-        """Put questions into all files that are loaded from now on."""
+        """Instrument all files that are loaded from now on."""
         if self.names:
             setattr(builtins, CALLS, _entries)
             loading.add(self)
 
     def hook_pytest(self) -> None:
-        """Put questions into files that pytest rewrites, too: after it, so that its messages stay."""
+        """Instrument files that pytest rewrites, after pytest has done so."""
         if self.names:
             loading.hook_pytest(self.wants, self.change)
 
     def wants(self, path: str) -> bool:
-        """Whether a file may have sites."""
+        """Return whether a file may have call sites."""
         return self.role(path) is not None
 
     def change(self, tree: ast.Module, source: bytes, path: str) -> None:
-        """Put questions into the tree of a file, which pytest may have rewritten."""
+        """Instrument the tree of a file, which pytest may have rewritten."""
         role = self.role(path)
         assert role is not None
         are_handed = self.hands is not None and role is Role.PROGRAM and not self.are_read
@@ -312,7 +312,7 @@ _NOT_RUN = ("annotation", "returns", "pattern", "type_params")
 
 @dataclass(eq=False)
 class _Writer(ast.NodeTransformer):
-    """Writes the questions.
+    """Writes hooks into a tree.
 
     What pytest has rewritten reads an attribute into a variable and calls that: ``S[17](variable, x)``, since
     its messages show the variable.
@@ -353,7 +353,7 @@ class _Writer(ast.NodeTransformer):
         return node
 
     def _ask_stored(self, node: ast.Assign, target: ast.expr) -> None:
-        """Ask about an assignment: its value is worked out first, then what holds it, then the key."""
+        """Put a hook into an assignment, keeping the order: value, object, key."""
         if isinstance(target, ast.Attribute) and target.attr in self.names:
             forms = [("stored_attribute", target.attr, "value")]
         elif isinstance(target, ast.Subscript) and not isinstance(target.slice, ast.Slice | ast.Tuple):
@@ -407,7 +407,7 @@ class _Writer(ast.NodeTransformer):
 
 
 def _as_compiled(node: ast.Call, function: ast.Attribute) -> None:
-    """Move a call, and the attribute it calls, to where the compiler says that they stand.
+    """Move a call, and the attribute it calls, to the positions that the compiler would give them.
 
     In a chain over several lines that is from the attribute's name on; for the call only where its method is
     not bound first.

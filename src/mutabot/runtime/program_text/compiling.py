@@ -1,4 +1,4 @@
-"""Change source files while they are compiled, whoever asks for it.
+"""Change source files when they are compiled, by whatever code.
 
 All program text comes to ``compile``: from the import system, from loaders of others, which check types,
 expand macros or rewrite text, from ``runpy`` and from ``exec(compile(text, path))``. That one place is
@@ -29,17 +29,17 @@ from typing import Any, Protocol
 
 
 class SourceStep(Protocol):
-    """Changes source files before they are compiled.
+    """A change of source files before they are compiled.
 
     One with an attribute ``is_optional`` leaves alone what is not compiled as it stands in its file; one with
     an attribute ``is_last`` takes its turn after whoever rewrites a tree.
     """
 
     def wants(self, path: str) -> bool:
-        """Whether it has anything to do with a file."""
+        """Return whether it applies to a file."""
 
     def change(self, tree: ast.Module, source: bytes, path: str) -> None:
-        """Change the tree of a file that it wants, in place.
+        """Change the tree of a file in place.
 
         ``source`` is what the file holds, or the text that is compiled under its name if that is another one.
 
@@ -47,13 +47,13 @@ class SourceStep(Protocol):
         """
 
     def give_up(self, path: str, error: Exception) -> None:
-        """A file that it was to change is compiled without it; it may raise the error instead."""
+        """Note that a file is compiled without the change, or raise the error."""
         return
 
 
 @dataclass(slots=True, eq=False)
 class LoaderRequest:
-    """Code that the import system asks a loader for.
+    """A request of the import system to a loader for code.
 
     Attributes:
         path: the file.
@@ -91,18 +91,18 @@ DONE, _PARSED, _CHANGED = "is_done_by_mutabot", "path_for_mutabot", "is_changed_
 
 
 def install() -> None:
-    """Apply the steps to all that is compiled from now on."""
+    """Apply the steps to all files that are compiled from now on."""
     if builtins.compile is _builtin:
         builtins.compile = _compile
 
 
 def is_wanted(path: str) -> bool:
-    """Whether any step has anything to do with a file."""
+    """Return whether any step applies to a file."""
     return any(step.wants(path) for step in steps)
 
 
 def compile_tree(tree: ast.Module, path: str, flags: int = 0, optimize: int = -1) -> CodeType:
-    """The code of a changed file. Raises what ``compile`` raises."""
+    """Return the code of a changed file. Raises what ``compile`` raises."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", SyntaxWarning)  # what was put in may look as if it were a slip
         code: CodeType = _builtin(tree, path, "exec", flags, True, optimize)
@@ -113,7 +113,7 @@ def _compile(
     source: Any, filename: Any, mode: str, flags: int = 0, dont_inherit: bool = False, optimize: int = -1,
     **more: Any,
 ) -> Any:  # fmt: skip
-    """Replacement for ``compile``."""
+    """Compile a source, with the steps; the replacement of ``compile``."""
     if not dont_inherit:
         flags |= sys._getframe(1).f_code.co_flags & _INHERITED
     plainly = partial(_builtin, source, filename, mode, flags, True, optimize, **more)
@@ -168,7 +168,7 @@ def _through_steps(
     finish: Callable[[Any], Any],
     waiting: list[SourceStep],
 ) -> Any:
-    """Apply these steps to a file, and return what ``finish`` makes of it; None if no step can change it."""
+    """Apply steps to a file, and return the result of ``finish``; None if no step can change it."""
     while waiting:
         failing = waiting[0]
         try:
@@ -184,7 +184,7 @@ def _through_steps(
 
 
 def _wanted(filename: Any) -> str | None:
-    """The path under which something is compiled to be run, if steps have to do with such a file."""
+    """Return the path of a file that is compiled to be run, if steps apply to it."""
     if not isinstance(filename, str | bytes | os.PathLike):
         return None
     name = os.fsdecode(filename)
@@ -195,7 +195,7 @@ def _wanted(filename: Any) -> str | None:
 
 
 def _is_kept() -> bool:
-    """Whether ``py_compile`` asks: what it writes may be run outside of the campaign."""
+    """Return whether ``py_compile`` is compiling, whose output may be run outside the campaign."""
     frame = sys._getframe(2)
     for _ in range(6):
         if frame.f_globals.get("__name__") == "py_compile":
@@ -207,7 +207,7 @@ def _is_kept() -> bool:
 
 
 def text_of(path: str) -> bytes:
-    """The content of a file; empty if it cannot be read."""
+    """Return the content of a file; empty if it cannot be read."""
     try:
         with open(path, "rb") as file:
             return file.read()
@@ -216,7 +216,7 @@ def text_of(path: str) -> bytes:
 
 
 def _is_same(source: Any, data: bytes) -> bool:
-    """Whether a text is that of a file, with any line ends and encoding."""
+    """Return whether a text is that of a file, regardless of line ends and encoding."""
     if source is data or source == data:
         return True
     return _decoded(source) == _decoded(data)
@@ -235,7 +235,7 @@ def _bytes_of(source: Any) -> bytes:
 
 
 def _has_ours(tree: ast.AST) -> bool:
-    """Whether a tree has been changed before."""
+    """Return whether a tree has been changed before."""
     return hasattr(tree, _CHANGED) or any(
         isinstance(node, ast.Name) and node.id.startswith(_OURS) for node in ast.walk(tree)
     )

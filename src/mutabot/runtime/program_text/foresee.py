@@ -1,4 +1,4 @@
-"""What an expression would give, found out without letting anything happen.
+"""Predict the value of an expression without side effects.
 
 The fork parent looks ahead with it: a mutant of the program text needs no process of its own as long as its
 value is the original's. And a mutant tells by it what the original would have given. Operators on plain
@@ -42,7 +42,7 @@ _PLAIN_LOOK_UPS: list[Any] = [kind.__getattribute__ for kind in (object, tuple, 
 
 
 class UnforeseenError(Exception):
-    """What an expression gives cannot be known without evaluating it."""
+    """The value of an expression cannot be known without evaluating it."""
 
 
 def _fail_if(value: Any, wrong: Any, *told: str) -> Any:
@@ -57,7 +57,7 @@ _HELPER_NAMES = frozenset(f"{RUNTIME}[0].{name}" for name in vars(_HELPERS))
 
 
 class ForeseenForm:
-    """An expression whose value is known as soon as those of its leaves are.
+    """An expression whose value follows from those of its leaves.
 
     The value of one that does more than to calculate and to compare is never known. The tree is changed.
     """
@@ -73,7 +73,7 @@ class ForeseenForm:
         self._leaves, self._functions = leaves.found, leaves.functions
 
     def value(self, frame: types.FrameType) -> Any:
-        """What it gives in a frame.
+        """Return the expression's value in a frame.
 
         Raises UnforeseenError if that cannot be known; and whatever the evaluation itself would raise.
         """
@@ -96,7 +96,7 @@ class ForeseenForm:
 
 
 class _Leaves(ast.NodeTransformer):
-    """Puts names in the place of all that is read in a frame, and refuses what is not known.
+    """Replaces everything that is read from a frame by names, and refuses unpredictable expressions.
 
     Attributes:
         found: what is read, by the name that stands for it.
@@ -133,7 +133,7 @@ class _Leaves(ast.NodeTransformer):
         return node
 
     def _argument(self, node: ast.expr) -> Any:
-        """Visit an argument; a tuple of values, such as a point, may be an argument but no other value."""
+        """Visit an argument; only arguments may be tuples of values, such as points."""
         if isinstance(node, ast.Tuple):
             node.elts = [self.visit(item) for item in node.elts]
             return node
@@ -147,13 +147,13 @@ class _Leaves(ast.NodeTransformer):
 
 @frozen
 class Forms:
-    """A place as an expression, and what it could read instead."""
+    """The original at a place as an expression, with its alternatives."""
 
     original: ForeseenForm
     alternatives: tuple[ForeseenForm, ...]
 
     def differing(self, indexes: frozenset[int], frame: types.FrameType) -> frozenset[int]:
-        """Return the alternatives whose value in a frame differs, or may differ, from the original's."""
+        """Return the alternatives whose value in a frame may differ from the original's."""
         try:
             given = self.original.value(frame)
         except Exception:  # whatever it is: a real evaluation will tell
@@ -168,14 +168,14 @@ class Forms:
 
 
 def is_identical(one: Any, other: Any) -> bool:
-    """Return whether two plain values are indistinguishable to a program, but for their identity."""
+    """Return whether a program cannot distinguish two plain values, except by identity."""
     if type(one) is not type(other) or one != other:
         return False
     return type(one) is not float or math.copysign(1.0, one) == math.copysign(1.0, other)
 
 
 def locals_of(frame: types.FrameType) -> Mapping[str, Any]:
-    """The local names of a frame.
+    """Return the local names of a frame.
 
     Raises UnforeseenError in a function that calls ``locals`` itself: to look would bring up to date what it
     may have kept.
@@ -187,7 +187,7 @@ def locals_of(frame: types.FrameType) -> Mapping[str, Any]:
 
 
 def plain_attribute(owner: Any, name: str) -> Any:
-    """An attribute that is merely stored: on the object, in a slot, in a named tuple, or in a module.
+    """Return an attribute that is merely stored: on an object, in a slot, named tuple or module.
 
     Raises UnforeseenError for all others: to read a property may be to read a robot.
     """
@@ -222,7 +222,7 @@ def _read(leaf: ast.expr, frame: types.FrameType) -> Any:
 
 
 def _named(name: str, frame: types.FrameType) -> Any:
-    """What a name stands for in a frame; a function's own without a value yet is no global of that name."""
+    """Return what a name denotes in a frame; an unbound local name does not denote a global."""
     local, code = locals_of(frame), frame.f_code
     if name in local:
         return local[name]

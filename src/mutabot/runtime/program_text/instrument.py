@@ -1,4 +1,4 @@
-"""Instrumentation: program text compiled with its alternatives beside the original, in memory only.
+"""Instrument program text: compile it with its alternatives beside the original, in memory only.
 
 Works on ``ast`` nodes and never on text, so lines, columns and names stay the user's. There is no function
 around anything, so ``await``, ``yield``, ``:=``, ``super()``, ``locals()``, class bodies and comprehensions
@@ -51,13 +51,13 @@ _FEW = 20
 
 
 class MismatchError(ValueError):
-    """A place is not where the plan says."""
+    """A place is not where the plan expects it."""
 
 
 def instrumented(
     tree: ast.Module, places: Iterable[TextPlace], *, record: bool = False, originals: _Nodes | None = None
 ) -> ast.Module:
-    """The tree with all alternatives of its places in it, or with witnesses; the tree itself is changed.
+    """Change a tree so that its places have all alternatives, or witnesses, and return it.
 
     ``originals`` takes the expressions at the places as they stand in the text, by number.
 
@@ -93,7 +93,7 @@ class _Instrumenter(ast.NodeTransformer):
                 self._lines = lines
 
     def check(self) -> None:
-        """Every place was met."""
+        """Raise MismatchError unless every place was found."""
         for key in self._places.keys() - self._found:
             span = self._places[key].span
             raise MismatchError(f"there is no {key[0]} at {span.file}:{span.line}:{span.column + 1}")
@@ -164,7 +164,7 @@ class _Instrumenter(ast.NodeTransformer):
 
 
 def _near(node: ast.AST, lines: list[int]) -> Iterator[ast.AST]:
-    """What stands below a node, but for statements that none of these lines belongs to."""
+    """Yield the nodes below a node, skipping statements that none of these lines belongs to."""
     for one in ast.iter_child_nodes(node):
         if _is_around(one, lines):
             yield one
@@ -181,19 +181,19 @@ def _is_around(node: ast.AST, lines: list[int]) -> bool:
 
 
 def _seen(value: ast.expr, place: TextPlace, node: ast.AST) -> ast.expr:
-    """A value that its witness is shown, once it is noted that it is about to be computed."""
+    """Return an expression that notes a place before its value is computed, and shows it to a witness."""
     entered = ast.Call(_switch(0), [ast.Constant(place.number)], [])
     return placed(ast.BoolOp(ast.Or(), [entered, ast.Call(_switch(place.number), [value], [])]), node)
 
 
 def _observed(other: ast.expr, place: TextPlace, node: ast.expr) -> ast.expr:
-    """Alternatives that say what they became, and how to compute the original where that has no effect."""
+    """Return an alternative that reports its value, with the original as text if that has no side effects."""
     original: list[ast.expr] = [ast.Constant(ast.unparse(node))] if _is_pure(node) else []
     return placed(_asked(place.number, "became", other, *original), node)
 
 
 def _is_pure(node: ast.expr) -> bool:
-    """Whether computing an expression once more has no effect: names, constants and what operators make."""
+    """Return whether evaluating an expression again has no effect."""
     return all(isinstance(part, _PURE) for part in ast.walk(node) if isinstance(part, ast.expr))
 
 
@@ -219,7 +219,7 @@ def _expression(alternative: Alternative) -> ast.expr:
 
 
 def _filled(made: _Node, place: TextPlace, node: ast.AST, *, observed: bool = True) -> _Node:
-    """A template at the position of its place, with the kept parts put in.
+    """Return a template at the position of its place, with the kept parts inserted.
 
     ``observed``: whether the value of the whole original is told, where a template keeps it.
     """
@@ -257,14 +257,14 @@ def _moved(made: _Node, node: ast.AST) -> _Node:
 
 
 def is_ours(function: ast.expr) -> bool:
-    """Whether what is called was put in here."""
+    """Return whether a function is part of the instrumentation."""
     while isinstance(function, ast.Attribute | ast.Subscript):
         function = function.value
     return isinstance(function, ast.Name) and function.id == RUNTIME
 
 
 def declare_global(tree: ast.Module, name: str) -> None:
-    """Class bodies and modules look names up in their own namespace first; spare them that."""
+    """Declare a name as global, so that class bodies and modules skip their own namespace."""
     for node in [tree, *_statements(tree)]:
         if isinstance(node, ast.Module | ast.ClassDef) and node.body:
             position = head_size(node.body)
@@ -282,7 +282,7 @@ def _statements(node: ast.AST) -> Iterator[ast.stmt]:
 
 
 class _ChangedError(MismatchError):
-    """A file is no longer what the plan was made for."""
+    """A file is no longer the one that the plan was made for."""
 
 
 _CHANGED = "it has changed since its mutants were made"
@@ -291,7 +291,7 @@ _OTHER = "other text than the file holds is compiled under its name"
 
 
 class SessionText:
-    """Compiles program files with their alternatives, or with witnesses that note which values occur.
+    """Compiles program files with their alternatives, or with witnesses that note their values.
 
     What happens while the program is imported, before any test, holds for every test after it: each test
     counts it as its own. See ``compiling.SourceStep``.
@@ -336,7 +336,7 @@ class SessionText:
 
     @classmethod
     def of(cls, job: Job, pipe: EventWriter, on_act: Callable[[], None]) -> SessionText | None:
-        """Instrument the program from now on; None if the job leaves its text alone."""
+        """Instrument the program from now on; return None if the job has no places in its text."""
         if job.instrumentation is None:
             return None
         text = cls(job.root, job.instrumentation, pipe, on_act)
@@ -355,7 +355,7 @@ class SessionText:
         listen(("exec",), self._hear)
 
     def wants(self, path: str) -> bool:
-        """Whether there are alternatives for a file."""
+        """Return whether there are alternatives for a file."""
         return self._text_of(path) is not None
 
     def change(self, tree: ast.Module, source: bytes, path: str) -> None:
@@ -369,7 +369,7 @@ class SessionText:
         self.imported.append(text.file)
 
     def give_up(self, path: str, error: Exception) -> None:
-        """A file is compiled without its alternatives."""
+        """Note that a file is compiled without its alternatives."""
         text = self._text_of(path)
         assert text is not None
         if text.file in self.imported:
@@ -378,7 +378,7 @@ class SessionText:
         self._refuse(text, str(error) if is_known else f"it cannot be instrumented: {error}")
 
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
-        """Note that a module is executed; the text of one that was compiled elsewhere is not instrumented."""
+        """Note that a module is executed, whose text may have been compiled elsewhere."""
         code = arguments[0]
         if not isinstance(code, CodeType) or code.co_name != "<module>":
             return
@@ -391,7 +391,7 @@ class SessionText:
         return self._texts.get(real_path(path))
 
     def _forms(self, number: int) -> Forms | None:
-        """The original and the alternatives of a place, for a look ahead."""
+        """Return the original and the alternatives of a place, for prediction; None if there are none."""
         original = self._originals.get(number)
         if original is None:
             return None
@@ -409,7 +409,7 @@ class SessionText:
         return self.alternatives.active is not None
 
     def start_test(self, test: str) -> None:
-        """A test begins."""
+        """Begin a test."""
         if self._test is None:  # what happened before any test
             if self.sightings is not None:
                 self._tell_reached()
@@ -420,19 +420,19 @@ class SessionText:
     def watch(
         self, on_place: Callable[[int, frozenset[int]], None], live: Mapping[int, frozenset[int]]
     ) -> None:
-        """In a fork parent, call ``on_place`` with the ``live`` alternatives that are about to differ."""
+        """Call ``on_place`` with the ``live`` alternatives that may differ, in a fork parent."""
         self.alternatives.on_place = on_place
         self.alternatives.watch(live)
 
     def end_test(self) -> None:
-        """The test is over."""
+        """End the test."""
         if self.sightings is not None:
             self._tell_reached()
         elif self.alternatives.on_place is not None and not self.is_mutant:
             self.alternatives.watch({})  # what is reached between tests belongs to none
 
     def finish(self, others: Iterable[TextsSeen] = ()) -> None:
-        """All tests are over; ``others`` is what was seen in processes below them."""
+        """Report, after all tests, what was observed here and in processes below (``others``)."""
         if self.sightings is not None:
             others = list(others)
             self._note_unseen()
@@ -441,7 +441,7 @@ class SessionText:
             self.pipe.send(TextsSeen(tuple(imported), tuple(seen)))
 
     def _note_unseen(self) -> None:
-        """Refuse files that were imported without being compiled here."""
+        """Report files that were imported without being compiled here."""
         for module in list(sys.modules.values()):
             text = self._text_of(_file_of(module))
             if text is not None and text.file not in {*self.imported, *self.problems}:
@@ -449,7 +449,7 @@ class SessionText:
                 self._refuse(text, f"{loading.UNSEEN} ({loading.loader_name(loader)})")
 
     def raised(self, error: BaseException, call: Call, refusals: Iterable[str]) -> None:
-        """Note an exception of an operation: a refusal by the robot may be caused by the mutant."""
+        """Note an exception of an operation, as the mutant may have caused the robot's refusal."""
         from mutabot.runtime.interception.active_mutant import is_refusal, with_refusal  # noqa: PLC0415
 
         if self.is_mutant and self.alternatives.acted and is_refusal(error, refusals):
@@ -475,7 +475,7 @@ class SessionText:
 
 
 def _file_of(module: Any) -> str:
-    """A module's file; empty if it has none. Modules that are loaded when first used stay asleep."""
+    """Return a module's file; empty if it has none. Lazily loaded modules are not loaded."""
     if not isinstance(module, ModuleType):
         return ""
     try:

@@ -1,4 +1,4 @@
-"""Change source files while they are loaded, imported or run as scripts.
+"""Change source files when they are loaded, imported or run as scripts.
 
 Every loader that reads source inherits ``get_code``, which asks the loader for the code of its file. What is
 compiled meanwhile is that file (``compiling``); loader, spec and module stay as they are. Of a file that a
@@ -31,7 +31,7 @@ _original = _SourceLoader.get_code
 
 
 def add(step: SourceStep) -> None:
-    """Apply a step, after all others, to the files that are compiled from now on."""
+    """Apply a step, after all others, to files that are compiled from now on."""
     compiling.steps.append(step)
     compiling.install()
     _SourceLoader.get_code = _get_code
@@ -52,7 +52,7 @@ def _get_code(self: Any, fullname: str) -> CodeType | None:
 
 
 def _asked(loader: Any, request: LoaderRequest) -> tuple[CodeType, str | None]:
-    """The code that a loader makes of its file, and why that is not of the changed text, if it is not."""
+    """Return the code that a loader makes of its file, and why it does not contain the change, if so."""
     compiling.requests.open.append(request)
     why = None
     try:
@@ -73,7 +73,7 @@ UNSEEN = "its loader compiles it in a way that mutabot cannot follow"
 
 
 def loader_name(loader: Any) -> str:
-    """The name of a loader's class."""
+    """Return the name of a loader's class."""
     kind = loader if isinstance(loader, type) else type(loader)
     return f"{kind.__module__}.{kind.__qualname__}"
 
@@ -83,7 +83,7 @@ Change = Callable[[ast.Module, bytes, str], None]
 
 
 def hook_pytest(wants: Callable[[str], bool], change: Change, look: Change | None = None) -> None:
-    """Show wanted files that pytest rewrites to ``look`` before pytest, and to ``change`` after it."""
+    """Show wanted files that pytest rewrites to ``look`` before, and to ``change`` after it."""
     rewriting: Any = sys.modules.get("_pytest.assertion.rewrite")
     if rewriting is None:
         return
@@ -106,7 +106,7 @@ def hook_pytest(wants: Callable[[str], bool], change: Change, look: Change | Non
 
 
 def hook_pytest_first(step: SourceStep) -> None:
-    """Let a step change files that pytest rewrites before it does."""
+    """Let a step change files that pytest rewrites, before pytest does."""
 
     def look(tree: ast.Module, source: bytes, path: str) -> None:
         changed = copy.deepcopy(tree)
@@ -121,7 +121,7 @@ def hook_pytest_first(step: SourceStep) -> None:
 
 
 def hook_script() -> None:
-    """Compile the script that this process is about to run as modules are, if it is wanted.
+    """Compile the script that this process is about to run like a module, if it is wanted.
 
     To be called before Python looks for the script: while it is still setting itself up.
     """
@@ -143,13 +143,13 @@ def hook_script() -> None:
 
 
 class _Script(SourceStep):
-    """Load one module as a script, with the attributes that a script has rather than those of an import."""
+    """Loads one module as a script, with a script's attributes."""
 
     def __init__(self, path: str) -> None:
         self._path = path
 
     def find_spec(self, name: str, target: ModuleType | None = None) -> ModuleSpec | None:
-        """The script, if it is asked for."""
+        """Return the script's spec if the script is asked for."""
         if name != "__main__":
             return None
         if sys.path and os.path.abspath(sys.path[0]) == self._path:  # where a script has its own folder
@@ -157,11 +157,11 @@ class _Script(SourceStep):
         return spec_from_file_location(name, self._path, loader=SourceFileLoader(name, self._path))
 
     def wants(self, path: str) -> bool:
-        """Only that script."""
+        """Return whether the path is that of the script."""
         return path == self._path
 
     def change(self, tree: ast.Module, source: bytes, path: str) -> None:
-        """Forget its spec before its first statement."""
+        """Remove the module's spec before its first statement."""
         forget = ast.parse("__spec__ = __package__ = __cached__ = None").body  # in the first line
         size = head_size(tree.body)
         tree.body[size:size] = forget

@@ -1,4 +1,4 @@
-"""What the program returns to its tests: its functions are compiled with a note at their ends.
+"""Record what the program returns to its tests, by instrumenting the ends of its functions.
 
 ``return E`` becomes ``return __mutabot_returned__(E)``, and what a function raises passes a note on its way
 out: no function stands around another, so recursion, tracebacks and identities stay what they are. Only
@@ -38,7 +38,7 @@ _LIBRARIES = (f"{os.sep}site-packages{os.sep}", f"{os.sep}dist-packages{os.sep}"
 
 
 class Returns:
-    """The notes of one process.
+    """The returned values that one process records.
 
     Attributes:
         entries: of the running test: name of the function and what it returned (``[value]``) or raised
@@ -59,20 +59,20 @@ class Returns:
         self._is_test = cache(self._is_of_tests)
 
     def install(self) -> None:
-        """Compile program files with notes from now on."""
+        """Instrument program files from now on."""
         setattr(builtins, RETURNED, self._returned)
         setattr(builtins, RAISED, self._raised)
         loading.add(self)
         loading.hook_pytest(self.wants, self.change)
 
     def wants(self, path: str) -> bool:
-        """Return whether a file belongs to the program, whose functions are recorded."""
+        """Return whether a file belongs to the program, whose functions are instrumented."""
         if path.startswith(sys.base_prefix) or any(part in path for part in _LIBRARIES):
             return False
         return self._locator.role(path) is Role.PROGRAM
 
     def change(self, tree: ast.Module, source: bytes, path: str) -> None:
-        """Put notes into the functions of a program file."""
+        """Instrument the functions of a program file."""
         for function in _functions(tree):
             own = list(_own_nodes(function))
             is_generator = any(isinstance(node, ast.Yield | ast.YieldFrom) for node in own)
@@ -81,11 +81,11 @@ class Returns:
         self._own.add(path)
 
     def give_up(self, path: str, error: Exception) -> None:
-        """A program file is compiled without notes: its import will say, or it is nested too deeply."""
+        """Ignore a file that is compiled without notes: its import will fail, or it is nested too deeply."""
         self._own.discard(path)
 
     def start(self) -> None:
-        """A test begins, before its fixtures."""
+        """Begin a test, before its fixtures."""
         self.entries, self.prepared, self.is_on = [], 0, True
 
     def begin_call(self) -> None:
@@ -93,7 +93,7 @@ class Returns:
         self.prepared = len(self.entries)
 
     def stop(self) -> None:
-        """What comes now is no more part of the test."""
+        """Stop recording, as the test is over."""
         self.is_on = False
 
     def _returned(self, value: Any) -> Any:
@@ -138,7 +138,7 @@ class Returns:
 
 
 def _functions(tree: ast.Module) -> Iterator[FunctionNode]:
-    """Functions of a module and methods of its classes, not what is defined within functions."""
+    """Yield functions of a module and methods of its classes, except those within functions."""
     stack: list[ast.AST] = [tree]
     while stack:
         for node in ast.iter_child_nodes(stack.pop()):
@@ -149,7 +149,7 @@ def _functions(tree: ast.Module) -> Iterator[FunctionNode]:
 
 
 def _own_nodes(function: FunctionNode) -> Iterator[ast.AST]:
-    """What belongs to a function and to none within it."""
+    """Yield the nodes of a function, except those of functions within it."""
     stack: list[ast.AST] = [*function.body]
     while stack:
         node = stack.pop()
@@ -159,7 +159,7 @@ def _own_nodes(function: FunctionNode) -> Iterator[ast.AST]:
 
 
 def is_translated(function: FunctionNode) -> bool:
-    """Whether a decorator may translate its bytecode, in which notes would have no meaning."""
+    """Return whether a decorator may translate a function's bytecode, which must then stay as it is."""
     names = [ast.unparse(decorator).lower() for decorator in function.decorator_list]
     return any(word in name for name in names for word in _TRANSLATED)
 

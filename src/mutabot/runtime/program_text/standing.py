@@ -1,4 +1,4 @@
-"""What stands at a call in the text: an operation, something in its place, or something of the same name.
+"""Decide what is called at a call site: an operation, a replacement, or another callable of that name.
 
 People who test hardware code put mocks, fakes and patched classes in the place of the robot. A person who
 edits the text changes what these are told; so does a mutant. Hence a call is seen at its site wherever what
@@ -60,7 +60,7 @@ _MOST = 5
 
 @dataclass(slots=True)
 class StandIns:
-    """What stood at sites, for who checks a vocabulary.
+    """What was called at sites, for the check of a vocabulary.
 
     Args:
         test: tells the running test.
@@ -75,7 +75,7 @@ class StandIns:
     _elsewhere: dict[str, set[str]] = field(default_factory=dict)
 
     def note(self, site: CallSite, operation: Operation | None, found: Any, receiver: Any) -> None:
-        """This was called at a site, as this operation or as none."""
+        """Note what was called at a site, as this operation or as none."""
         what = _shown(found, receiver)
         if operation is not None:
             self._sites.add(site)
@@ -85,12 +85,12 @@ class StandIns:
             self._alone.setdefault(site.name, {})[place] = what
 
     def note_elsewhere(self, operation: Operation, place: CallPlace | None) -> None:
-        """Note a call whose place only a frame can give, or nothing."""
+        """Note a call whose place only a frame can give, if anything can."""
         if place is None:
             self._elsewhere.setdefault(operation.target, set()).add(self.test())
 
     def findings(self, operations: Iterable[Operation]) -> Iterator[tuple[Operation, Finding]]:
-        """Yield findings: what replaced operations, which calls have no place, and what was left alone."""
+        """Yield findings about replaced operations, calls without a place, and calls that were left alone."""
         for operation in operations:
             target, name, said = operation.target, operation.last_name, []
             stood = self._standing.get(target, {})
@@ -113,7 +113,7 @@ class StandIns:
 
 
 def mock_of(found: Any) -> Any:
-    """The mock that this callable is or wraps; None if there is none."""
+    """Return the mock that this callable is or wraps; None if there is none."""
     made = vars(found).get("mock") if type(found) is FunctionType else found
     return made if is_mock(made) else None
 
@@ -132,7 +132,7 @@ def _count(number: int, what: str) -> str:
 
 @dataclass(slots=True)
 class Standing:
-    """Decide what is called at the sites of one process.
+    """Decides what is called at the sites of one process.
 
     Args:
         adapters: of the operations that can be called.
@@ -165,7 +165,7 @@ class Standing:
             self.by_name.setdefault(one.operation.last_name, []).append(one)
 
     def __call__(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
-        """Return what is called at a site: ``found``, or a wrapper that makes the call as an operation."""
+        """Return what is called at a site: ``found``, or a wrapper that calls it as an operation."""
         one = self.candidate(site, found, receiver, frame)
         if self.noted is not None:
             operation = one.operation if one is not None else None
@@ -181,7 +181,7 @@ class Standing:
         return partial(self.call, one, where, found, receiver)
 
     def _guards(self, site: CallSite, frame: FrameType) -> Guards:
-        """Conditions for skipping this call: the names of operations and their classes are unchanged."""
+        """Return the conditions for skipping this call: operations and their classes are unchanged."""
         here = frame.f_globals
         named = {(id(here), name): (here, name, here.get(name)) for name in self._names_of(here)}
         for one in self.by_name[site.name]:
@@ -191,7 +191,7 @@ class Standing:
         return tuple(named.values())
 
     def note_modules(self, paths: set[str]) -> None:
-        """Note which names mean operations in the modules of these files, which were loaded just now."""
+        """Note which names denote operations in the modules of these files, which were just loaded."""
         for module in list(sys.modules.values()) if paths else ():
             if isinstance(module, ModuleType) and getattr(module, "__file__", None) in paths:
                 self._names_of(vars(module))
@@ -200,7 +200,7 @@ class Standing:
     def call(
         self, one: Adapter, where: dict[str, Any], found: Any, receiver: Any, /, *args: Any, **kwargs: Any
     ) -> Any:
-        """Make a call of what was read from ``receiver`` as an operation's; ``where`` is of ``Where``."""
+        """Call a callable that was read from ``receiver`` as an operation; ``where`` is of type ``Where``."""
         __tracebackhide__ = True
         owner = self._owner(one)
         is_method = owner is not None or one.operation.target.startswith(ANY)
@@ -219,7 +219,7 @@ class Standing:
             raise  # who keeps the exception keeps this frame
 
     def stands_in(self, found: Any) -> bool:
-        """Whether something is a mock, or a function of the project that is no operation: a fake."""
+        """Return whether a callable is a mock, or a fake: a function of the project that is no operation."""
         function = found.__func__ if isinstance(found, MethodType) else found
         if mock_of(function) is not None:
             return True
@@ -228,14 +228,14 @@ class Standing:
         )
 
     def place(self, site: CallSite, frame: FrameType) -> CallPlace:
-        """Where a site stands."""
+        """Return the place of a site."""
         if site.place is None:
             span = Span(self.locator.relative(site.path), *site.extent, function_of(frame.f_code))
             site.place = (span, site.role)
         return site.place
 
     def candidate(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Adapter | None:
-        """The operation that stands at a site, if it does not see its calls itself."""
+        """Return the operation at a site, unless its calls are intercepted anyway."""
         if any(handler in self.sees_itself for handler in _handlers(found)):
             return None
         one = self.named(site.name, found, receiver, frame)
@@ -249,7 +249,7 @@ class Standing:
         return one
 
     def named(self, name: str, found: Any, receiver: Any, frame: FrameType) -> Adapter | None:
-        """Return the operation of this name in whose place something stands."""
+        """Return the operation of this name that a callable replaces."""
         mock = mock_of(found)
         is_read = is_mock(
             mock, "PropertyMock"
@@ -268,7 +268,7 @@ class Standing:
         return fitting[0] if fitting else None
 
     def _is_of_class(self, one: Adapter, found: Any, receiver: Any, frame: FrameType) -> bool:
-        """Whether what is called is an attribute of an object of the operation's class."""
+        """Return whether a callable is an attribute of an object of the operation's class."""
         if receiver is NOTHING and isinstance(found, MethodType):
             receiver = found.__self__
         owner = self._owner(one)
@@ -281,7 +281,7 @@ class Standing:
         return any(_is_a(receiver, kind) for kind in self._kinds(one, owner, frame))
 
     def _kinds(self, one: Adapter, owner: type, frame: FrameType) -> Iterator[Any]:
-        """The operation's class, and what was put in its place."""
+        """Yield the operation's class, and its replacements."""
         yield owner
         yield named_class(one.operation.target.rpartition(".")[0])
         for name, meant in self._names_of(frame.f_globals).items():
@@ -289,7 +289,7 @@ class Standing:
                 yield frame.f_globals.get(name)
 
     def _means(self, one: Adapter, found: Any, receiver: Any, frame: FrameType) -> bool:
-        """Whether what is called is what the operation's name means now, or a name that meant it first."""
+        """Return whether a callable is what the operation's name denotes now, or denoted first."""
         if self._owner(one) is None and named_class(one.operation.target) is found:
             return True
         meant = self._names_of(frame.f_globals).items() if receiver is NOTHING else ()
@@ -307,7 +307,7 @@ class Standing:
         return any(handler is one.handler for handler in _handlers(wrapped))
 
     def _names_of(self, names: dict[str, Any]) -> dict[str, Any]:
-        """Return the names of a module that denoted an operation, or its class, when it was first seen.
+        """Return the names of a module that denoted operations, or their classes, when it was first seen.
 
         With the class, or the handler of the operation.
         """
@@ -327,7 +327,7 @@ class Standing:
         return self.callables.owners.get(one.operation.target)
 
     def _signature_of(self, one: Adapter) -> Signature | None:
-        """Return the operation's own signature; None if it has none, or is not found yet."""
+        """Return the operation's own signature; None if it has none, or was not found yet."""
         original = self.callables.found.get(one.operation.target)
         if isinstance(original, property):
             original = original.fset if one.operation.described else original.fget
@@ -349,7 +349,7 @@ def _is_of_objects(owner: type | None, one: Adapter) -> bool:
 
 
 def _handlers(found: Any) -> Iterator[Any]:
-    """What stands around a callable, or around what it is bound to or wraps."""
+    """Yield the handlers around a callable, or around what it is bound to or wraps."""
     for _ in range(9):
         kind = type(found)
         if kind in WRAPPERS:
@@ -363,7 +363,7 @@ def _handlers(found: Any) -> Iterator[Any]:
 
 
 def _is_told_by_type(found: Any, receiver: Any) -> bool:
-    """Whether all that is called like this on objects of this type is left alone if this is."""
+    """Return whether the types of callable and receiver suffice to leave such calls alone."""
     if type(found) is FunctionType:  # one that is always the same
         return receiver is NOTHING and "<locals>" not in found.__qualname__
     if receiver is NOTHING or isinstance(receiver, type | ModuleType):
@@ -378,7 +378,7 @@ def _is_told_by_type(found: Any, receiver: Any) -> bool:
 
 
 def _is_a(value: Any, kind: Any) -> bool:
-    """Return whether a value is an instance of a class, the class or a subclass, or claims to be."""
+    """Return whether a value is an instance of a class, that class or a subclass, or claims to be."""
     if not isinstance(kind, type):
         return False
     try:
@@ -393,10 +393,10 @@ _MARK = "_mutabot_handed"
 
 
 class Handed(wrapt.FunctionWrapper):  # type: ignore[type-arg]
-    """A callable that was handed on; a partial makes its calls."""
+    """A callable that was passed on; if it is a partial, its calls count."""
 
     def __new__(cls, wrapped: Any, handed: Any) -> Any:
-        """With an object in place of the partial, as weak methods do it: a function bound to it."""
+        """Return a wrapper; for a weak method, which takes an object first, a bound function."""
         if type(handed) is partial:
             return super().__new__(cls, wrapped, handed)  # type: ignore[call-arg]
         return MethodType(wrapped, handed)
@@ -416,7 +416,7 @@ class Handed(wrapt.FunctionWrapper):  # type: ignore[type-arg]
 
 
 class Handing:
-    """Decides what is handed on, and sees the calls of mocks.
+    """Decides which callables are passed on as operations, and watches the calls of mocks.
 
     Args:
         standing: decides what stands for an operation.
@@ -429,7 +429,7 @@ class Handing:
         wrapt.register_post_import_hook(self._watch, "unittest.mock")
 
     def __call__(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
-        """What is handed on at a site: ``found``, or what is equal to it."""
+        """Return what is passed on at a site: ``found``, or an equal callable."""
         if not callable(found) or isinstance(found, type) or type(found) is Handed:
             return found
         place = self._standing.place(site, frame)
@@ -487,7 +487,7 @@ class Handing:
         return self._standing.call(one, where, found, receiver, *args, **kwargs)
 
     def _watch(self, mock: ModuleType) -> None:
-        """See the calls of all mocks."""
+        """Watch the calls of all mocks."""
         kind: Any = mock.CallableMixin
         original = kind.__call__
 
@@ -529,7 +529,7 @@ class Handing:
 
 
 def _weakly(receiver: Any) -> Callable[[], Any]:
-    """Return a function that gives the object a mock was read from, without keeping that alive."""
+    """Return a function that returns the object a mock was read from, without keeping it alive."""
     try:
         reference = weakref.ref(receiver)
     except TypeError:
@@ -538,7 +538,7 @@ def _weakly(receiver: Any) -> Callable[[], Any]:
 
 
 def _caller(frame: FrameType | None) -> FrameType | None:
-    """The frame that calls a mock, without those of its making."""
+    """Return the frame that calls a mock, skipping frames of ``unittest.mock``."""
     while frame is not None and (
         frame.f_globals.get("__name__") == "unittest.mock" or "_checksig_" in frame.f_globals
     ):

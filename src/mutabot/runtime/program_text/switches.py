@@ -1,4 +1,4 @@
-"""Switch alternatives of instrumented program text on and off, and compute their values.
+"""Switch alternatives of instrumented program text on and off, and note their values.
 
 The text of a place ``E`` with number ``p`` becomes ``(other) if __mutabot__[p] and __mutabot__[p].chosen()
 else E``. ``__mutabot__`` is a plain list with False at places that are off, so these cost one look-up. It is
@@ -29,13 +29,13 @@ from mutabot.runtime.program_text.foresee import Forms, locals_of
 
 @cache
 def error_of(name: str) -> type[Exception]:
-    """The exception that an alternative raises itself, by the name that its operator gives it."""
+    """Return the exception class that an alternative raises, by the name in its operator."""
     # the module is the one under which journals know them
     return type(name, (Exception,), {"__module__": "mutabot.runtime.alternatives"})
 
 
 class Switch:
-    """A place that is on.
+    """A place that is switched on.
 
     Attributes:
         place: its number.
@@ -51,18 +51,18 @@ class Switch:
         self._code: types.CodeType | None = None
 
     def chosen(self) -> bool:
-        """Asked at every evaluation: whether an alternative stands for the original."""
+        """Return whether an alternative replaces the original; called at every evaluation."""
         return self._owner.reached(self, sys._getframe(1))
 
     # what instrumented text calls around an alternative, so that one sees whether it changed anything
 
     def was(self, value: Any) -> Any:
-        """The original's value, which the alternative uses."""
+        """Note the original's value, which the alternative uses."""
         self._before = value
         return value
 
     def became(self, value: Any, original: str = "") -> Any:
-        """The alternative's value; ``original`` is the original as text if computing it has no effect."""
+        """Note the alternative's value; ``original`` is the original as text if it has no side effects."""
         before, self._before = self._before, _UNKNOWN
         if before is _UNKNOWN:
             frame = sys._getframe(1)
@@ -111,7 +111,7 @@ class Alternatives:
     """
 
     def __init__(self, size: int) -> None:
-        """``size``: the largest number of a place."""
+        """Make the switches; ``size`` is the largest number of a place."""
         self.active: tuple[int, int] | None = None  # its place, and its index there
         self.hits: dict[int, int] = {}
         self.idle: dict[int, int] = {}
@@ -125,7 +125,7 @@ class Alternatives:
         self.switches: list[Any] = [self, *([False] * size)]
 
     def keep(self) -> None:
-        """Count what was counted so far in every test."""
+        """Count in every later test what was counted so far."""
         self._kept = (self.hits, self.idle, self.example)
 
     def start(self) -> None:
@@ -140,11 +140,11 @@ class Alternatives:
 
     @property
     def acted(self) -> int:
-        """Evaluations at which the active alternative changed something, or raised."""
+        """The evaluations at which the active alternative changed something, or raised."""
         return self.hits.get(self.place, 0) - self.idle.get(self.place, 0)
 
     def note(self, place: int, before: Any, after: Any) -> None:
-        """An alternative has its value; compare it with the original's, where that is known."""
+        """Compare an alternative's value with the original's, if that is known."""
         if before is not _UNKNOWN and _is_same(before, after):
             self.idle[place] = self.idle.get(place, 0) + 1
             return
@@ -153,18 +153,18 @@ class Alternatives:
         self.tell()
 
     def tell(self) -> None:
-        """The active alternative changed something, or may have."""
+        """Report that the active alternative changed something, or may have."""
         if not self._has_told:
             self._has_told = True
             self.on_act()
 
     def activate(self, place: int = 0, index: int = 0) -> None:
-        """Make this alternative, and no other, stand for the original; 0: none."""
+        """Activate this alternative and no other; 0 for none."""
         self.active = (place, index) if place else None
         self._set({})
 
     def watch(self, live: Mapping[int, frozenset[int]]) -> None:
-        """Report each of these alternatives, by place, when it is about to change something.
+        """Report each of these alternatives, by place, when it may differ.
 
         Those whose effect cannot be computed ahead are reported when reached, as negative indexes always are.
         """
@@ -172,7 +172,7 @@ class Alternatives:
 
     @contextmanager
     def paused(self) -> Iterator[None]:
-        """Evaluate all places as the original meanwhile, and count none; only while no other thread runs."""
+        """Evaluate all places as the original inside the context, without counting."""
         on = self.switches[1:]
         self.switches[1:] = [False] * len(on)
         try:
@@ -181,7 +181,7 @@ class Alternatives:
             self.switches[1:] = on
 
     def reached(self, switch: Switch, frame: types.FrameType) -> bool:
-        """A place that is on is evaluated; whether an alternative stands for it."""
+        """Return whether an alternative replaces the original at a place that is being evaluated."""
         place = switch.place
         hits = self.hits[place] = self.hits.get(place, 0) + 1
         if self.on_first is not None and hits == 1 + self._kept[0].get(place, 0):
@@ -206,7 +206,7 @@ class Alternatives:
             self.idle[place] = self.idle.get(place, 0) + 1
 
     def foreseen(self, place: int, frame: types.FrameType) -> Any:
-        """What the original gives, if that can be known without letting anything happen."""
+        """Return the original's value if it can be predicted without side effects."""
         forms = self.forms(place)
         try:
             return _UNKNOWN if forms is None else forms.original.value(frame)
@@ -214,7 +214,7 @@ class Alternatives:
             return _UNKNOWN
 
     def _differing(self, switch: Switch, frame: types.FrameType) -> frozenset[int]:
-        """The watched alternatives that differ from the original, or may."""
+        """Return the watched alternatives that may differ from the original."""
         forms = self.forms(switch.place)
         if forms is None or self.hits[switch.place] > _LOOKS or threading.active_count() > 1:
             return switch.watched  # another thread may change what an evaluation depends on
@@ -222,7 +222,7 @@ class Alternatives:
         return unforeseeable | forms.differing(switch.watched - unforeseeable, frame)
 
     def _control(self, place: int, index: int) -> None:
-        """The controls, which every place knows: nothing happens, or it raises."""
+        """Act as a control, which every place has: do nothing, or raise."""
         if index == FATAL:
             self.tell()
             from mutabot.operators.command import FatalFault  # noqa: PLC0415  # a control, once in a campaign
@@ -255,12 +255,12 @@ class Alternatives:
         return value
 
     def absolute(self, value: Any) -> Any:
-        """The built-in ``abs``, also if the program has replaced that name."""
+        """Return the absolute value, even if the program has redefined ``abs``."""
         return abs(value)
 
 
 def _plain(value: Any) -> Any:
-    """The value as a report may show it: later changes, and what the object does when asked, stay away."""
+    """Return a copy of the value for reports, made without side effects."""
     if value is None or isinstance(value, bool | int | float | str):
         return value
     if isinstance(value, tuple | list) and len(value) <= _SHOWN:
@@ -294,7 +294,7 @@ _ARRAYS = {"b": "truth", "i": "integer", "u": "integer", "f": "number", "c": "nu
 
 
 def kind_of(value: Any) -> str:
-    """``number``, ``integer``, ``truth``, ``text``, ``set``, ``none``, or ``module:Type``.
+    """Return a value's kind: ``number``, ``integer``, ``truth``, ``text``, ``set``, ``none`` or its type.
 
     Looks at the type alone: what objects answer when they are asked may have effects.
     """
@@ -314,7 +314,7 @@ def kind_of(value: Any) -> str:
 
 
 def is_variable(value: Any) -> bool:
-    """Whether a name with this value is a variable, not a module, function or class."""
+    """Return whether a name with this value is a variable, not a module, function or class."""
     return not issubclass(type(value), _NO_VARIABLE)
 
 
@@ -325,12 +325,12 @@ LOOKS_AROUND = 3
 
 
 def hand_through(value: Any) -> Any:
-    """What stands at places that have been looked at often enough."""
+    """Return the value unchanged, at places that have been observed often enough."""
     return value
 
 
 class Sightings:
-    """All places of the program, and what was seen there.
+    """All places of the program, and the values that were observed there.
 
     Attributes:
         entered: places that were reached since the start of the test.
@@ -339,7 +339,7 @@ class Sightings:
     """
 
     def __init__(self, size: int, places: Mapping[int, TextPlace]) -> None:
-        """``size``: the largest number of a place."""
+        """Make the witnesses; ``size`` is the largest number of a place."""
         self._witnesses = [_Witness(self, number, places.get(number)) for number in range(1, size + 1)]
         self.entered: set[int] = set()
         self.asked: list[_Witness] = []
@@ -347,7 +347,7 @@ class Sightings:
         self.switches: list[Callable[[Any], Any]] = [self.entered.add, *self._witnesses]
 
     def tell_first(self, on_first: Callable[[int], None]) -> None:
-        """Tell of each place when it is reached for the first time since the start of a test."""
+        """Report each place when it is first reached in a test."""
         self._on_first = on_first
         self.switches[0] = self._enter
 
@@ -367,12 +367,12 @@ class Sightings:
                 self.switches[witness.place] = witness
 
     def seen(self) -> tuple[Sighting, ...]:
-        """What was seen so far, over all tests, by place."""
+        """Return all observations so far, by place."""
         return tuple(witness.sighting() for witness in self._witnesses if witness.hits)
 
 
 class _Witness:
-    """Watch one place of the program text.
+    """Observes one place of the program text.
 
     What it keeps, it has from the start: a test may count the objects that the collector of garbage knows.
 
@@ -394,7 +394,7 @@ class _Witness:
         self._variables: set[str] = set()
 
     def start(self) -> None:
-        """A new test begins."""
+        """Begin a new test."""
         self.looks = self.looks_around = 0
 
     def __call__(self, value: Any) -> Any:
@@ -414,7 +414,7 @@ class _Witness:
 
     @property
     def has_told_all(self) -> bool:
-        """Whether each alternative has had a value that fits, and no variable around may stand here."""
+        """Whether further observations would add nothing."""
         return not (self._lacking or self._is_around)
 
     def _note_kind(self, kind: type, value: Any) -> None:
@@ -424,7 +424,7 @@ class _Witness:
         self.looks_around = 0
 
     def _look_around(self, value: Any, frame: types.FrameType) -> None:
-        """Keep the variables that are of the value's type at every look."""
+        """Keep the variables that have the value's type at every observation."""
         among = self._variables if self._has_looked_around else None
         names = set(_alike(value, frame, among)) - {self._variable} if is_variable(value) else set()
         self._variables.clear()
@@ -432,13 +432,13 @@ class _Witness:
         self._has_looked_around, self._is_around = True, bool(names)
 
     def sighting(self) -> Sighting:
-        """What was seen."""
+        """Return the observations."""
         kinds, variables = sorted(self._kinds), sorted(self._variables)
         return Sighting(self.place, self.hits, tuple(kinds), tuple(variables))
 
 
 def _alike(value: Any, frame: types.FrameType, among: Collection[str] | None) -> Iterator[str]:
-    """Names around a frame's instruction with a value of exactly this type, of all or ``among`` these.
+    """Yield names in a frame with a value of exactly this type, of all or ``among`` these.
 
     Of the function's own names and the module's: to mention a name of a function further out would make
     it a part of this one. So inside another function only such names of the module count as this one uses,

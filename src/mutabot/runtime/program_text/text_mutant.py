@@ -1,4 +1,4 @@
-"""An alternative in the program text as the fault of its process: in place before any import."""
+"""The active fault of mutants of program text, which is in place before any import."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ if TYPE_CHECKING:
 
 
 class TextContext(FaultContext, Protocol):
-    """A process whose program text can be instrumented."""
+    """The interface of a process whose program text can be instrumented."""
 
     text: SessionText | None
 
 
 class TextMutant(ActiveFault):
-    """An alternative in the program text; its data are the number of its place, and its index there."""
+    """A mutant of program text; its data are the number of its place, and its index there."""
 
     context: TextContext
     is_checked: ClassVar[bool] = False
@@ -31,15 +31,15 @@ class TextMutant(ActiveFault):
             self.context.text.alternatives.activate(*self.data)
 
     def start_test(self, test: str, random: Random) -> None:
-        """The text itself counts from the start of a test."""
+        """Do nothing, as the text resets its own evidence."""
 
     def end_test(self) -> None:
         """Leave the alternative active between tests."""
 
     def begin_count(self) -> None:
-        """The text counts by itself."""
+        """Do nothing, as the text resets its own evidence."""
 
     @property
     def evidence(self) -> Evidence:
-        """What it did in the running test."""
+        """What the mutant did in the running test."""
         return self.context.text.evidence if self.context.text is not None else Evidence()

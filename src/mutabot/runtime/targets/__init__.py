@@ -1,1 +1,1 @@
-"""How operations are found at run time, by the kind of their targets."""
+"""Targets of operations at run time: callables, and names on middlewares."""

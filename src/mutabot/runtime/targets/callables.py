@@ -29,7 +29,7 @@ _NOT_SET = "is a property that cannot be set; describe its result"
 
 
 def look_at(operation: Operation, original: Any) -> Iterator[Finding]:
-    """What is to be said about the described arguments of an operation.
+    """Yield findings about the described arguments of an operation.
 
     Args:
         operation: what the vocabulary says.
@@ -71,11 +71,11 @@ def _advice(operation: Operation, is_native: bool) -> str:
 
 
 class NotCallableError(TypeError):
-    """A target names something that cannot be wrapped."""
+    """A target is nothing that can be wrapped."""
 
 
 class Callables:
-    """The wrappers in place.
+    """The wrappers of operations that are callables.
 
     Args:
         tell: told about a target that turns out wrong when it is found.
@@ -118,11 +118,11 @@ class Callables:
         wrapt.register_post_import_hook(imported, module_name)
 
     def here(self) -> Iterable[str]:
-        """The targets whose modules were imported."""
+        """Return the targets whose modules were imported."""
         return self.found.keys()
 
     def found_elsewhere(self, targets: Iterable[str]) -> None:
-        """Forget targets that other processes have found, whose modules may not be importable here."""
+        """Forget targets that other processes have found, as their modules may not be importable here."""
         self.pending.difference_update(targets)
 
     def seek(self) -> Iterator[tuple[str, Finding]]:
@@ -135,7 +135,7 @@ class Callables:
                 yield target, not_imported(module, error)
 
     def check(self, operation: Operation) -> Iterator[Finding]:
-        """What of the described arguments does not fit the callable."""
+        """Return what of the described arguments does not fit the callable."""
         original = self.found.get(operation.target)
         return look_at(operation, original) if original is not None else iter(())
 
@@ -161,7 +161,7 @@ class Callables:
 
 
 def not_imported(module: str, error: Exception, key: str = "call") -> Finding:
-    """What is said of a module that cannot be imported."""
+    """Return the finding for a module that cannot be imported."""
     return Finding(key, f"module {module!r} cannot be imported: {error!r}", module)
 
 
@@ -184,7 +184,7 @@ def _wrapper(owner: Any, name: str, original: Any, handler: Handler, *, is_set: 
 
 
 def _of_property(handler: Handler) -> Handler:
-    """A property calls plain functions with the instance; handlers expect bound methods."""
+    """Return a handler for a property, which calls plain functions, while handlers expect bound methods."""
 
     def call(
         wrapped: Callable[..., Any], instance: Any, args: tuple[Any, ...], kwargs: dict[str, Any]
@@ -196,7 +196,7 @@ def _of_property(handler: Handler) -> Handler:
 
 
 def _rebind(original: Any, wrapper: Any) -> None:
-    """Put the wrapper wherever names of modules mean the original."""
+    """Put the wrapper wherever names of modules denote the original."""
     if isinstance(original, property | classmethod | staticmethod | functools.cached_property):
         return
     for module in list(sys.modules.values()):

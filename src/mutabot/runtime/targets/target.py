@@ -1,4 +1,4 @@
-"""How an operation is found at run time, and what a handler around it receives.
+"""How an operation is found at run time, and the arguments of a handler around it.
 
 A target is what an operation of the vocabulary names: a Python callable (``callables``), or a name on a
 middleware (``Messages``). Each of the two finds its targets in the running program, lets a handler stand
@@ -71,7 +71,7 @@ def _later(seconds: float, action: Callable[[], object]) -> None:
 
 @frozen
 class MiddlewareControls:
-    """How a call of a middleware comes late, or its answer never; the hook that has the call knows.
+    """The ways in which a middleware's hook can delay a call or withhold its answer.
 
     Seconds are those of the node's own clock, so that simulated time counts.
 
@@ -109,7 +109,7 @@ CallPlace = tuple[Span, Role]
 
 @frozen
 class Delivery:
-    """What the program is to receive in the place of one message.
+    """What the program receives in the place of one message.
 
     Attributes:
         parts: seconds by which each comes later, and the message; none if it is lost.
@@ -119,10 +119,10 @@ class Delivery:
 
 
 class TimeModule(Protocol):
-    """How time passes for the program: the module ``time``, or its replacement in a simulation."""
+    """The interface of the program's time: the module ``time``, or its replacement in a simulation."""
 
     def monotonic(self) -> float:
-        """Seconds since some moment."""
+        """Return the seconds since an arbitrary moment."""
 
     def sleep(self, seconds: float, /) -> None:
         """Wait for this many seconds."""
@@ -136,7 +136,7 @@ Handler = Callable[..., Any]
 
 @frozen
 class Where:
-    """Where a use of a target is, if the frames above it do not tell.
+    """The place of a use of a target, if the frames above it do not show it.
 
     Attributes:
         code: the function of the program's that is called back: its definition is the site. None if the site
@@ -191,7 +191,7 @@ class Where:
         is_kept: Callable[[Any], bool],
         time_module: TimeModule,
     ) -> Any:
-        """Return what the program receives that waits for one message.
+        """Return the message, or its replacement, for a program that waits for one message.
 
         A message that is lost is waited past. A program that has a message waits no more, and its next wait
         subscribes anew: a mutant can let nothing come after it (``MiddlewareControls.once``).
@@ -231,7 +231,7 @@ NOWHERE = Where()
 def _another(
     wait: Callable[[], Any], is_kept: Callable[[Any], bool], time_module: TimeModule
 ) -> Callable[[], Any]:
-    """Wait for a message that no wait before has brought."""
+    """Return a function that waits for a message that no earlier wait has received."""
     last: list[Any] = []
 
     def wait_for_another() -> Any:
@@ -248,7 +248,7 @@ def _another(
 
 
 def _done(awaitable: Awaitable[None]) -> None:
-    """Await what does not suspend."""
+    """Run an awaitable that does not suspend."""
     for _ in awaitable.__await__():
         raise RuntimeError("the sleep of a plain call suspends; it must block")
 
@@ -262,7 +262,7 @@ async def _in_turn(returned: Sequence[Any]) -> Any:
 
 @frozen
 class Finding:
-    """What does not fit, or what is worth saying.
+    """A mismatch of an operation and its target, or a remark about it.
 
     Attributes:
         key: the key of the operation it is about.
@@ -296,7 +296,7 @@ class NotFoundError(LookupError):
 
 
 def resolve(module: ModuleType, qualname: str) -> tuple[Any, str, Any]:
-    """Owner, last name and raw attribute (descriptors unbound) of a qualified name in a module.
+    """Return owner, last name and raw attribute (descriptors unbound) of a qualified name in a module.
 
     Raises NotFoundError, naming the part that does not exist and what there is.
     """
@@ -325,7 +325,7 @@ def _called(owner: Any) -> str:
 
 
 def is_named(error: BaseException, names: Iterable[str]) -> bool:
-    """Whether one of the names ``module:Name`` means the exception's class, re-exported names included."""
+    """Return whether one of these names ``module:Name`` denotes the exception's class or a base of it."""
     kinds = type(error).__mro__
     return any(class_name(kind) in names for kind in kinds) or any(
         named_class(name) in kinds for name in names
@@ -333,7 +333,7 @@ def is_named(error: BaseException, names: Iterable[str]) -> bool:
 
 
 def named_class(name: str) -> Any:
-    """What ``module:qualified.name`` is now; None if its module is not loaded or has no such name.
+    """Return the object at ``module:qualified.name``; None if its module is not loaded or lacks the name.
 
     A test may have put anything in its place, also nothing: ``sys.modules["robot"] = None``.
     """
@@ -348,7 +348,7 @@ def named_class(name: str) -> Any:
 
 
 class Names(Protocol):
-    """The names of this process, as hooks know them.
+    """The interface of this process's names, for the hooks of middlewares.
 
     Attributes:
         on_heard: None if nobody asks for messages that pass.
@@ -357,7 +357,7 @@ class Names(Protocol):
     on_heard: Callable[[str, Any], None] | None
 
     def find(self, form: Form, name: str, node: str | None) -> Handler | None:
-        """What is to stand around a use under a resolved name, in a node; None if nothing is."""
+        """Return the handler around a use under a resolved name, in a node; None if there is none."""
 
     def heard(self, name: str, message: Any) -> None:
         """Report an unchanged message, received or published under a resolved name.
@@ -366,14 +366,14 @@ class Names(Protocol):
         """
 
     def note_node(self, name: str) -> None:
-        """A node of this resolved name was made in this process."""
+        """Note that a node of this resolved name was made in this process."""
 
 
 class MiddlewareModule(Protocol):
     """A module with the hooks into one client library, which is imported already."""
 
     def hook(self, names: Names, /) -> Callable[[], None]:
-        """Let what nodes of this process do pass by; returns what takes the hooks away."""
+        """Hook into the uses of names in this process. Return a function that removes the hooks."""
 
 
 @runtime_checkable
@@ -381,14 +381,14 @@ class TypedMiddleware(MiddlewareModule, Protocol):
     """A middleware that also knows the types of messages."""
 
     def check(self, operation: Operation) -> Iterator[Finding]:
-        """What of an operation does not fit the definition of its type, or the type that the program uses."""
+        """Yield what of an operation does not fit its type's definition, or the type that is used."""
 
 
 class Environment(Protocol):
-    """A module that sets up what nodes find when they start, so that those of several workers do not meet."""
+    """A module that sets up the environment of nodes, so that those of several workers do not meet."""
 
     def prepare(self, root: str, home: str, operations: Sequence[Operation] | None) -> bool:
-        """Set it up if the program needs it; nothing of the program's has been imported yet.
+        """Set up the environment if the program needs it, before any of the program is imported.
 
         Args:
             root: the project's folder.
@@ -404,7 +404,7 @@ class Environment(Protocol):
 
 
 def prepare(root: str, home: str, operations: Sequence[Operation] | None) -> bool:
-    """Let all packages set up what nodes will find; returns whether any did. See ``Environment``."""
+    """Let all packages set up the environment of nodes. Return whether any did."""
     environments: list[Environment] = [part.load() for part in brought("environments").values()]
     found = [one.prepare(root, home, operations) for one in environments]  # all of them, not up to the first
     return any(found)
@@ -453,12 +453,12 @@ class Messages:
             wrapt.register_post_import_hook(partial(self._hook, part), part.name)
 
     def wrap(self, target: str, handler: Handler) -> None:
-        """Let a handler stand around what is done under a name; nothing is ever put in its place."""
+        """Put a handler around the uses of a name; the middleware's own function is never replaced."""
         self._handlers.append((Named.of(target), handler))
         self._found.clear()
 
     def find(self, form: Form, name: str, node: str | None) -> Handler | None:
-        """The handler for what is done in a node under a resolved name; None if the vocabulary names none.
+        """Return the handler for a use under a resolved name in a node; None if the vocabulary has none.
 
         The first operation that fits, in the order of the vocabulary.
         """
@@ -477,12 +477,12 @@ class Messages:
             self.on_heard(name, message)
 
     def note_node(self, name: str) -> None:
-        """A node of this resolved name was made in this process."""
+        """Note that a node of this resolved name was made in this process."""
         if self.on_node is not None:
             self.on_node(name)
 
     def remove(self) -> None:
-        """Take all hooks away."""
+        """Remove all hooks."""
         self._removed = True
         self._found.clear()
         self._handlers.clear()
@@ -490,23 +490,23 @@ class Messages:
             self._undo.pop()()
 
     def seek(self) -> Iterator[tuple[str, Finding]]:
-        """Names come and go with the nodes: what was never used is all that can be said."""
+        """Yield the operations whose names were never used; names exist only while nodes use them."""
         return unused([named for named, _ in self._handlers], self.used)
 
     def unheard(self, operation: Operation) -> Iterator[Finding]:
-        """Topics and actions that no process of the tests listens to."""
+        """Yield topics and actions of an operation to which no process of the tests listens."""
         return unheard(operation.told_as_refused, self.used)
 
     def here(self) -> Iterable[str]:
-        """What was done under which names, and the targets that these are."""
+        """Return the targets of the names that were used."""
         return tuple(self._here)  # at once: another thread may come by under a new name
 
     def found_elsewhere(self, targets: Iterable[str]) -> None:
-        """A process below the tests did this."""
+        """Note targets that a process below the tests has used."""
         self.used.update(named for target in targets if (named := named_of(target)) is not None)
 
     def check(self, operation: Operation) -> Iterator[Finding]:
-        """What of an operation does not fit the installed definition of its type."""
+        """Yield what of an operation does not fit the installed definition of its type."""
         for part in brought("middlewares").values() if operation.named is not None else ():
             middleware = part.load() if part.name in sys.modules else None
             if isinstance(middleware, TypedMiddleware):
@@ -520,7 +520,7 @@ class Messages:
                 self._here.add(named.target)
 
     def _hook(self, part: ExtensionPart, _: object) -> None:
-        """The program has imported a client library."""
+        """Hook into a client library that the program has imported."""
         if self._removed:
             return
         try:
@@ -533,7 +533,7 @@ class Messages:
 
 
 def unused(wanted: Collection[Named], used: Collection[Named]) -> Iterator[tuple[str, Finding]]:
-    """Tell of each operation of the vocabulary that was never used, with what was used instead."""
+    """Yield each operation of the vocabulary that was never used, with the uses that come nearest."""
     for named in wanted:
         if named.form not in _FORMS or any(named.fits(one.form, one.name, one.node) for one in used):
             continue
@@ -543,7 +543,7 @@ def unused(wanted: Collection[Named], used: Collection[Named]) -> Iterator[tuple
 
 
 def unheard(refused: Collection[Refused], used: Collection[Named]) -> Iterator[Finding]:
-    """Tell of names under which the vocabulary expects refusals, and nothing listens."""
+    """Yield names on which the vocabulary expects refusals, and to which nothing listens."""
     for name in dict.fromkeys(one.topic for one in refused if one.topic is not None):
         wanted = [Named(form, name) for form in _LISTENING]
         if any(one.fits(other.form, other.name, other.node) for one in wanted for other in used):
@@ -554,7 +554,7 @@ def unheard(refused: Collection[Refused], used: Collection[Named]) -> Iterator[F
 
 
 def _instead(named: Named, used: Collection[Named]) -> str:
-    """Say what was used or set up for the same, nearest first."""
+    """Describe other uses of the same name or type, nearest first."""
     wanted = (_FORMS[named.form][1], named.form)  # of one name, what was done is told, not what was set up
     told = sorted((wanted.index(one.form), one.target, one.name) for one in used if one.form in wanted)
     alike = {name: target for _, target, name in told}

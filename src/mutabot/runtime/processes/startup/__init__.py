@@ -1,1 +1,1 @@
-"""The folder that stands first in ``PYTHONPATH`` while a campaign runs."""
+"""The folder that comes first in ``PYTHONPATH`` while a campaign runs."""

@@ -1,4 +1,4 @@
-"""What Python processes below the tests load when they start: it waits for what concerns a campaign.
+"""The module that Python processes below the tests load at their start, to join a campaign when needed.
 
 Its folder is first in ``PYTHONPATH`` while a campaign runs, so every Python of 3.8 or newer loads it in
 place of a ``sitecustomize`` that may be there, which it loads then. It imports nothing that Python has not
@@ -25,7 +25,7 @@ _NEWEST_TOO_OLD = (3, 10)
 
 
 class _Finder:
-    """Begin the session of a process when a module of interest is imported; finds no module itself."""
+    """Joins the campaign when a module of interest is imported; it finds no module itself."""
 
     def __init__(self, folder: str, told: "dict[str, list[str]]") -> None:
         self.folder, self.join, self.key = folder, told["join"][-1], told["key"][-1]
@@ -50,7 +50,7 @@ class _Finder:
 
 
 class _Ours:
-    """Find mutabot's packages for an interpreter that does not have them installed."""
+    """Finds mutabot's packages for an interpreter in which they are not installed."""
 
     def __init__(self, folders: "list[str]", names: "list[str]") -> None:
         self.folders, self.names = folders, names
@@ -96,7 +96,7 @@ def _tell_unable(finder: _Finder, why: str) -> None:
 
 
 def enter(command: "str | None" = None) -> None:
-    """Look whether there is a campaign, and from now on whether the process is of interest.
+    """Check whether there is a campaign, and wait until the process is of interest to it.
 
     ``command`` is the script that it runs; by default the one that it was started with.
     """
@@ -123,7 +123,7 @@ def enter(command: "str | None" = None) -> None:
 
 
 def _chain(here: str) -> None:
-    """Load the module of our name that would have been found without us."""
+    """Load the ``sitecustomize`` that would have been found without this one."""
     from _frozen_importlib import module_from_spec
     from _frozen_importlib_external import PathFinder
 
