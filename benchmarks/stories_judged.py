@@ -201,7 +201,7 @@ class Simulation:
                 target.write_bytes(edit.applied(target.read_bytes()))
             environment = {
                 **os.environ, "PYTHONPATH": str(planted), "PYTHONHASHSEED": "0", "WATCH": str(written),
-                "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1", "JUDGE_NOISE": "1",
+                "JUDGE_NOISE": "1",
                 "JUDGE_NOTES": str(place / "notes"), "JUDGE_SEEDS": json.dumps(self.seeds(round)),
             }  # fmt: skip
             words = [sys.executable, "-m", "pytest", "-q", "-p", "no:mutabot", "-p", "no:cacheprovider",

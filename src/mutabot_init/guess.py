@@ -247,7 +247,7 @@ def measured(table: TomlTable, dimension: str, unit: str | None, name: str, sett
         return Guess({**table, "unit": said[0]})
     shown = _unit_by_size(dimension, setting.values) if not said else None
     if shown is not None:
-        return Guess({**table, "unit": shown}, note="unit told by the values")
+        return Guess({**table, "unit": shown}, note="unit inferred from the values")
     return Guess({**table, "unit": (said or fitting)[0]}, [f"the unit: {', '.join(said or fitting)}?"])
 
 

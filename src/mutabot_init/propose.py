@@ -327,11 +327,14 @@ def _told(found: _Look, questions: int) -> list[str]:
     if not found.is_empty:
         answer = f"answer the questions in {VOCABULARY}, then " if questions else ""
         return [*lines, f"next: {answer}`mutabot check`, `mutabot list`, `mutabot run`"]
+    by_hand = "describe the robot by hand (docs/vocabulary.md)"
+    if any(call.sites and not call.of_tests for call in found.seen.calls):
+        return [*lines, f"next: none of these calls looks like one of a robot or a device: {by_hand}"]
     tests = " ".join(found.layout.arguments) or "tests"
     return [
         *lines,
         f"next: make `python -m pytest {tests}` run tests that call the program, remove {CONFIGURATION} and "
-        f"{VOCABULARY}, and run `mutabot init` again; or describe the robot by hand (docs/vocabulary.md)",
+        f"{VOCABULARY}, and run `mutabot init` again; or {by_hand}",
     ]
 
 

@@ -446,8 +446,9 @@ def _of_quantity(
     part = f"{name}{quantity.path}"
     short = _short(f"{name}{''.join(map(step_text, quantity.path.steps))}")
     if quantity.kind is Kind.STAMP and is_number(before) and is_number(after):
-        late = f"{abs(after - before):.3g} s {'later' if after > before else 'earlier'}"
-        text = f"the clock {short}: {after:.4g} s instead of {before:.4g} s ({late})"
+        late = f"{value_text(abs(after - before), 3)} s {'later' if after > before else 'earlier'}"
+        times = [value_text(one) for one in (after, before)]
+        text = f"the clock {short}: {times[0]} s instead of {times[1]} s ({late})"
         return _ProbeDifference(part, abs(after - before), tolerance, "s", is_clock=True, text=text)
     angle = _angle_between(quantity, before, after)
     unit = quantity.unit or ("rad" if angle is not None else None)
@@ -565,5 +566,5 @@ def _change(before: Any, after: Any) -> str:
     """Return ``after instead of before``, with the difference of numbers."""
     text = " instead of ".join(distinct_texts(after, before, value_text, 4))
     if is_number(before) and is_number(after):
-        return f"{text} (off by {abs(float(after) - float(before)):.3g})"
+        return f"{text} (off by {value_text(abs(float(after) - float(before)), 3)})"
     return text

@@ -31,6 +31,7 @@ from mutabot.evidence.physics import (
 )
 from mutabot.evidence.recording import TrackKind
 from mutabot.model.outcome import Apart, Diverged, Measurement
+from mutabot.model.quantity import value_text
 
 #: parts of a sentence, how many of them may be contacts, and differences that are kept
 _MOST_PARTS, _MOST_CONTACTS, _MOST = 3, 2, 8
@@ -340,4 +341,4 @@ def amount(value: float, unit: str = "m") -> str:
     if unit == "m" and value < 0.1:
         millimetres = 1e3 * value if value >= 1e-4 else 0.0
         return f"{millimetres:.0f} mm" if millimetres >= 10.0 else f"{millimetres:.2g} mm"
-    return f"{value:.3g} {unit}".strip()
+    return f"{value_text(value, 3)} {unit}".strip()

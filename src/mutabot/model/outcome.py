@@ -56,8 +56,8 @@ class Check:
     Attributes:
         place: ``file:line`` of it.
         text: what the test says there.
-        seen: the values that it compared; of a check that was made several times, those that were nearest to
-            fail. Empty if they are no plain values.
+        seen: the values that it compared, or the arguments of a call; of a check that was made several times,
+            those that were nearest to fail. Empty if they are no plain values.
         spare: how far the two sides of the comparison were apart, in their unit: by so much it held. None if
             it is no matter of more or less.
         times: how often it was made.
@@ -77,7 +77,8 @@ class Looked:
     Attributes:
         test: node id.
         acted: whether the mutant changed something in it.
-        checks: the checks that it made, in the order in which it made them first.
+        checks: the checks that it made after its process reached the fault, in the order in which they were
+            first made; all of them if that process never reached it.
         more: how many further checks it made.
     """
 

@@ -472,12 +472,17 @@ def holds_number(value: Any) -> bool:
     return is_number(value)
 
 
+#: numbers below it are written without a power of ten
+_LONG_NUMBER = 1e9
+
+
 def value_text(value: Any, digits: int = 4) -> str:
     """Return a value as divergence lines print it."""
     if value is None:
         return "nothing"
     if is_number(value):
-        return f"{value:.{digits}g}"
+        text = f"{value:.{digits}g}"
+        return f"{value:.0f}" if "e+" in text and abs(value) < _LONG_NUMBER else text
     if isinstance(value, Mapping):
         return "{" + ", ".join(f"{key}: {value_text(item, digits)}" for key, item in value.items()) + "}"
     if isinstance(value, list | tuple) and not value:

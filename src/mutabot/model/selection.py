@@ -101,5 +101,5 @@ def nothing_fits(source: str, unknown: Sequence[str], known: Sequence[str]) -> S
         nearest = nearest_name(pattern, known) or nearest_name(pattern.partition(":")[0], known)
         hint = f"the nearest is {nearest!r}" if nearest else "`mutabot list` shows what there is"
         shown = repr(pattern if len(pattern) <= 200 else f"{pattern[:200]}…")
-        lines.append(f"{source}: no mutant fits {shown}; {hint}")
+        lines.append(f"{source}: no mutant matches {shown}; {hint}")
     return SelectionError("\n".join(lines))

@@ -104,7 +104,8 @@ def format_of(name: str) -> Format:
         return module.make  # type: ignore[no-any-return]
     part = brought("formats", _own()).get(name)
     if part is None:
-        raise UsageError(unknown_name_text("format", name, names()))
+        pages = "; pages for a browser: --html DIR" if name.casefold() == "html" else ""
+        raise UsageError(f"{unknown_name_text('format', name, names())}{pages}")
     return part.load_function()
 
 

@@ -127,7 +127,7 @@ class TestHooks:
         members: processes below this one; None as long as no job is known, and in a fork until it starts one.
         fork: what this process does if it was forked to be a mutant; None in all others.
         left_out: tests that are not run, since they do not reach the mutant and one before has.
-        looks: the checks that the test makes.
+        looks: the checks that the test makes, in a mutant from where it reached the fault.
         units: what is executed.
     """
 
@@ -138,7 +138,7 @@ class TestHooks:
         self.members: Members | None = None
         self.fork: ForkedRun | None = None
         self.left_out: frozenset[str] = frozenset()
-        self.looks = Looks()
+        self.looks = Looks(lambda: session.evidence.hits > 0)
         self.units = ExecutedUnits(session.job.root)
         self._address: str | None = None
         self._failure: TestEnd | None = None
@@ -317,7 +317,7 @@ class TestHooks:
             exclusive=self._address,
             reading=self._reading.seconds,
             not_along=self._reading.not_along,
-            more_checks=len(self.looks.more),
+            more_checks=self.looks.more,
             recording=session.recording.text(session.recorder.told()),
             executed=self.units.of_test(alone=is_alone),
             trace=tuple(session.recorder.trace) if is_compared else (),

@@ -81,7 +81,7 @@ def test_repeats_beyond_their_time_are_left_and_told(
     write_project(tmp_path, MISSION, TESTS)
     results, found, progress = campaign(tmp_path, engine="fork", repeats=True)
     assert found[FALSE].verdict is Verdict.KILLED
-    assert any("1 were left, as repeats may take 0 s" in line for line in progress.lines)
+    assert any("1 not re-run, as re-runs may take 0 s" in line for line in progress.lines)
     assert (results.repeats.doubted, false_kills(results.repeats)) == (Repeated(1, 0, 0), None)
 
 
@@ -130,7 +130,7 @@ def test_more_kills_are_repeated_once_one_does_not_come_out_again(
         folder = write_project(tmp_path / str(comes_again), mission, text)
         _, _, progress = campaign(folder, repeats=True)
         lines[comes_again] = next(line for line in progress.lines if line.startswith("re-runs:"))
-    told = r"re-runs: ([1-9]) of \1 doubtful kills confirmed; (\d) were left, as repeats may take \d+ s"
+    told = r"re-runs: ([1-9]) of \1 doubtful kills confirmed; (\d) not re-run, as re-runs may take \d+ s"
     left = re.fullmatch(told, lines[True])
     assert left is not None
     assert int(left[1]) + int(left[2]) == len(names)

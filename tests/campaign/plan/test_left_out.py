@@ -86,7 +86,7 @@ def test_a_quantity_that_names_an_object_is_told_with_its_place_and_what_to_do(t
     (note,) = (line for line in report.lines if line.startswith("note "))
     assert "arguments.speed: speed is of mission:Speed, which is not plain data" in note
     assert "describe the part of it that is a number, such as speed.magnitude" in note
-    reason = "the call passes no plain value here"
+    reason = "the call passes no such plain value here"
     assert report.data["left_out_because"] == {reason: 1}
     assert f"left out  1: {reason}" in report.lines
 

@@ -53,7 +53,7 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_what_can_fit_nothing_is_told_with_the_nearest(
     project: Path, option: str, word: str, nearest: str
 ) -> None:
-    with pytest.raises(SelectionError, match=f"--{option}: no mutant fits") as error:
+    with pytest.raises(SelectionError, match=f"--{option}: no mutant matches") as error:
         refuse_typos(request_for(project, **{option: (word, "reverse")}))
     assert repr(nearest) in str(error.value) or not nearest
 

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from mutabot.model import Kind, Path, Quantity
+from mutabot.model.quantity import value_text
 
 
 def quantity(**more: Any) -> Quantity:
@@ -64,3 +65,8 @@ def test_two_values_are_printed_with_as_many_digits_as_tell_them_apart(
 ) -> None:
     quantity = Quantity("x", Path.parse("x", rooted=True), Kind.POSITION, unit="m")
     assert quantity.texts(one, other) == texts
+
+
+def test_long_numbers_are_written_without_a_power_of_ten() -> None:
+    numbers = {12345: "12345", 1000.0: "1000", -98765.4: "-98765", 0.00012345: "0.000123", 2.5e12: "2.5e+12"}
+    assert {number: value_text(number, 3) for number in numbers} == numbers

@@ -332,6 +332,19 @@ def mutabot(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
 
 
+def test_a_program_that_only_computes_is_said_to_call_no_robot(tmp_path: Path) -> None:
+    files = {
+        "sums.py": "def doubled(numbers): return [2 * one for one in numbers]\n",
+        "program.py": "import sums\ndef run(): return sums.doubled([1, 2])\n",
+        "test_program.py": "import program\ndef test_it(): assert program.run() == [2, 4]\n",
+    }
+    write(tmp_path, files)
+    done = mutabot(tmp_path, "init", "program.py")
+    assert done.returncode == 0, done.stderr
+    assert "none of these calls looks like one of a robot or a device" in done.stdout
+    assert "run tests that call the program" not in done.stdout
+
+
 @pytest.mark.parametrize("broken", ["robot", "program", "test_program"])
 def test_a_file_that_is_no_python_is_named_and_nothing_is_written(tmp_path: Path, broken: str) -> None:
     files = {

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import re
 import time
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -15,7 +16,7 @@ from mutabot.model import Mutant, Outcome, Verdict
 from mutabot.model.mutant_end import MutantEnd
 from mutabot.model.suppression import Acceptance
 from mutabot.report.terminal.console import make_console
-from mutabot.report.terminal.progress import Bar, Lines, clock_text, make_progress
+from mutabot.report.terminal.progress import Bar, Lines, Pace, clock_text, make_progress
 from results import samples
 
 _ESCAPES = re.compile(r"\x1b\[[0-9;?]*[a-zA-Z]")
@@ -123,8 +124,28 @@ def test_survivors_are_printed_as_they_are_found_and_once() -> None:
         end(samples.SKIP, Verdict.SURVIVED, 1), end(samples.BY_TO, Verdict.NOT_COVERED),
     )  # fmt: skip
     assert first == "survived: 2 mission.py:2 skip: gripper.command: do nothing (round 1)"
-    assert second.startswith("not covered: 3 mission.py:4 by-to: ")
+    assert second == f"not covered: mission.py:4 {samples.BY_TO.site.text}: no test reaches it (round 1)"
     assert last == "mutants 4/4: took 0:00 (killed 1, survived 2, not covered 1)"
+
+
+def test_mutants_of_one_place_that_no_test_reaches_are_told_together() -> None:
+    other = replace(samples.BY_TO, operator="skip")
+    lines = told(end(samples.BY_TO, Verdict.NOT_COVERED), end(other, Verdict.NOT_COVERED))
+    assert [line.partition(":")[0] for line in lines] == ["not covered", "mutants 2/2"]
+    assert lines[-1].endswith("(not covered 2)")
+
+
+def test_no_time_is_promised_while_no_step_is_done() -> None:
+    now = 0.0
+    pace = Pace(10, lambda: now)
+    pace.advance()
+    now = 4.0
+    assert pace.left == 36.0
+    now = 6.0
+    assert pace.left is None
+    now = 100.0
+    pace.advance()
+    assert pace.left == 400.0
 
 
 def test_accepted_survivors_and_those_of_earlier_campaigns_are_only_counted() -> None:

@@ -48,6 +48,18 @@ def test_where_none_was_looked_for_it_is_said_how(tmp_path: Path) -> None:
     assert "A check" not in shown(tmp_path, samples.REVERSE, CHECK)
 
 
+def test_where_no_test_gets_a_test_is_what_is_missing(tmp_path: Path) -> None:
+    text = shown(tmp_path, samples.NOISE, None)
+    assert "No test runs this line. Add one that does." in text
+    assert "mutabot suggest" not in text
+
+
+def test_the_change_is_of_the_program_or_of_the_oracle(tmp_path: Path) -> None:
+    text = shown(tmp_path, samples.NEGATE, None)
+    assert "the oracle read" in text
+    assert "the program" not in text
+
+
 def test_what_is_kept_is_for_its_own_campaign(tmp_path: Path) -> None:
     journal, found = tmp_path / "journal.sqlite", {samples.NEGATE.id: CHECK}
     assert kept_suggestions(journal, {"started": 1.5}) == {}

@@ -62,19 +62,20 @@ ASSERTIONS: dict[str, tuple[str | None, float | None]] = {
     "{'x': sensor().x} == pytest.approx({'x': 0.26}, abs=0.05)": ("{'x': 0.25} == approx({'x': 0.26})", 0.04),
     "np.array([sensor().x]) == pytest.approx(np.array([0.26]), abs=0.05)": (None, 0.04),
     "abs(sensor().x - 0.26) <= 0.05": ("0.01 <= 0.05", 0.04),
-    "math.isclose(sensor().x, 0.26, abs_tol=0.05)": ("", None),
-    "is_near(sensor().x, 0.26, by=0.05)": ("", None),
+    "math.isclose(sensor().x, 0.26, abs_tol=0.05)": ("0.25, 0.26, abs_tol=0.05", None),
+    "is_near(sensor().x, 0.26, by=0.05)": ("0.25, 0.26, by=0.05", None),
     "sensor().x == 0.25": ("0.25 == 0.25", None),
     "str(sensor().x) in ('0.25', 'a')": ("'0.25' in ('0.25', 'a')", None),
     "{'x': [sensor().x]} == {'x': [0.25]}": ("{'x': [0.25]} == {'x': [0.25]}", None),
     "Pair(1, 2) == Pair(1, 2)": ("", None),
     "isinstance(sensor(), Sensor)": ("", None),
+    "hasattr(sensor(), 'x')": ("…, 'x'", None),
     "sensor() is not None": ("", None),
 }
 COMPARISONS: dict[str, tuple[str | None, float | None]] = {
     "self.assertAlmostEqual(sensor().x, 0.26, delta=0.05)": ("", None),
     "self.assertTrue(sensor().x)": ("", None),
-    "self.assertRaises(ValueError, int, 'a')": ("", None),
+    "self.assertRaises(ValueError, int, 'a')": ("…, …, 'a'", None),
     "np.testing.assert_allclose(sensor().x, 0.26, rtol=0, atol=0.05)": ("", None),
 }
 
@@ -125,6 +126,32 @@ def test_parts_of_an_assertion_and_rounds_of_a_loop_are_told_once(tmp_path: Path
         ("sensor().x < 0.3", "0.25 < 0.3"),
     ]
     assert [(one.seen, one.times) for one in found["test_loop"]] == [("0.25 < 0.3", 3)]
+
+
+def test_a_check_before_the_fault_is_reached_is_no_check_of_it(tmp_path: Path) -> None:
+    found = looked_at(
+        tmp_path,
+        """
+        def test_before_and_after():
+            arm = Arm()
+            for _ in range(2):
+                assert arm.x < 0.3
+                assert is_near(arm.x, 0.0, by=1.0)
+                run(arm)
+            assert arm.x < 0.6
+
+        def test_before():
+            arm = Arm()
+            assert arm.x == 0
+            run(arm)
+        """,
+    )
+    assert [(one.text, one.seen, one.times) for one in found["test_before_and_after"]] == [
+        ("arm.x < 0.3", "0.25 < 0.3", 1),
+        ("is_near(arm.x, 0.0, by=1.0)", "0.25, 0, by=1", 1),
+        ("arm.x < 0.6", "0.5 < 0.6", 1),
+    ]
+    assert found["test_before"] == ()
 
 
 def test_nothing_is_worked_out_twice(tmp_path: Path) -> None:

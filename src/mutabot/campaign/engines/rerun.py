@@ -227,7 +227,7 @@ class _Reruns:
             changed |= wrong
             self.doubts.unreliable.update(self.doubts.outcomes[key].test or "" for key in wrong - raced)
         if repeated or due:
-            left = f"; {len(due)} were left, as repeats may take {seconds:.0f} s" if due else ""
+            left = f"; {len(due)} not re-run, as re-runs may take {seconds:.0f} s" if due else ""
             kinds = "doubtful kills and races" if raced else "doubtful kills"
             again = f"{len(repeated) - len(changed)} of {len(repeated)}"
             self.campaign.progress.note(f"re-runs: {again} {kinds} confirmed{left}")

@@ -352,7 +352,7 @@ def _reason(subject: Subject, value: Any, hits: int) -> str:
     if value is None and hits == 1:
         return subject.why_missing
     if value is None:
-        return f"none of the {hits} calls {'passes' if subject.is_written else 'returns'} a plain value here"
+        return f"none of the {hits} calls {'passes' if subject.is_written else 'returns'} such a plain value"
     if quantity.is_numeric and not holds_number(value):
         return f"{quantity.name} of {subject.operation.name} is not a number: name a number in it by its path"
     within = " within the values that the vocabulary allows" if quantity.range or quantity.values else ""

@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from mutabot.errors import plural
-from mutabot.model.outcome import end_in_words, numbers_text
+from mutabot.model.outcome import Verdict, end_in_words, numbers_text
 from mutabot.report.sections import Section, between
 from mutabot.report.texts import acceptance_text, effect_text, excerpts, places_text, telling
 
@@ -80,7 +80,7 @@ def _facts(result: MutantResult) -> Table:
         "operator": f"{mutant.operator} ({mutant.family}, {mutant.site.role})",
         "operation": f"{mutant.operation}{command}",
         "quantity": _quantity_text(mutant.quantity, result.quantity) if mutant.operation else "",
-        "change": f"the program {result.change}" if result.change is not None else "",
+        "change": f"the {mutant.site.role} {result.change}" if result.change is not None else "",
         "killed": of_rounds + interval,
         "result": effect_text(result),
         "accepted": acceptance_text(result).removeprefix("accepted").removeprefix(": ").strip(),
@@ -171,6 +171,8 @@ def suggested_sections(result: MutantResult, found: Suggestion | None) -> Iterat
         lines.append("`mutabot suggest` prints it as a diff.")
     elif found is not None:
         lines = [f"None was found: {found.reason}"]
+    elif result.status is Verdict.NOT_COVERED:
+        lines = ["No test runs this line. Add one that does."]
     elif result.indistinguishable:
         add = "Add a probe or a test that would show one, or accept it as an equivalent mutant."
         lines = [f"No measured difference. {add}"]

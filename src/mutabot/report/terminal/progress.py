@@ -26,8 +26,12 @@ if TYPE_CHECKING:
 
 #: part of a stage after which the time left is worth telling: the first steps say little about the others
 _TELLING = 0.1
+#: part of the time so far, and seconds, beyond which the last step is too long ago: steps that come many at
+#: once, as those of tests with many mutants do, say nothing about the rest while there is none
+_STALE, _RECENT = 0.25, 5.0
+_NOT_COVERED = "not covered"
 #: states that are told at once
-_TOLD = ("survived", "not covered")
+_TOLD = ("survived", _NOT_COVERED)
 
 
 class Pace:
@@ -44,11 +48,12 @@ class Pace:
     def __init__(self, total: int | None = None, clock: Callable[[], float] = time.monotonic) -> None:
         self.total, self.done = total, 0
         self._clock = clock
-        self._began = clock()
+        self._began = self._last = clock()
 
     def advance(self) -> None:
         """Count one more step."""
         self.done += 1
+        self._last = self._clock()
 
     @property
     def spent(self) -> float:
@@ -60,7 +65,10 @@ class Pace:
         """Seconds until the stage ends; None if too few steps are done to estimate that."""
         if self.total is None or self.done == 0 or self.done < _TELLING * self.total:
             return None
-        return self.spent / self.done * max(0, self.total - self.done)
+        spent = self.spent
+        if self._clock() - self._last > max(_STALE * spent, _RECENT):
+            return None
+        return spent / self.done * max(0, self.total - self.done)
 
     @property
     def words(self) -> str:
@@ -96,14 +104,18 @@ class Tally:
             self._counts[before] -= 1
         self._states[key] = state
         self._counts[state] += 1
-        is_new = state in _TOLD and end.mutant.id not in self._told
+        # of a place that no test reaches, the mutants are told together
+        told = end.mutant.site.id if state == _NOT_COVERED else end.mutant.id
+        is_new = state in _TOLD and told not in self._told
         if end.mutant.has_sizes or not (is_new or before in _TOLD):
             return None
-        self._told.add(end.mutant.id)
+        self._told.add(told)
         if end.is_reused:
             return None
         mutant = end.mutant
         place = one_line(places_text(mutant.site, short_place))
+        if state == _NOT_COVERED:
+            return f"{state}: {place} {mutant.site.text}: no test reaches it (round {end.outcome.round + 1})"
         what = f"{mutant.number} {place} {mutant.operator}: {mutant.description}"
         return f"{state}: {what} (round {end.outcome.round + 1})"
 

@@ -1,9 +1,9 @@
 """Note the checks of the running test: what each compared, and by how much it held.
 
-Pytest works out each part of an assertion once and keeps it in a variable. After a comparison an inserted
-line hands on these variables: nothing of the assertion is evaluated again, and pytest's message about one
-that fails stays the same. A call that decides, and a statement such as ``self.assertEqual(a, b)``, is noted
-by its text when it has returned.
+Pytest works out each part of an assertion once and keeps it in a variable. After a comparison, or a call that
+decides, an inserted line hands on these variables: nothing of the assertion is evaluated again, and pytest's
+message about one that fails stays the same. A statement such as ``self.assertEqual(a, b)`` is noted when it
+has returned. Checks that ran before the test reached the fault could not notice it: these are forgotten.
 """
 
 from __future__ import annotations
@@ -41,43 +41,67 @@ class Looks:
     It keeps texts and numbers alone, by place and text: a test may count the objects that the collector of
     garbage knows, between two of its checks.
 
-    Attributes:
-        more: the checks that were made beyond those that are noted.
+    Args:
+        is_reached: whether the running test has reached the fault.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, is_reached: Callable[[], bool] = lambda: False) -> None:
+        self._is_reached = is_reached
+        self._is_after = False
         self._seen: dict[str, str] = {}
         self._least: dict[str, float] = {}
         self._times: dict[str, int] = {}
-        self.more: set[str] = set()
+        self._more: set[str] = set()
 
     def clear(self) -> None:
         """Begin another test."""
-        for kept in (self._seen, self._least, self._times, self.more):
+        self._is_after = False
+        for kept in (self._seen, self._least, self._times, self._more):
             kept.clear()
 
     @property
     def noted(self) -> tuple[Check, ...]:
         """The checks."""
+        self._forget_earlier()
         return tuple(map(self._check, self._seen))
+
+    @property
+    def more(self) -> int:
+        """How many checks were made beyond those that are noted."""
+        self._forget_earlier()
+        return len(self._more)
+
+    def _forget_earlier(self) -> None:
+        """Forget what was checked before the fault was reached."""
+        if not self._is_after and self._is_reached():
+            self.clear()
+            self._is_after = True
 
     def _check(self, key: str) -> Check:
         place, _, text = key.rpartition("\n")  # which no text of a check has in it
         return Check(place, text[:_LONGEST], self._seen[key], self._least.get(key), self._times[key])
 
-    def checked(self, place: str, text: str, *compared: Any) -> None:
-        """Note a check that has held; ``compared``: left side, operator and right side of a comparison."""
+    def checked(self, place: str, text: str, *compared: Any, **passed: Any) -> None:
+        """Note a check that has held.
+
+        Args:
+            place: ``file:line`` of it.
+            text: what the test says there.
+            compared: left side, operator and right side of a comparison.
+            passed: the arguments of a call; those without a keyword by their number, as ``_0``.
+        """
         with suppress(Exception):  # whatever the user's values do when they are examined, the test goes on
+            self._forget_earlier()
             if compared:
                 self._note(place, text, margin(*compared), lambda: _words(*compared))
             else:
-                self._note(place, text, None, lambda: "")
+                self._note(place, text, None, lambda: _arguments_in_words(passed))
 
     def _note(self, place: str, text: str, spare: float | None, words: Callable[[], str]) -> None:
         key = f"{place}\n{text}"
         is_new = key not in self._seen
         if is_new and len(self._seen) >= MOST:
-            self.more.add(key)
+            self._more.add(key)
             return
         if is_new or (spare is not None and spare < self._least.get(key, math.inf)):
             self._seen[key] = words()
@@ -173,6 +197,16 @@ def _words(left: Any, operator: str, right: Any) -> str:
     return f"{sides[0]} {operator} {sides[1]}" if None not in sides else ""
 
 
+def _arguments_in_words(passed: Mapping[str, Any]) -> str:
+    """Return the arguments of a call, ``…`` for each that is no plain value; nothing if none is one."""
+    found = {name: _in_words(value) for name, value in passed.items()}
+    if not any(found.values()):
+        return ""
+    return ", ".join(
+        (text or "…") if name[0] == "_" else f"{name}={text or '…'}" for name, text in found.items()
+    )
+
+
 class Checks:
     """Instruments test files so that checks are noted.
 
@@ -192,7 +226,11 @@ class Checks:
     def install(self) -> None:
         """Instrument all test files that pytest rewrites from now on."""
         looks, told = self._looks, self._told
-        setattr(builtins, CHECKED, lambda number, *compared: looks.checked(*told[number], *compared))
+        setattr(
+            builtins,
+            CHECKED,
+            lambda number, *compared, **passed: looks.checked(*told[number], *compared, **passed),
+        )
         loading.hook_pytest(self._wants, self._insert, self._look)
 
     def _look(self, tree: ast.Module, source: bytes, path: str) -> None:
@@ -251,6 +289,10 @@ def _segment(lines: Sequence[bytes], node: ast.expr) -> bytes:
     return found[node.col_offset : len(found) - after]
 
 
+def _is_variable(node: ast.expr) -> bool:
+    return isinstance(node, ast.Name | ast.Constant)
+
+
 class _Inserter(ast.NodeTransformer):
     """Inserts statements that note conditions of assertions and calls that assert."""
 
@@ -270,10 +312,18 @@ class _Inserter(ast.NodeTransformer):
         if number is None:
             return node
         given: list[ast.expr] = [ast.Constant(number)]
+        passed: list[ast.keyword] = []
         if isinstance(value, ast.Compare):
             sides = [value.left, *value.comparators]
-            if not all(isinstance(one, ast.Name | ast.Constant) for one in sides):
+            if not all(map(_is_variable, sides)):
                 return node  # what is no variable would be evaluated twice
             given += [sides[0], ast.Constant(_OPERATORS[type(value.ops[0])]), sides[1]]
-        line = ast.Expr(ast.Call(ast.Name(CHECKED, ast.Load()), given, []))
+        elif isinstance(value, ast.Call):
+            passed = [
+                *(ast.keyword(f"_{index}", one) for index, one in enumerate(value.args)),
+                *value.keywords,
+            ]
+            if not all(one.arg is not None and _is_variable(one.value) for one in passed):
+                passed = []  # as above
+        line = ast.Expr(ast.Call(ast.Name(CHECKED, ast.Load()), given, passed))
         return [node, ast.fix_missing_locations(ast.copy_location(line, node))]

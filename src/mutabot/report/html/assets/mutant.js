@@ -73,7 +73,7 @@
     const section = h("section", { "aria-labelledby": "there" }, h("h2", { id: "there" }, "Source location"));
     mutabot.load("sources", "data/sources.js").then((sources) => {
       for (const span of one.spans) section.append(...lines(span, new Map(sources).get(span.file), one.spans.length > 1));
-      if (page.change) section.append(h("p", null, `At first, the program ${page.change}`, page.told ? [" (", page.told, ")"] : null, "."));
+      if (page.change) section.append(h("p", null, `At first, the ${one.role} ${page.change}`, page.told ? [" (", page.told, ")"] : null, "."));
     }, (error) => section.append(h("p", null, error.message)));
     return section;
   }
@@ -255,7 +255,7 @@
         : empty("It is not known what the tests checked.", "Checks are seen where pytest rewrites assertions; this journal holds none for this mutant."));
       return section;
     }
-    section.append(h("p", { class: "hint" }, `Round ${outcome.round}: each check, the values it compared, and by how much it held.`));
+    section.append(h("p", { class: "hint" }, `Round ${outcome.round}: each check, the values that it compared or was passed, and by how much it held. Checks that ran before the tests' process reached the fault are not listed.`));
     outcome.looked.toSorted((test, other) => other.acted - test.acted).forEach((test, index) => section.append(checked(one, { checks: [], ...test }, index === 0)));
     return section;
   }
@@ -264,7 +264,7 @@
     const many = test.checks.length + test.more;
     const spares = test.checks.map((check) => check.spare).filter((spare) => spare !== undefined);
     const nearest = Math.min(...spares);
-    const told = !test.acted ? "the mutant changed nothing in it" : !many ? "no check was seen; assertions that pytest does not rewrite are not"
+    const told = !test.acted ? "the mutant changed nothing in it" : !many ? "no check was seen after the fault; assertions that pytest does not rewrite are not seen"
       : `${count(many, "check")} held${spares.length ? `, the nearest by ${number(nearest, 3)}` : ""}`;
     if (!test.acted || !test.checks.length) return h("p", null, h("code", null, mutabot.breakable(test.test)), `: ${told}`);
     return h("details", { class: "test-box", open: isOpen }, h("summary", null, h("code", null, mutabot.breakable(test.test)), `: ${told}`),
