@@ -105,7 +105,7 @@ def test_one_kill_is_repeated_even_if_that_takes_longer_than_its_share(
     write_project(tmp_path, mission, f"import mission\nfrom robot import Arm\n{tests}")
     _, _, progress = campaign(tmp_path, repeats=True)
     (told,) = [line for line in progress.lines if line.startswith("re-runs:")]
-    assert told.startswith("re-runs: 1 of 1 doubtful kills confirmed; 2 were left")
+    assert told.startswith("re-runs: 1 of 1 doubtful kills confirmed; 2 not re-run")
 
 
 def test_more_kills_are_repeated_once_one_does_not_come_out_again(

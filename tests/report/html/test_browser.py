@@ -13,7 +13,7 @@ import pytest
 
 import mutabot
 import schemas
-from mutabot.model import Mutant, Role
+from mutabot.model import Diverged, Mutant, Outcome, Role, Verdict
 from report.html import reports
 from results import samples
 from results.thresholds import journals
@@ -479,6 +479,26 @@ def test_an_accepted_survivor_is_a_state_of_its_own_on_each_page(browser: Any, t
         row = page.locator("table.operators tbody tr", has_text="skip").first
         assert row.locator('[data-letter="A"]').inner_text() == "2"
         assert row.locator('[data-letter="S"]').inner_text() == "·"
+        assert visit.wrong == []
+    finally:
+        page.close()
+
+
+def test_a_mutant_s_page_gives_the_values_of_its_story_and_fits_a_phone(browser: Any, tmp_path: Path) -> None:
+    found = Diverged("tests/test_a.py::test_told", None, "", "it is late", example=(0.25, 0.75))
+    outcome = Outcome(
+        samples.NEGATE.id, 0, Verdict.SURVIVED, example=(0.125, -0.125), hits=3, acted=3, tests=2,
+        diverged=(found,), divergence=(f"x: 1 instead of 2 (in {'a_very_long_name_' * 6})",),
+    )  # fmt: skip
+    journal = samples.write_journal(tmp_path / "journal.sqlite", outcomes=(outcome,))
+    file = reports.write(tmp_path / "report", journal, mutabot.open(journal)).page
+    page = browser.new_page(viewport={"width": 400, "height": 900})
+    try:
+        visit = Visit(page, file)
+        visit.open("#/mutant/4")
+        page.wait_for_selector(".round-box")
+        assert page.locator("table.values tbody tr").all_inner_texts() == ["1\t0.25 m\t0.75 m"]
+        assert page.evaluate("document.documentElement.scrollWidth") <= 400
         assert visit.wrong == []
     finally:
         page.close()

@@ -60,6 +60,15 @@ def test_the_change_is_of_the_program_or_of_the_oracle(tmp_path: Path) -> None:
     assert "the program" not in text
 
 
+def test_the_checks_that_let_a_survivor_through_are_listed(tmp_path: Path) -> None:
+    text = shown(tmp_path, samples.NEGATE, None)
+    (looked, *_) = samples.LOOKED
+    assert f"Checks that held after the fault (round 1, {looked.test})" in text
+    for check in looked.checks:
+        assert f"{check.place}  {check.text}" in text
+    assert "Checks that held" not in shown(tmp_path, samples.REVERSE, None)
+
+
 def test_what_is_kept_is_for_its_own_campaign(tmp_path: Path) -> None:
     journal, found = tmp_path / "journal.sqlite", {samples.NEGATE.id: CHECK}
     assert kept_suggestions(journal, {"started": 1.5}) == {}

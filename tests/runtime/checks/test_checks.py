@@ -65,6 +65,7 @@ ASSERTIONS: dict[str, tuple[str | None, float | None]] = {
     "math.isclose(sensor().x, 0.26, abs_tol=0.05)": ("0.25, 0.26, abs_tol=0.05", None),
     "is_near(sensor().x, 0.26, by=0.05)": ("0.25, 0.26, by=0.05", None),
     "sensor().x == 0.25": ("0.25 == 0.25", None),
+    "(sensor().x, 2 / 3) != (sensor().x, 1 / 3)": ("(0.25, 0.666667) != (0.25, 0.333333)", None),
     "str(sensor().x) in ('0.25', 'a')": ("'0.25' in ('0.25', 'a')", None),
     "{'x': [sensor().x]} == {'x': [0.25]}": ("{'x': [0.25]} == {'x': [0.25]}", None),
     "Pair(1, 2) == Pair(1, 2)": ("", None),

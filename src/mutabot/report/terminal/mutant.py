@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
@@ -22,8 +23,8 @@ if TYPE_CHECKING:
     from mutabot.results.results import MutantResult
     from mutabot.results.suggested import Suggestion
 
-#: lines of a message on the one screen; the journal and JSON have more
-_LINES = 8
+#: lines of a message, and checks, on the one screen; the journal and JSON have more
+_LINES, _CHECKS = 8, 3
 
 
 def print_mutant(
@@ -49,7 +50,8 @@ def print_mutant(
         text = "\n" + "\n".join(plain(line) for line in lines)
         console.print(Text(text, no_wrap=True, overflow="ellipsis"))
     rounds = _rounds(result, everything=everything)
-    for section in (rounds, *_happened(result), *suggested_sections(result, suggestion)):
+    sections = (rounds, *_happened(result), *_checks(result, everything=everything))
+    for section in (*sections, *suggested_sections(result, suggestion)):
         print_section(console, section)
     if not everything:
         console.print(Text("\nUse --all for every round.", style="dim"))
@@ -160,6 +162,25 @@ def _sentences(diverged: Diverged) -> Iterator[str]:
         at = f" at {diverged.at:.1f} s{clock}" if diverged.at is not None else ""
         fault = f" The fault acts at {diverged.fault:.1f} s." if diverged.fault is not None else ""
         yield f"First difference{at}: {diverged.what}.{fault}"
+
+
+def _checks(result: MutantResult, *, everything: bool) -> Iterator[Section]:
+    """The checks that let a survivor through in the most telling round and test, nearest to fail first."""
+    number, diverged = telling(result) or (0, None)
+    outcome = result.rounds[number]
+    if outcome is None or not result.is_survivor:
+        return
+    tests = [one for one in outcome.looked if one.acted]
+    looked = next((one for one in tests if diverged is None or one.test == diverged.test), None)
+    if looked is None or not looked.checks:
+        return
+    checks = sorted(looked.checks, key=lambda one: inf if one.spare is None else one.spare)
+    shown = checks if everything else checks[:_CHECKS]
+    lines = [f"{one.place}  {one.text}{f'  with {one.seen}' if one.seen else ''}" for one in shown]
+    left = len(checks) - len(shown) + looked.more
+    where = f" (round {number + 1}, {looked.test})" if diverged is None else ""
+    more = [f"and {plural(left, 'more check')}"] if left else []
+    yield Section(f"Checks that held after the fault{where}", lines=[*lines, *more])
 
 
 def suggested_sections(result: MutantResult, found: Suggestion | None) -> Iterator[Section]:

@@ -181,8 +181,17 @@ def _in_words(value: Any) -> str | None:
         return None if inner is None else f"approx({inner})"
     if not _is_plain(value):
         return None
-    text = f"{value:.6g}" if type(value) is float else repr(value)
+    text = f"{value:.6g}" if type(value) is float else repr(_rounded(value))
     return text if len(text) <= _LONGEST_VALUE else f"{text[: _LONGEST_VALUE - 1]}…"
+
+
+def _rounded(value: Any) -> Any:
+    """Return plain data with six digits of each number."""
+    if type(value) is float:
+        return float(f"{value:.6g}")
+    if type(value) is dict:
+        return {key: _rounded(one) for key, one in value.items()}
+    return type(value)(map(_rounded, value)) if type(value) in (list, tuple) else value
 
 
 def _is_plain(value: Any) -> bool:

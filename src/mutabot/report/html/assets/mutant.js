@@ -256,7 +256,8 @@
       return section;
     }
     section.append(h("p", { class: "hint" }, `Round ${outcome.round}: each check, the values that it compared or was passed, and by how much it held. Checks that ran before the tests' process reached the fault are not listed.`));
-    outcome.looked.toSorted((test, other) => other.acted - test.acted).forEach((test, index) => section.append(checked(one, { checks: [], ...test }, index === 0)));
+    const [story] = outcome.diverged; // the test that the story is told in comes first
+    outcome.looked.toSorted((test, other) => other.acted - test.acted || (story ? (other.test === story.test) - (test.test === story.test) : 0)).forEach((test, index) => section.append(checked(one, { checks: [], ...test }, index === 0)));
     return section;
   }
 
@@ -294,19 +295,22 @@
     return section;
   }
 
+  /** The first value and the one in its place, in the test that the story is told in. */
+  const first = (outcome) => outcome && ((outcome.diverged[0] && outcome.diverged[0].example) || outcome.example);
+
   function round(one, page, those) {
     const outcome = page.rounds[those[0]];
     const letter = one.ends[those[0]];
     const head = h("h3", { class: "round" }, marks.mark(letter), ` Round${those.length > 1 ? "s" : ""} ${those.map((each) => each + 1).join(", ")}: ${marks.LETTERS[letter][1]}`);
     if (!outcome) return h("div", null, head, h("p", null, "Not run yet."));
-    const values = one.operation && !one.quantity ? [] : those.map((each) => page.rounds[each]).filter((each) => each && each.example && each.example.length === 2);
+    const values = one.operation && !one.quantity ? [] : those.map((each) => [each, first(page.rounds[each])]).filter(([, pair]) => pair && pair.length === 2);
     return h("div", { class: "round-box" }, head,
       outcome.test ? h("p", null, "in ", h("code", null, outcome.test), outcome.place ? [" at ", h("code", null, outcome.place)] : null) : null,
       outcome.message ? h("pre", { tabindex: "0", "aria-label": "What the test said" }, `${outcome.exception ? `${outcome.exception.replace(/^.*:/, "")}: ` : ""}${outcome.message.trimEnd()}`) : null,
       outcome.kills.length > 1 ? h("p", null, "Also killed by ", outcome.kills.slice(1).map(({ test, by }, index) => [index ? ", " : "", h("code", null, test), ` (${by})`])) : null,
-      outcome.divergence.length || outcome.gaps.length ? h("ul", { class: "plain" }, outcome.divergence.slice(0, LINES).map((line) => h("li", null, line)), outcome.divergence.length > LINES ? h("li", null, `and ${count(outcome.divergence.length - LINES, "more difference")}`) : null, outcome.gaps.map((line) => h("li", null, `not compared: ${line}`))) : null,
-      values.length ? h("div", { class: "scroll", role: "region", tabindex: "0", "aria-label": "Values" }, h("table", { class: "values" }, h("thead", null, h("tr", null, ["round", "value", "in its place"].map((name, index) => h("th", { scope: "col", class: "n" }, name)))),
-        h("tbody", null, those.map((each) => [each, page.rounds[each]]).filter(([, each]) => each && each.example && each.example.length === 2).map(([each, found]) => h("tr", null, h("td", { class: "n" }, each + 1), h("td", { class: "n" }, value(found.example[0], one.unit)), h("td", { class: "n" }, value(found.example[1], one.unit))))))) : null,
+      outcome.divergence.length || outcome.gaps.length ? h("ul", { class: "plain" }, outcome.divergence.slice(0, LINES).map((line) => h("li", null, mutabot.breakable(line))), outcome.divergence.length > LINES ? h("li", null, `and ${count(outcome.divergence.length - LINES, "more difference")}`) : null, outcome.gaps.map((line) => h("li", null, `not compared: ${line}`))) : null,
+      values.length ? h("div", { class: "scroll", role: "region", tabindex: "0", "aria-label": "Values" }, h("table", { class: "values" }, h("thead", null, h("tr", null, ["round", "first value", "in its place"].map((name, index) => h("th", { scope: "col", class: "n" }, name)))),
+        h("tbody", null, values.map(([each, pair]) => h("tr", null, h("td", { class: "n" }, each + 1), pair.map((found) => h("td", { class: "n" }, value(found, one.unit)))))))) : null,
       h("p", { class: "hint" }, [`acted at ${outcome.acted} of ${count(outcome.hits, "hit")}`, `${count(outcome.tests, "test")} run`, outcome.indistinguishable && "no measured difference",
         `${number(outcome.wall, 2)} s`, outcome.confirmed === false ? "not confirmed by the whole suite" : null, outcome.repeats ? `re-run ${count(outcome.repeats, "time")} with the same result` : null, outcome.beside ? `re-run alone, because beside others it exceeded the wall clock: ${outcome.beside}` : null, ...Object.entries(outcome.away).map(([why, many]) => `left ${count(many, "call")} unchanged: ${why}`)].filter(Boolean).join(" · ")));
   }
