@@ -80,6 +80,13 @@ EDITS = {
         seen = cell.sensors.box_position
         cell.sensors.box_position = lambda *names: replace(seen(*names), x=seen(*names).x + AMOUNT)
         """,
+    "camera scale": """
+        from dataclasses import replace
+        seen = cell.sensors.box_position
+        cell.sensors.box_position = lambda *names: replace(
+            p := seen(*names), x=p.x * FACTOR, y=p.y * FACTOR, z=p.z * FACTOR
+        )
+        """,
     "distance bias": """
         ranged = cell.sensors._range
         cell.sensors._range = lambda: ranged() + AMOUNT
@@ -122,7 +129,10 @@ EXAMPLES = {
     ),
     "tracking": Judged(
         ("tests/test_picking.py::test_a_box_is_picked_from_the_moving_belt_and_set_down_in_time",),
-        ("payload", "belt speed", "belt encoder", "grip force", "camera latency"),
+        (
+            "payload", "belt speed", "belt encoder", "grip force", "camera bias", "camera scale",
+            "camera latency",
+        ),
         "        cell = new_cell(mutabot_seed, scene=Scene(fixtures=(belt, TARGET_TABLE), parts=boxes))\n",
     ),
     "palletising": Judged(

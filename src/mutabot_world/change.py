@@ -10,7 +10,7 @@ from typing import Any
 _STEP = re.compile(r"\.?([A-Za-z_]\w*)|\[(-?\d+)\]|\[[\"']([^\"']+)[\"']\]")
 
 #: takes a disturbance away
-Undo = Callable[[], None]
+Undo = Callable[[], object]
 
 
 class NothingThereError(LookupError):
@@ -44,9 +44,7 @@ class NumberChange:
     def factor(self) -> float:
         """By what a whole is multiplied. Raises ValueError for a change that is no scale."""
         if self.kind != "scale":
-            raise ValueError(
-                f'only a parameter with change = "scale" has a factor, and this is {self.kind!r}'
-            )
+            raise ValueError(f'only a change = "scale" has a factor, and this is {self.kind!r}')
         return 1.0 + self.amount
 
 
@@ -70,9 +68,7 @@ def change_at(world: Any, path: str, change: NumberChange) -> tuple[Any, Any, Un
         _set(owner, *last, change(before))
     except (AttributeError, LookupError, TypeError, ValueError) as error:
         raise NothingThereError(f"{path} cannot be changed: {error}") from error
-    after = _get(
-        owner, *last, path
-    )  # an array of whole numbers or a setter may have made another number of it
+    after = _get(owner, *last, path)  # an array of whole numbers or a setter may have made another of it
     if _is_same(before, after):
         raise NothingThereError(f"{path} is {before} with the change as well")
     return before, after, lambda: _set(owner, *last, before)

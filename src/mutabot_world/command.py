@@ -70,7 +70,10 @@ def sections(found: Sequence[WorldLadder]) -> Iterator[tuple[str, list[str]]]:
     whole = suites(found)
     known = [one for one in whole if one.ends]
     columns = ("parameter", "tried", "magnitudes", "unseen at", "noticed from", "by")
-    rows = [(*_name(one), one.bar, _sizes(one.unseen, one), _noticed(one), _by(one)) for one in whole]
+    rows = [
+        (*_name(one), one.bar, one.span(one.unseen) if one.unseen else "–", _noticed(one), _by(one))
+        for one in whole
+    ]
     yield "What the tests notice, suffered unseen first", [*_table(columns, rows), "", _LEGEND]
     yield "In sentences", [f"{one.sentence[0].upper()}{one.sentence[1:]}." for one in known]
     unseen = [f"{one.parameter} {one.direction}: {one.finding}" for one in whole if one.unseen]
@@ -79,27 +82,17 @@ def sections(found: Sequence[WorldLadder]) -> Iterator[tuple[str, list[str]]]:
     title = "How robust the program is: up to which size the task is done"
     yield title, _table(("parameter", "tried", "lived with up to"), robust)
     if len({one.tests for one in found}) > 1:
-        by_test = [(one.parameter + one.direction, one.bar, one.tests[0]) for one in _loose_first(found)]
+        first = sorted((one for one in found if one.ends), key=lambda one: (not one.unseen, one.parameter))
+        by_test = [(one.parameter + one.direction, one.bar, one.tests[0]) for one in first]
         yield "By test", _table(("parameter", "magnitudes", "test"), by_test)
     unknown = [f"{one.parameter} {one.direction}: {one.why_unknown}" for one in whole if not one.ends]
     yield "Nothing is known of", unknown
-
-
-def _loose_first(found: Sequence[WorldLadder]) -> list[WorldLadder]:
-    return sorted((one for one in found if one.ends), key=lambda one: (not one.unseen, one.parameter))
 
 
 def _name(one: WorldLadder) -> tuple[str, str]:
     sign = {"+": " +", "-": " −"}.get(one.direction, "")
     sizes = sorted(one.found)
     return f"{one.parameter}{sign}", f"{sizes[0]:g} … {amount(sizes[-1], one.unit)}"
-
-
-def _sizes(sizes: Sequence[float], one: WorldLadder) -> str:
-    if not sizes:
-        return "–"
-    last = amount(sizes[-1], one.unit)
-    return last if len(sizes) == 1 else f"{sizes[0]:g} … {last}"
 
 
 def _noticed(one: WorldLadder) -> str:
@@ -127,17 +120,12 @@ def _data(found: Sequence[WorldLadder]) -> list[dict[str, Any]]:
     """Return ladders as plain data."""
     return [
         {
-            "parameter": one.parameter,
-            "direction": one.direction,
-            "unit": one.unit,
+            **{key: getattr(one, key) for key in ("parameter", "direction", "unit")},
             "tests": list(one.tests),
             "magnitudes": sorted(one.found),
             "ends": {f"{size:g}": str(one.end(size)) for size in sorted(one.found)},
-            "noticed_from": one.noticed_from,
-            "unseen": one.unseen,
             "lived_with_up_to": one.robust_to,
-            "sentence": one.sentence,
-            "finding": one.finding,
+            **{key: getattr(one, key) for key in ("noticed_from", "unseen", "sentence", "finding")},
         }
         for one in found
     ]

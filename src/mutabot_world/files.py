@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Iterable, Iterator
 from fnmatch import fnmatchcase
@@ -25,8 +26,8 @@ def parameters_of(table: WorldTable, root: Path) -> list[ParameterTable]:
     to be taken and is none.
     """
     found = [one for name in table.parameters for one in _of_file(name, root)]
-    kept = [one for one in found if not table.only or _is_named(one.name, table.only)]
-    unused = [one for one in table.only if not any(_is_named(other.name, [one]) for other in found)]
+    kept = [one for one in found if not table.only or any(fnmatchcase(one.name, p) for p in table.only)]
+    unused = [one for one in table.only if not any(fnmatchcase(other.name, one) for other in found)]
     if unused:
         known = ", ".join(one.name for one in found) or "there are none"
         raise UsageError(f"world.only: no parameter is named {unused[0]!r}; the files have: {known}")
@@ -57,6 +58,8 @@ def _of_file(name: str, root: Path) -> Iterator[ParameterTable]:
         first = error.errors(include_url=False)[0]
         place = ".".join(str(part + 1 if isinstance(part, int) else part) for part in first["loc"])
         raise UsageError(f"{name}: {place}: {first['msg']}") from None
+    if ":" in name and read.of and find_spec(library := re.split(r"[.:]", read.of[0])[0]) is None:
+        raise UsageError(f"world.parameters: {name} disturbs worlds of {library!r}, which is not installed")
     return _with_maker(read.parameter, read.of, name)
 
 
@@ -83,7 +86,3 @@ def _path(name: str, root: Path) -> Path:
         if (found := Path(folder, file)).is_file():
             return found
     raise UsageError(f"world.parameters: there is no file {file!r} in a package {package!r}")
-
-
-def _is_named(name: str, patterns: Iterable[str]) -> bool:
-    return any(fnmatchcase(name, one) for one in patterns)

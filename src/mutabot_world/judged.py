@@ -9,9 +9,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
+from itertools import takewhile
 from typing import Any
 
-from mutabot.api.reports import MutantResult, Results, Verdict
+from mutabot.api.reports import Results, Verdict
 
 from .extension import PROVIDER
 from .sizes import amount
@@ -35,13 +36,7 @@ Tolerances = Mapping[str, float]
 
 @dataclass(frozen=True, slots=True)
 class Judged:
-    """One disturbance in one round.
-
-    Attributes:
-        end: how it ended.
-        story: what happened, in a sentence; empty if nothing is to be said.
-        is_stop: whether something else than a check noticed it, such as a protective stop.
-    """
+    """How a disturbance ended in a round, what happened, and whether no check, but a stop, noticed it."""
 
     end: WorldEnd
     story: str = ""
@@ -62,17 +57,13 @@ def judged(outcome: Any, tolerances: Tolerances) -> Judged:
         return Judged(WorldEnd.UNKNOWN, why.split("\n")[0])
     apart = [one for each in outcome.diverged for one in each.apart if not one.is_value]
     if apart:
-        is_off = any(one.final > _tolerance(one, tolerances) for one in apart)
+        is_off = any(one.final > tolerances.get(one.unit, max(one.tolerance, one.spread)) for one in apart)
         return Judged(WorldEnd.UNSEEN if is_off else WorldEnd.LIVED, told)
     if outcome.indistinguishable or (outcome.distance is not None and outcome.distance <= 1.0):
         return Judged(WorldEnd.LIVED, told)
     if outcome.distance is None:
         return Judged(WorldEnd.PASSED, next(iter(outcome.gaps), "no probe tells how the world ended"))
     return Judged(WorldEnd.UNSEEN, told or next(iter(outcome.divergence), ""))
-
-
-def _tolerance(one: Any, tolerances: Tolerances) -> float:
-    return tolerances[one.unit] if one.unit in tolerances else max(one.tolerance, one.spread)
 
 
 @dataclass(slots=True)
@@ -120,12 +111,8 @@ class WorldLadder:
     @property
     def noticed_from(self) -> float | None:
         """The magnitude from which on all are noticed in every round; None if there is none."""
-        found = None
-        for size, end in reversed(self.ends.items()):
-            if end is not WorldEnd.NOTICED:
-                break
-            found = size
-        return found
+        noticed = takewhile(lambda pair: pair[1] is WorldEnd.NOTICED, reversed(self.ends.items()))
+        return min((size for size, _ in noticed), default=None)
 
     @property
     def missed(self) -> list[float]:
@@ -140,12 +127,8 @@ class WorldLadder:
     @property
     def robust_to(self) -> float | None:
         """The magnitude up to which all are lived with; None if not even the smallest is."""
-        found = None
-        for size, end in self.ends.items():
-            if end is not WorldEnd.LIVED:
-                break
-            found = size
-        return found
+        lived = takewhile(lambda pair: pair[1] is WorldEnd.LIVED, self.ends.items())
+        return max((size for size, _ in lived), default=None)
 
     @property
     def robust(self) -> str:
@@ -197,11 +180,13 @@ class WorldLadder:
         """What is suffered unseen, in a sentence; empty if nothing is."""
         if not self.unseen:
             return ""
-        least, most = self.unseen[0], self.unseen[-1]
-        sizes = self._amount(least) if least == most else f"{self._amount(least)} to {self._amount(most)}"
-        story, test = self.story(most, WorldEnd.UNSEEN)
-        where = f" ({test.rpartition('::')[2]}, mutant {self.numbers[most, test]})" if test else ""
-        return f"suffered unseen at {sizes}{f': {story}' if story else ''}{where}"
+        story, test = self.story(self.unseen[-1], WorldEnd.UNSEEN)
+        where = f" ({test.rpartition('::')[2]}, mutant {self.numbers[self.unseen[-1], test]})" if test else ""
+        return f"suffered unseen at {self.span(self.unseen)}{f': {story}' if story else ''}{where}"
+
+    def span(self, sizes: Sequence[float]) -> str:
+        """Sizes from the first to the last: ``0.1 kg``, ``0.1 kg to 2 kg``."""
+        return " to ".join(map(self._amount, dict.fromkeys((sizes[0], sizes[-1]))))
 
     def _amount(self, size: float) -> str:
         return amount(size, self.unit)
@@ -224,17 +209,12 @@ def ladders(results: Results, tolerances: Tolerances) -> list[WorldLadder]:
         ladder = found.setdefault(
             (name, mutant.direction, test), WorldLadder(name, mutant.direction, mutant.unit, (test,))
         )
-        _add(ladder, one, test, tolerances)
+        size = mutant.magnitude or 0.0
+        ladder.texts[size], ladder.numbers[size, test] = mutant.description, mutant.number
+        rounds = ladder.found.setdefault(size, {})
+        for outcome in one.outcomes:
+            rounds.setdefault(outcome.round, {})[test] = judged(outcome, tolerances)
     return list(found.values())
-
-
-def _add(ladder: WorldLadder, result: MutantResult, test: str, tolerances: Tolerances) -> None:
-    size = result.mutant.magnitude or 0.0
-    ladder.texts[size] = result.mutant.description
-    ladder.numbers[size, test] = result.mutant.number
-    rounds = ladder.found.setdefault(size, {})
-    for outcome in result.outcomes:
-        rounds.setdefault(outcome.round, {})[test] = judged(outcome, tolerances)
 
 
 def suites(found: Sequence[WorldLadder]) -> list[WorldLadder]:

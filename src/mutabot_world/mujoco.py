@@ -84,9 +84,7 @@ def gain(model: Any, change: NumberChange, *, names: str, random: Random) -> Non
 def strength(model: Any, change: NumberChange, *, names: str, random: Random) -> None:
     """Largest force of actuators, N or Nm, of those that have a limit."""
     for actuator in _named(model, "actuator", names, lambda one: bool(model.actuator_forcelimited[one])):
-        model.actuator_forcerange[actuator] = [
-            change(float(one)) for one in model.actuator_forcerange[actuator]
-        ]
+        model.actuator_forcerange[actuator] = change(model.actuator_forcerange[actuator])
 
 
 def damping(model: Any, change: NumberChange, *, names: str, random: Random) -> None:

@@ -48,13 +48,18 @@ def page(results: Results, found: Sequence[WorldLadder], recordings: Any) -> str
     tests = list(dict.fromkeys(test for one in found for test in one.tests))
     by_test = {(one.parameter, one.direction, one.tests[0]): one for one in found}
     legend = "".join(f"<p>{_cell('size', end)} {escape(str(end))}: {text}</p>" for end, text in _LEGEND)
-    head = "<tr><th>parameter<th>all tests" + "".join(f"<th>{_text(_short(one))}" for one in tests)
+    head = "<tr><th>parameter<th>all tests" + "".join(
+        f"<th>{_text(one.rpartition('::')[2])}" for one in tests
+    )
     rows = "".join(
         f"<tr><th>{_text(_name(one))}<td>{_bar(one)}"
         + "".join(f"<td>{_bar(by_test.get((one.parameter, one.direction, test)))}" for test in tests)
         for one in whole
     )
-    told = "".join(f"<li>{_text(one.sentence)}{_finding(one)}" for one in whole)
+    told = "".join(
+        f"<li>{_text(one.sentence)}{f'<br><b>{_text(one.finding)}</b>' if one.finding else ''}"
+        for one in whole
+    )
     robust = "".join(f"<tr><td>{_text(_name(one))}<td>{_text(one.robust)}" for one in whole if one.ends)
     parts = (
         "<h1>Disturbances of the world</h1>"
@@ -83,7 +88,7 @@ def _figures(results: Results, found: Sequence[WorldLadder], recordings: Any) ->
         original, mutant = recordings.pair(ids[number], next(rounds), test)
         if original is not None and mutant is not None:
             story = one.story(size, WorldEnd.UNSEEN)[0]
-            text = f"{one.texts[size]}, {_short(test)} (mutant {number}): {story}"
+            text = f"{one.texts[size]}, {test.rpartition('::')[2]} (mutant {number}): {story}"
             drawing = _drawing(RecordedPaths(original), RecordedPaths(mutant))
             yield f"<figure>{drawing}<figcaption>{_text(text)}</figcaption></figure>"
 
@@ -122,16 +127,8 @@ def _cell(text: str, end: WorldEnd, *, is_some: bool = False) -> str:
     return f'<i class="{kind}" title="{end}">{_text(text)}</i>'
 
 
-def _finding(one: WorldLadder) -> str:
-    return f"<br><b>{_text(one.finding)}</b>" if one.finding else ""
-
-
 def _name(one: WorldLadder) -> str:
     return f"{one.parameter} {'−' if one.direction == '-' else one.direction}".strip()
-
-
-def _short(test: str) -> str:
-    return test.rpartition("::")[2]
 
 
 def _text(text: str) -> str:

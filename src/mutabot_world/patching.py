@@ -70,12 +70,7 @@ def wrap(reference: str, *, before: Before | None = None, after: After | None = 
     running: set[Any] = set()
     undoes = [_put_around(found, "__init__", before, after, running)]
     undoes += [_put_around(one, "__init__", None, after, running) for one in below]
-
-    def undo() -> None:
-        for each in undoes:
-            each()
-
-    return undo
+    return lambda: [each() for each in undoes]
 
 
 def _below(kind: type) -> Iterator[type]:

@@ -98,6 +98,5 @@ def _parameters(seen: _Names) -> Iterator[str]:
                     own |= {"name": f"{table['name']} of {name}", "names": escape(name)}
                 own["name"] += "" if library == first else f" in {library}"
                 yield from ("", "[[world.parameter]]")
-                for key, value in own.items():
-                    if (key, value) != ("of", makers):
-                        yield f"{key} = {json.dumps(value, ensure_ascii=False)}"
+                kept = (pair for pair in own.items() if pair != ("of", makers))
+                yield from (f"{key} = {json.dumps(value, ensure_ascii=False)}" for key, value in kept)

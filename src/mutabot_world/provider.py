@@ -97,8 +97,10 @@ class WorldFaults(FaultProvider):
         moment, unit = parameter.moment, parameter.measure
         key = Activation.at_time(moment.number) if moment.kind == "time" else Activation.EACH_TEST
         for way in parameter.ways:
+            sign = {"+": "+", "-": "−"}.get(way, "")
+            words = (parameter.less if way == "-" else parameter.more) or f"{parameter.name} {sign}{{}}"
             for size in parameter.ladder:
-                text = f"{_words(parameter, way).format(amount(size, unit))}{moment.text}"
+                text = f"{words.format(amount(size, unit))}{moment.text}"
                 variant = f"{way}{size:g}{'%' if unit == 'percent' else unit or ''}"
                 made = self.mutant(Disturb(), site, text, variant=variant, magnitude=size, unit=unit)
                 data = _data(parameter, -size if way == "-" else size)
@@ -116,12 +118,6 @@ def _data(parameter: ParameterTable, size: float) -> dict[str, object]:
         "amount": size if is_written else in_si(size, parameter.measure),
         "moment": asdict(parameter.moment),
     }
-
-
-def _words(parameter: ParameterTable, way: str) -> str:
-    """How a sentence calls a disturbance in a direction, with braces for its magnitude."""
-    sign = {"+": "+", "-": "−"}.get(way, "")
-    return (parameter.less if way == "-" else parameter.more) or f"{parameter.name} {sign}{{}}"
 
 
 def _why_not(parameter: ParameterTable, project: Project, reached: Sequence[int]) -> str | None:

@@ -46,11 +46,12 @@ SHORT: dict[str, list[str]] = {
     "suite_length": ["--lengths", "50"],
     "ten_thousand": ["--mutants", "4000"],
     "witness": ["witness", "fluent_api"],
-    "world_ladders": ["paper", "--only", "centre of mass"],
+    "world_cost": ["--magnitudes", "2", "--when", "made"],
     "world_judged": ["paper", "--engines", "fork", "--only", "payload"],
+    "world_ladders": ["paper", "--only", "centre of mass"],
 }
 #: scripts that measure speed or count draws: a short form says that they run, and its figures nothing
-LOOSE = {"controller", "html_report", "suite_length", "ten_thousand"}
+LOOSE = {"controller", "html_report", "suite_length", "ten_thousand", "world_cost"}
 #: what a short form cannot bring
 ELSEWHERE = {
     "foreign_programs": "installs simulators: `make foreign`",
@@ -97,7 +98,7 @@ def _environment() -> dict[str, str]:
 @pytest.mark.parametrize("name", SHORT)
 def test_a_script_runs_in_a_short_form(name: str, folder: Path) -> None:
     if (
-        name in ("cell_physics", "cell_speed", "world_judged", "world_ladders")
+        name in ("cell_physics", "cell_speed", "world_cost", "world_judged", "world_ladders")
         and find_spec("mujoco") is None
     ):
         pytest.skip("needs MuJoCo")

@@ -242,3 +242,18 @@ def test_a_world_in_a_process_below_the_tests_is_disturbed(engine: str, tmp_path
     (folder / "pyproject.toml").write_text(text)
     found = run(folder, "--engine", engine)
     assert found["speed +"]["noticed_from"] == 50
+
+
+def test_a_file_for_a_library_that_is_not_installed_is_refused(tmp_path: Path) -> None:
+    table = 'of = ["nowhere:World"]\n[[parameter]]\nname = "speed"\npath = "speed"\nladder = [1]\n'
+    files = {"shipping/__init__.py": "", "shipping/world.toml": table}
+    folder = project(tmp_path, 'parameters = ["shipping:world.toml"]', **files)
+    done = mutabot(folder, folder, "check")
+    assert done.returncode == USAGE
+    assert "shipping:world.toml disturbs worlds of 'nowhere', which is not installed" in done.stderr
+
+
+def test_a_table_without_a_parameter_says_how_to_get_some(tmp_path: Path) -> None:
+    done = mutabot(None, project(tmp_path, ""), "run")
+    assert done.returncode == USAGE
+    assert "`mutabot init` proposes some" in done.stderr
