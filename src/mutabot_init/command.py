@@ -10,7 +10,9 @@ import typer
 
 from mutabot.api.reports import CommandContext
 
-from .propose import propose
+from .beside import started
+from .layout import other_files
+from .propose import propose, refuse_existing
 from .template import start
 
 
@@ -22,10 +24,28 @@ def init(
     ] = None,
     template: tuple[str, Mapping[str, str]] | None = None,
 ) -> None:
-    """Draft a configuration and a vocabulary from one run of the tests, or start a project."""
+    """Draft a configuration and a vocabulary from one run of the tests, or start a project.
+
+    Robot programs in another language that have no tests get some, and a cell map.
+    """
     if template is not None:
         lines = start(context.project, program or [], *template)
+    elif (made := _started(context, program or [])) is not None:
+        lines = made
     else:
         lines = propose(context.project, program or [], tell=lambda text: context.tell([text]))
     for line in lines:
         context.print(line)
+
+
+def _started(context: CommandContext, program: list[Path]) -> list[str] | None:
+    """Start a project for programs in a package's language; None if there are none of these."""
+    root = context.project.resolve()
+    if not root.is_dir() or not (files := other_files(root, program)):
+        return None
+    made = started(root, files)
+    if made is None:
+        return None
+    refuse_existing(root)
+    texts, lines = made
+    return [*lines, *start(root, (), "", texts)]

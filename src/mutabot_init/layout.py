@@ -69,6 +69,17 @@ def look(root: Path, given: Sequence[Path]) -> Layout:
     return Layout(root, program, others, arguments, guessed=not chosen)
 
 
+def other_files(root: Path, given: Sequence[Path]) -> list[Path]:
+    """Files that are no Python: those that are given, or of a project whose program is no Python; else none.
+
+    Raises UsageError if a given path is not there.
+    """
+    places = _places(root, given) or [root]
+    files = [file for place in places for file in (_walk(place) if place.is_dir() else [place])]
+    program = [file for file in files if file.suffix != ".py" or not _is_test_side(file.relative_to(root))]
+    return [] if any(file.suffix == ".py" for file in program) else program[:_MOST_FILES]
+
+
 def refuse_mistakes(layout: Layout) -> None:
     """Raise UsageError for a file of the program, or a conftest, that is no Python."""
     for path in (*layout.program, *(one for one in layout.tests if one.name == "conftest.py")):
@@ -114,7 +125,7 @@ def parsed(path: Path) -> ast.Module:
 
 
 def _python_files(folder: Path) -> list[Path]:
-    return list(_walk(folder))[:_MOST_FILES]
+    return [path for path in _walk(folder) if path.suffix == ".py"][:_MOST_FILES]
 
 
 def _walk(folder: Path) -> Iterator[Path]:
@@ -123,7 +134,7 @@ def _walk(folder: Path) -> Iterator[Path]:
             continue
         if path.is_dir() and not path.is_symlink():
             yield from _walk(path)
-        elif path.suffix == ".py":
+        elif path.is_file():
             yield path
 
 
@@ -134,6 +145,12 @@ def _is_test_side(path: Path) -> bool:
 
 
 def _named(root: Path, given: Sequence[Path]) -> list[Path]:
+    places = _places(root, given)
+    found = [file for place in places for file in (_python_files(place) if place.is_dir() else [place])]
+    return list(dict.fromkeys(found))
+
+
+def _places(root: Path, given: Sequence[Path]) -> list[Path]:
     found: list[Path] = []
     for path in given:
         place = next((one for one in (path, root / path) if one.exists()), None)
@@ -141,8 +158,8 @@ def _named(root: Path, given: Sequence[Path]) -> list[Path]:
             raise UsageError(f"{path}: there is no such file or folder")
         if not place.resolve().is_relative_to(root):
             raise UsageError(f"{path} does not lie in {root}; -C names the project's folder")
-        found += _python_files(place.resolve()) if place.is_dir() else [place.resolve()]
-    return list(dict.fromkeys(found))
+        found.append(place.resolve())
+    return found
 
 
 def _guess_program(code: Sequence[Path]) -> list[Path]:

@@ -219,7 +219,7 @@ def propose(
     root = project_above(given) if given.is_dir() else given
     if root != given:
         tell(f"project: {root}")
-    _refuse_existing(root)
+    refuse_existing(root)
     found = _Look(root, program, limit, tell)
     text = found.text()
     if found.needs_vocabulary:
@@ -262,7 +262,8 @@ def _write(path: Path, text: str) -> None:
         raise UsageError(f"cannot write {path}: {error.strerror or error}") from error
 
 
-def _refuse_existing(root: Path) -> None:
+def refuse_existing(root: Path) -> None:
+    """Raise UsageError if the project has a configuration, or is not there."""
     if not root.is_dir():
         raise UsageError(f"{root}: there is no such folder")
     for name in (CONFIGURATION, VOCABULARY):

@@ -25,3 +25,6 @@ EXTENSION = Extension(
         "krl": "mutabot_languages.krl.language:KRL",
     },
 )
+
+#: what makes `mutabot init` a project of robot programs in these languages
+STARTER = "mutabot_languages.starting.project:project"

@@ -21,28 +21,8 @@ from mutabot_languages.mutation.rewriting import (
 
 _MOTION = re.compile(r"move(?:j|l|c|absj)(?:do|ao|go|sync)?")
 _SPEEDS = (
-    5,
-    10,
-    20,
-    30,
-    40,
-    50,
-    60,
-    80,
-    100,
-    150,
-    200,
-    300,
-    400,
-    500,
-    600,
-    800,
-    1000,
-    1500,
-    2000,
-    2500,
-    3000,
-)
+    5, 10, 20, 30, 40, 50, 60, 80, 100, 150, 200, 300, 400, 500, 600, 800, 1000, 1500, 2000, 2500, 3000,
+)  # fmt: skip
 _OF_ROBOT = name_set(
     """set reset setdo setgo setao pulsedo invertdo waittime waitdi waitdo waitgi waitgo waitai waitao
     waituntil

@@ -1,0 +1,1 @@
+"""Projects to start from, for robot programs that have no tests yet."""

@@ -1,0 +1,123 @@
+"""``mutabot init`` on robot programs without tests: a cell map, tests that run, and a configuration."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from mutabot.cli.app import project_of
+from mutabot_init.beside import started
+from mutabot_init.layout import other_files
+from mutabot_languages import load
+from mutabot_languages.registry import language_for
+from mutabot_languages.starting import project as starting
+from mutabot_languages.starting.signals import signals_of
+from mutabot_languages.starting.trial import Trial
+from tests.packages.languages.programs import FILES, written
+
+UP = """MODULE Up
+  VAR robtarget pNow;
+  PROC main()
+    pNow:=CRobT();
+    MoveL Offs(pNow,0,0,50), v200, fine, tool0;
+    Set doGrip;
+    WaitDI diHolding, 0;
+  ENDPROC
+ENDMODULE
+"""
+
+
+def begun(folder: Path, monkeypatch: pytest.MonkeyPatch, found: Trial) -> tuple[dict[str, str], list[str]]:
+    monkeypatch.setattr(starting, "tried", lambda files, cell_map: found)
+    made = started(folder, other_files(folder, []))
+    assert made is not None
+    return made
+
+
+@pytest.mark.usefixtures("plugins")
+def test_init_makes_a_project_whose_tests_pass_and_that_mutabot_lists(tmp_path: Path) -> None:
+    (tmp_path / "up.mod").write_text(UP)
+    command = [sys.executable, "-m", "mutabot", "-C", str(tmp_path)]
+    done = subprocess.run([*command, "init"], capture_output=True, text=True, check=True)
+    assert "up.mod ends after" in done.stdout
+    tests = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider"]
+    ended = subprocess.run(tests, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert ended.returncode == 0, ended.stdout
+    assert project_of(tmp_path).configuration.program == ("up.mod",)
+    changed = subprocess.run([*command, "diff", "reverse-offset"], capture_output=True, text=True, check=True)
+    assert "Offs(pNow,0,0,-50)" in changed.stdout
+
+
+@pytest.mark.parametrize("language", FILES)
+def test_the_cell_map_names_the_signals_that_a_program_uses(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, language: str
+) -> None:
+    written(tmp_path, language)
+    files, lines = begun(tmp_path, monkeypatch, Trial("gen3", 1.0, (0, 0, 0), (0, 0, 0)))
+    cell_map = tomllib.loads(files["cell_map.toml"])
+    output, signal = {
+        "urscript": ("standard_digital_out[0]", "standard_digital_in[3]"),
+        "rapid": ("grip", "part"),
+        "krl": ("$OUT[9]", "$IN[25]"),
+    }[language]
+    assert cell_map["out"] == {output: {"gripper": [0, 1]}}
+    assert [*cell_map["in"]] == [signal]
+    assert tomllib.loads(files["mutabot.toml"])["program"] == sorted(FILES[language], reverse=True)
+    assert language in lines[0]
+
+
+def test_what_a_program_waits_for_is_what_the_input_says(tmp_path: Path) -> None:
+    text = "DEF a( )\nWAIT FOR $IN[1]==FALSE\nWAIT FOR $IN[2]\nSIGNAL LAMP $OUT[1]\n$OUT[2]=TRUE\nEND\n"
+    language = language_for("a.src")
+    assert language is not None
+    found = {one.name: one for one in signals_of([language.read("a.src", text)], "krl")}
+    assert [found[name].value for name in ("$IN[1]", "$IN[2]")] == [False, True]
+    assert found["$OUT[1]"].told == "lamp"
+    assert '# [out."$OUT[1]"]' in starting.cell_map_text("a.src", [*found.values()])
+
+
+def test_modules_of_rapid_are_one_program_that_begins_in_the_one_with_main(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "a.mod").write_text("MODULE A\nPROC grip()\nSet doGrip;\nENDPROC\nENDMODULE\n")
+    (tmp_path / "b.mod").write_text("MODULE B\nPROC main()\ngrip;\nENDPROC\nENDMODULE\n")
+    files, _ = begun(tmp_path, monkeypatch, Trial("ur5e", 61.0, (0, 0, 0), (0, 0, 0)))
+    test = files["tests/test_b.py"]
+    assert 'load(ROOT / "b.mod", ROOT / "a.mod")' in test
+    assert "robots.ur5e()" in test
+    assert "until=lambda: cell.time > 60" in test
+    compile(test, "test_b.py", "exec")
+
+
+def test_why_a_program_does_not_run_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "a.script").write_text("socket_open('a', 1)\n")
+    problem = "unsupported: socket_open at line 1 of a.script"
+    files, lines = begun(tmp_path, monkeypatch, Trial("gen3", problem=problem))
+    assert any(problem in line for line in lines)
+    assert "program.run(cell)" in files["tests/test_a.py"]
+
+
+def test_tests_and_cell_maps_that_are_there_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    written(tmp_path, "rapid")
+    (tmp_path / "cell_map.toml").write_text("")
+    (tmp_path / "tests").mkdir()
+    (tmp_path / "tests" / "test_it.py").write_text("def test_it(): pass\n")
+    files, _ = begun(tmp_path, monkeypatch, Trial("gen3"))
+    assert [*files] == ["mutabot.toml"]
+
+
+def test_a_python_program_beside_is_the_program(tmp_path: Path) -> None:
+    written(tmp_path, "rapid")
+    (tmp_path / "robot.py").write_text("")
+    assert other_files(tmp_path, []) == []
+    assert other_files(tmp_path, [tmp_path / "pick.mod"]) == [tmp_path / "pick.mod"]
+
+
+def test_a_program_that_was_started_is_loaded_with_its_cell_map(tmp_path: Path) -> None:
+    written(tmp_path, "rapid")
+    (tmp_path / "cell_map.toml").write_text('[out."grip"]\ngripper = [0, 1]\n')
+    assert load(tmp_path / "pick.mod").cell_map.outputs == {"grip": {"gripper": [0, 1]}}
