@@ -19,7 +19,11 @@ if TYPE_CHECKING:
 
 
 class FrontEnd(Protocol):
-    """A language that robot programs are written in."""
+    """A language that robot programs are written in.
+
+    It may say what reports mark in its files, as ``highlighting``: an ECMAScript regular expression of three
+    groups, texts, comments and words of the language, and its flags.
+    """
 
     @property
     def suffixes(self) -> tuple[str, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Mapping, Sequence
 from importlib.util import decode_source
+from keyword import kwlist
 from types import CodeType, FrameType
 from typing import TYPE_CHECKING, TypeVar
 
@@ -13,6 +14,8 @@ if TYPE_CHECKING:
 
 _Node = TypeVar("_Node", bound=ast.AST)
 _TEXT_LIMIT = 60
+_TEXTS = r"""[rRbBfFuU]{0,2}(?:"{3}[^]*?"{3}|'{3}[^]*?'{3}|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*')"""
+_HIGHLIGHTED = rf"({_TEXTS})|(#[^\n]*)|\b({'|'.join(kwlist)})\b"
 #: code objects that are part of the function around them
 _COMPREHENSIONS = tuple(f".<locals>.<{kind}>" for kind in ("listcomp", "setcomp", "dictcomp", "genexpr"))
 
@@ -21,6 +24,7 @@ class Python:
     """The front end for Python."""
 
     suffixes = (".py",)
+    highlighting = _HIGHLIGHTED, "g"
 
     def text_of(self, content: bytes) -> str:
         """Return the text of a file, by its encoding declaration and with newlines as Python reads them."""

@@ -55,6 +55,13 @@ def front_end_of(file: str) -> FrontEnd:
     return next((one for one in front_ends() if name.endswith(one.suffixes)), front_ends()[-1])
 
 
+def highlighting_of(file: str) -> tuple[str, str]:
+    """What reports mark in a file, as ``FrontEnd`` says; empty if its language says nothing."""
+    name = file.lower()
+    found = next((one for one in front_ends() if name.endswith(one.suffixes)), None)
+    return getattr(found, "highlighting", ("", ""))
+
+
 def program_files(root: Path, program: Iterable[str]) -> list[str]:
     """Return the program's files among the configured files and folders, relative to ``root``, each once."""
     suffixes = tuple(suffix for one in front_ends() for suffix in one.suffixes)

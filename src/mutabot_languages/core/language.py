@@ -48,6 +48,13 @@ class RobotLanguage:
     task: type[ProgramTask] = ProgramTask
     beside: Callable[[Path], list[Path]] = lambda file: []
 
+    @property
+    def highlighting(self) -> tuple[str, str]:
+        """What reports mark in its files, as front ends say it."""
+        lexis, words = self.parser.lexis, "|".join(sorted(self.parser.keywords))
+        patterns = (lexis.marked["text"], lexis.marked["comment"], rf"\b(?:{words})\b")
+        return "|".join(f"({one})" for one in patterns), "gim" if lexis.ignores_case else "gm"
+
     def text_of(self, content: bytes) -> str:
         """The text of a file: UTF-8 if it is that, else Latin-1."""
         return decode(content)[0]

@@ -13,6 +13,7 @@ from typing import Any, ClassVar
 
 from mutabot_languages.errors import LanguageError, ProgramError, UnsupportedError
 
+from .interrupts import Interrupts
 from .scope import ControlFlow, ProgramUnit, Routine, RoutineScope, Steps, TaskOperation, Variable
 from .station import TICK, ProgramPlace, Station
 from .tree import ProgramNode
@@ -112,6 +113,7 @@ class Machine:
         self.routines: dict[str, Routine] = {}
         self.tasks: dict[str, Steps] = {}
         self.running: dict[int, Routine] = {}
+        self.interrupts = Interrupts()
         self.undeclared: dict[str, LanguageError | ProgramError] = {}
         self._until, self._end = until, station.time + limit
         self._limit = limit
@@ -413,10 +415,14 @@ class Evaluation:
             yield TaskOperation("wait", self.site(node, scope), seconds=float(seconds))
 
     def move(
-        self, node: ProgramNode, scope: RoutineScope, motion: tuple[str, tuple[Any, ...], float]
+        self,
+        node: ProgramNode,
+        scope: RoutineScope,
+        motion: tuple[str, tuple[Any, ...], float],
+        watch: Callable[[], None] | None = None,
     ) -> Steps:
-        """Carry out a motion."""
-        yield TaskOperation("move", self.site(node, scope), motion=motion)
+        """Carry out a motion; ``watch`` is called in each of its ticks."""
+        yield TaskOperation("move", self.site(node, scope), motion=motion, watch=watch)
 
     def until(
         self,

@@ -62,12 +62,14 @@ class StatementParser:
         lexis: its tokens.
         binary: the binding of its binary operators, 1 the loosest, by their words.
         unary: the binding of its unary ones.
+        keywords: words of the language, which reports mark.
         terminators: words that end the block around a statement that cannot be read.
     """
 
     lexis: ClassVar[Lexis]
     binary: ClassVar[Mapping[str, int]]
     unary: ClassVar[Mapping[str, int]]
+    keywords: ClassVar[frozenset[str]] = frozenset()
     terminators: ClassVar[frozenset[str]] = frozenset()
     ends_with_line: ClassVar[bool] = True
 

@@ -7,6 +7,7 @@ from typing import Any
 
 from mutabot_languages.errors import ProgramError
 
+from .interrupts import HANDLERS
 from .machine import Machine
 from .scope import ControlFlow, ProgramRaised, Steps, TaskOperation
 from .station import TICK
@@ -29,17 +30,24 @@ class TaskSchedule:
         """Run until the main task has ended; the others end with it."""
         tasks = self._machine.tasks
         while main in tasks:
-            ready = [name for name in tasks if name not in self._waiting]
+            ready = self._ready()
             self._random.shuffle(ready)
             for name in ready:
-                if name in tasks:
+                if main in tasks and name in tasks and self._may_begin(name):
                     self._advance(name, main)
             for name in [one for one in self._waiting if one not in tasks]:
                 del self._waiting[name]
-            if main in tasks and all(name in self._waiting for name in tasks):
+            if main in tasks and not self._ready():
                 self._pass_time()
         for steps in tasks.values():
             steps.close()
+
+    def _ready(self) -> list[str]:
+        return [name for name in self._machine.tasks if name not in self._waiting and self._may_begin(name)]
+
+    def _may_begin(self, name: str) -> bool:
+        """Whether a task may go on: beside an interrupt that is being carried out, no other one does."""
+        return name == HANDLERS or not self._machine.interrupts.is_handling
 
     def _advance(self, name: str, main: str) -> None:
         """Let a task go on until it waits."""
@@ -65,7 +73,13 @@ class TaskSchedule:
     def _carry_out(self, operation: TaskOperation) -> None:
         """Carry out an operation of the only task, as the cell's own calls do: they block."""
         cell = self._station.cell
-        if operation.motion is not None:
+        if operation.watch is not None:
+            wait = self._begin(operation)
+            while not wait.move.done:
+                self._station.call(operation.site, cell.wait, TICK)
+                operation.watch()
+            self._station.call(operation.site, wait.move.wait)
+        elif operation.motion is not None:
             method, arguments, speed = operation.motion
             self._station.call(operation.site, getattr(cell.arm, method), *arguments, speed=speed)
         else:
@@ -85,6 +99,8 @@ class TaskSchedule:
         self._station.call(first.operation.site, self._station.cell.wait, TICK)
         now = self._station.time
         for name, wait in [*self._waiting.items()]:
+            if wait.operation.watch is not None:
+                wait.operation.watch()
             if wait.move is not None and wait.move.done:
                 self._station.call(wait.operation.site, wait.move.wait)
                 del self._waiting[name]

@@ -17,18 +17,18 @@ class TaskOperation:
     """What a task waits for.
 
     Attributes:
-        kind: ``move``, ``wait`` or ``until``.
+        kind: ``move`` or ``wait``.
         site: the part of the program.
         motion: of a motion: the arm's method, its arguments and a part of its speed.
-        seconds: of a wait; of ``until``, after which it ends anyway.
-        condition: what is waited for.
+        seconds: of a wait.
+        watch: of a motion: called in each of its ticks.
     """
 
     kind: str
     site: ProgramPlace
     motion: tuple[str, tuple[Any, ...], float] | None = None
     seconds: float = 0.0
-    condition: Callable[[], bool] | None = None
+    watch: Callable[[], None] | None = None
 
 
 Steps = Generator[TaskOperation, Any, Any]

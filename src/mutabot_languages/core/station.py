@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from pathlib import Path
 from typing import Any, TypeVar
 
 from mutabot_languages.errors import ProgramError, UnsupportedError
@@ -234,11 +233,6 @@ class Station:
             self.call(site, self.cell.gripper.command, entry["gripper"])
         if "suction" in entry:
             self.call(site, self.cell.suction.on if entry["suction"] else self.cell.suction.off)
-
-
-def site_for(path: Path | str, extent: tuple[int, int, int, int], routine: str) -> ProgramPlace:
-    """The site of a node."""
-    return ProgramPlace(str(path), extent, routine)
 
 
 def matrix_frame(position: Any, rotation: Any) -> Frame:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -13,6 +14,12 @@ from .station import TICK
 from .tree import ProgramNode
 
 _IDLE_LOOPS = 20
+#: functions of angles in degrees
+OF_DEGREES: dict[str, Callable[..., float]] = {
+    "sin": lambda angle: math.sin(math.radians(angle)), "cos": lambda angle: math.cos(math.radians(angle)),
+    "tan": lambda angle: math.tan(math.radians(angle)), "asin": lambda one: math.degrees(math.asin(one)),
+    "acos": lambda one: math.degrees(math.acos(one)), "atan2": lambda y, x: math.degrees(math.atan2(y, x)),
+}  # fmt: skip
 
 
 class ProgramTask(Evaluation):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 #: kinds that no grammar sees
@@ -17,16 +18,18 @@ class Lexis:
         pattern: alternatives with a named group each; ``space`` and ``comment`` are trivia, ``newline`` ends
             a statement where the language says so, ``other`` takes any character that nothing else does.
         ignores_case: whether names that differ in capital letters are equal.
+        marked: the patterns by their names.
     """
 
     pattern: re.Pattern[str]
     ignores_case: bool
+    marked: Mapping[str, str]
 
     @classmethod
     def of(cls, groups: dict[str, str], *, ignores_case: bool) -> Lexis:
         """A lexis of these patterns, tried in their order."""
         alternatives = "|".join(f"(?P<{name}>{pattern})" for name, pattern in groups.items())
-        return cls(re.compile(f"{alternatives}|(?P<other>.)", re.DOTALL), ignores_case)
+        return cls(re.compile(f"{alternatives}|(?P<other>.)", re.DOTALL | re.MULTILINE), ignores_case, groups)
 
 
 @dataclass(slots=True)

@@ -8,9 +8,10 @@ from collections.abc import Callable
 from typing import Any
 
 from mutabot_languages.core.frames import Frame
+from mutabot_languages.core.interrupts import HANDLERS, Interrupt
 from mutabot_languages.core.names import name_set
 from mutabot_languages.core.scope import ControlFlow, RoutineScope, Steps, Structure
-from mutabot_languages.core.task import ProgramTask, of_values
+from mutabot_languages.core.task import OF_DEGREES, ProgramTask, of_values
 from mutabot_languages.core.tree import ProgramNode
 
 from .dialect import KrlMachine, frame_of, of_axes, of_frame, set_frame
@@ -19,7 +20,7 @@ from .dialect import KrlMachine, frame_of, of_axes, of_frame, set_frame
 IGNORED = name_set(
     """continue a10 a10_ini a20 a50 h70 h50 userspot bas_tq msgnotify msgquit msgloop msgdialog set_kr_msg
     set_kr_dlg clear_kr_msg varstate ir_stopm user_grp usergrp a_10 a_20 spottech grp err_raise cwrite
-    cast_to set_torque_limits reset_torque_limits brake resume delete_backward_buffer lk_ping
+    cast_to set_torque_limits reset_torque_limits delete_backward_buffer lk_ping
     use_cm_pro_values err_clear setbreakpoint sync_cmd on_error_proceed programsync lock unlock
     tech_motion kcp_ippno chkgrp interrupt_off interrupt_on bwini sb_ini vw cwrite_text kuka_notify p00
     act_drive_bus"""
@@ -147,10 +148,34 @@ def _pulse(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
     yield from task.store(target, not value, scope)
 
 
-def _interrupt(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> None:
-    """Interrupt 3 with IR_STOPM is in every program; what others do is not carried out."""
-    if node.name == "interrupt decl" and node.bodies[0][0].name != "ir_stopm":
-        raise task.unsupported(node, scope, f"INTERRUPT … DO {node.bodies[0][0].name}")
+def _interrupt(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    """INTERRUPT DECL, ON, OFF, ENABLE and DISABLE; the one with IR_STOPM, in every program, is inert."""
+    interrupts = task.machine.interrupts
+    is_inert = node.bodies and node.bodies[0][0].name == "ir_stopm"
+    numbers = [int(one) for one in (yield from task.values(node.parts[:1], scope))]
+    if node.name == "interrupt decl" and not is_inert:
+        handlers = type(task)(task.machine, HANDLERS)
+        condition, action = node.parts[1], node.bodies[0][0]
+
+        def holds() -> Steps:
+            return task.dialect.truth((yield from handlers.value(condition, scope)))
+
+        made = Interrupt(holds, True, lambda: handlers.statement(action, scope), is_awake=False)
+        interrupts.known[numbers[0]] = made
+        if HANDLERS not in task.machine.tasks:
+            task.machine.start(HANDLERS, interrupts.steps(task.site(node, scope)))
+        return
+    chosen = [one for number, one in interrupts.known.items() if not numbers or number in numbers]
+    for one in chosen:
+        one.is_awake = node.name in ("interrupt on", "interrupt enable")
+    if is_inert or not chosen:
+        task.station.note(f"{node.name} at line {scope.unit.source.line_of(node.start)} has no effect here")
+
+
+def _stop(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> None:
+    """BRAKE and RESUME of an interrupt's routine are not carried out; elsewhere they have no effect."""
+    if task.name == HANDLERS:
+        raise task.unsupported(node, scope, node.name.upper())
     task.station.note(f"{node.name} at line {scope.unit.source.line_of(node.start)} has no effect here")
 
 
@@ -225,32 +250,23 @@ _MOVES = """ptp lin circ ptp_rel lin_rel circ_rel sptp slin scirc spl sptp_rel s
 
 FUNCTIONS: dict[str, Callable[..., Any]] = {
     **dict.fromkeys(_MOVES.split(), _move), "wait sec": _wait_seconds, "wait for": _wait_for, "halt": _halt,
-    "pulse": _pulse, "trigger": _trigger, "bas": _bas, "cancel": _end,
+    "brake": _stop, "resume": _stop, "pulse": _pulse, "trigger": _trigger, "bas": _bas, "cancel": _end,
     **dict.fromkeys(
         ("interrupt decl", "interrupt on", "interrupt off", "interrupt enable", "interrupt disable"),
         _interrupt
     ),
     "forward": _forward, "inverse": _inverse, "inv_pos": of_values(_inverse_position),
     "abs": of_values(abs), "sqrt": of_values(math.sqrt),
-    "sin": of_values(lambda angle: math.sin(math.radians(angle))),
-    "cos": of_values(lambda angle: math.cos(math.radians(angle))),
-    "tan": of_values(lambda angle: math.tan(math.radians(angle))),
-    "acos": of_values(lambda value: math.degrees(math.acos(value))),
-    "asin": of_values(lambda value: math.degrees(math.asin(value))),
-    "atan2": of_values(lambda y, x: math.degrees(math.atan2(y, x))),
+    **{name: of_values(function) for name, function in OF_DEGREES.items()},
     "round": of_values(lambda value: math.floor(value + 0.5)), "trunc": of_values(math.trunc),
     "strlen": of_values(len), "strdecllen": of_values(len),
     "strcomp": of_values(lambda one, other, *_: one == other),
     "strclear": of_values(lambda *_: True),
     "toint": of_values(int), "copy": of_values(copy.deepcopy),
-    "svel_joint": of_values(float),
-    "sacc_cp": of_values(float),
-    "sori_typ": of_values(lambda value: value), "sacc_joint": of_values(float),
-    "svel_cp": of_values(lambda value, *_: float(value)),
-    "stool2": of_values(lambda value: value), "sbase": of_values(lambda value: value),
-    "sload": of_values(lambda value: value), "sipo_mode": of_values(lambda value: value),
-    "sapo": of_values(lambda v: v),
-    "sapo_ptp": of_values(lambda value, *_: value), "sgear_jerk": of_values(float),
-    "sjerk": of_values(lambda *v: 0.0),
-    "tool_adj": of_values(lambda value: value),
+    **dict.fromkeys(("svel_joint", "sacc_cp", "sacc_joint", "sgear_jerk"), of_values(float)),
+    **dict.fromkeys(
+        ["sori_typ", "svel_cp", "stool2", "sbase", "sload", "sipo_mode", "sapo", "sapo_ptp", "tool_adj"],
+        of_values(lambda value, *_: value),
+    ),
+    "sjerk": of_values(lambda *_: 0.0),
 }  # fmt: skip

@@ -33,7 +33,7 @@ class KrlParser(StatementParser):
     lexis: ClassVar = Lexis.of(
         {
             "space": r"[ \t\f\v\ufeff\xa0\x00\x1a]+",
-            "comment": r";[^\r\n]*|(?m:^)[ \t]*&[^\r\n]*",
+            "comment": r";[^\r\n]*|^[ \t]*&[^\r\n]*",
             "newline": r"\r\n|\r|\n",
             "name": r"\$?[^\W\d][\w$]*",
             "number": r"'[HhBb][0-9A-Fa-f]+'|(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?",
@@ -47,6 +47,7 @@ class KrlParser(StatementParser):
         "<=": 5, ">=": 5, "+": 6, "-": 6, "*": 7, "/": 7, ":": 8,
     }  # fmt: skip
     unary: ClassVar = {"not": 4, "b_not": 4, "-": 9, "+": 9}
+    keywords: ClassVar = RESERVED | {"true", "false"}
     terminators: ClassVar = name_set(
         """end endfct enddat endif else endfor endwhile until endloop case default endswitch endspline def
         deffct

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from mutabot_languages.core.language import RobotLanguage
@@ -144,8 +144,3 @@ def _shorter(before: str, after: str, most: int = 70) -> tuple[str, str]:
         f"{head}{before[first : len(before) - last]}{tail}",
         f"{head}{after[first : len(after) - last]}{tail}",
     )
-
-
-def ladder(values: Sequence[float]) -> tuple[float, ...]:
-    """Magnitudes, the smallest first."""
-    return tuple(sorted(values))

@@ -24,7 +24,6 @@ from mutabot_languages.errors import ProgramError
 
 from .types import STRUCTURES, Components, RapidArray, initial, shaped
 
-_ID = {"trans": [0, 0, 0], "rot": [1, 0, 0, 0]}
 _SPEED, _ZONE = re.compile(r"v(\d+)"), re.compile(r"z(\d+)")
 _POSE0 = [[0, 0, 0], [1, 0, 0, 0]]
 _ERRORS = name_set(
@@ -274,6 +273,3 @@ def _of_numbers(operator: str, left: Any, right: Any) -> Any:
     if operator == "mod":
         return int(math.fmod(left, right))
     return OF_NUMBERS[operator](left, right)
-
-
-NO_FRAME = _ID

@@ -11,28 +11,23 @@ from mutabot_languages.core.frames import IDENTITY, Frame
 from mutabot_languages.core.names import name_set
 from mutabot_languages.core.scope import ControlFlow, ProgramRaised, RoutineScope, Steps, Structure, Variable
 from mutabot_languages.core.station import TICK
-from mutabot_languages.core.task import ProgramTask
+from mutabot_languages.core.task import OF_DEGREES, ProgramTask
 from mutabot_languages.core.tree import ProgramNode
 
+from .interrupts import INTERRUPTS, trigger_watch
 from .types import STRUCTURES, frame_of, put_frame, shaped
 
 #: what has no effect in the cell, and is noted
 IGNORED = name_set(
-    """confl confj singarea accset velset pathaccllim pathacclim gripload tpwrite errwrite tperase tpshow
-    skipwarn
-    syncmoveon syncmoveoff waitsynctask syncmoveundo actunit deactunit actevent evtset motionsup
-    speedrefresh worldacclim
-    pathresol softact softdeact corrclear load unload save startload waitload cancelload eraseModule
-    stopmove startmove
-    storepath restopath clearpath logtext spystart spystop setsysdata resetretrycount resetpppdata bookerrno
-    isleep iwatch idisable ienable idelete motionprocessmodeset circpathmode tuneservo tunereset eoffson
-    eoffsoff
-    eoffsset opennocompress setallhdpos breakpoint break uimsgbox uimsgwrite saferuncheck wzdisable wzenable
-    jointlimitset sysstopaction manloadidproc paridposvalid tpreadnum accsetmax cyclestartedreset
-    enabletaskauto
-    gripsetload cpoff cpon speedlim speedlimit robotwarning wait_sync reconnect process_stop errlog
-    writestrbin
-    tplogmessage systemstopaction""".lower()
+    """confl confj singarea accset velset pathaccllim pathacclim gripload tpwrite errwrite tperase
+    tpshow skipwarn syncmoveon syncmoveoff waitsynctask syncmoveundo actunit deactunit actevent
+    evtset motionsup speedrefresh worldacclim pathresol softact softdeact corrclear load unload save
+    startload waitload cancelload erasemodule logtext spystart spystop setsysdata resetretrycount
+    resetpppdata bookerrno motionprocessmodeset circpathmode tuneservo tunereset eoffson eoffsoff
+    eoffsset opennocompress setallhdpos breakpoint break uimsgbox uimsgwrite saferuncheck wzdisable
+    wzenable jointlimitset sysstopaction manloadidproc paridposvalid tpreadnum accsetmax
+    cyclestartedreset enabletaskauto gripsetload cpoff cpon speedlim speedlimit robotwarning
+    wait_sync reconnect process_stop errlog writestrbin tplogmessage systemstopaction"""
 )
 _TIMEOUT = "err_wait_maxtime"
 
@@ -60,8 +55,10 @@ def _move(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
     """MoveJ, MoveL, MoveC, MoveAbsJ and those that set an output or call a routine at their end."""
     values, named = yield from _given(task, node, scope)
     name = node.name
-    is_circle, is_joint = name.startswith("movec"), name.startswith("moveabsj")
+    is_circle, is_joint = name.startswith(("movec", "triggc")), name.startswith("moveabsj")
     via = values.pop(0) if is_circle else None
+    points = [values.pop(2)] if name.startswith("trigg") and len(values) > 2 else []
+    points += [named.pop(f"t{number}") for number in range(2, 9) if f"t{number}" in named]
     if len(values) < 4 and not (is_joint and len(values) >= 3):
         raise task.error(node, scope, f"{name} takes a target, a speed, a zone and a tool")
     target, speed = values[0], _target(task, values[1], "speeddata")
@@ -85,15 +82,18 @@ def _move(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
             start = station.commanded(task.site(node, scope))
             pace = max(1e-4, start.distance(frame) / float(named["t"]))
             part = pace / float(station.model.tool_limits.speed)
+        look = trigger_watch(task, points, frame) if points else None
         if is_circle:
             middle = base * frame_of(_target(task, via, "robtarget"))
             start = station.commanded(task.site(node, scope))
             for motion in station.arc(start, middle, frame, pace):
-                yield from task.move(node, scope, motion)
-        elif name.startswith("movej"):
-            yield from task.move(node, scope, station.joint_move(station.inverse(frame), part))
+                yield from task.move(node, scope, motion, look)
+        elif name.startswith(("movej", "triggj")):
+            yield from task.move(node, scope, station.joint_move(station.inverse(frame), part), look)
         else:
-            yield from task.move(node, scope, station.line(frame, pace))
+            yield from task.move(node, scope, station.line(frame, pace), look)
+        if look is not None:
+            look(True)
     yield from _at_end(task, node, scope, name, values)
 
 
@@ -533,10 +533,11 @@ def _bits(change: Callable[[int, int], int]) -> Callable[..., Any]:
 
 _MOVES = (
     "movej movel movec moveabsj movejdo moveldo movecdo movejao movelao movecao movejgo movelgo movecgo "
-    "movejsync movelsync movecsync"
+    "movejsync movelsync movecsync triggj triggl triggc"
 )
 
 FUNCTIONS: dict[str, Callable[..., Any]] = {
+    **INTERRUPTS,
     **dict.fromkeys(_MOVES.split(), _move),
     "set": _set(1), "reset": _set(0), "setdo": _set_to, "setgo": _set_to, "setao": _set_to, "pulsedo": _pulse,
     "invertdo": _invert, "testdi": _test, "dinput": _number_in, "ginput": _number_in,
@@ -554,13 +555,8 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
     **dict.fromkeys(["clkreset", "clkstart", "clkstop", "clkread"], _clock), "dim": _dim,
     "abs": _plain(abs), "absnum": _plain(abs), "sqrt": _plain(math.sqrt), "pow": _plain(lambda a, b: a**b),
     "exp": _plain(math.exp), "round": _plain(_round), "trunc": _plain(_trunc),
-    "sin": _plain(lambda angle: math.sin(math.radians(angle))),
-    "cos": _plain(lambda angle: math.cos(math.radians(angle))),
-    "tan": _plain(lambda angle: math.tan(math.radians(angle))),
-    "asin": _plain(lambda value: math.degrees(math.asin(value))),
-    "acos": _plain(lambda value: math.degrees(math.acos(value))),
+    **{name: _plain(function) for name, function in OF_DEGREES.items()},
     "atan": _plain(lambda value: math.degrees(math.atan(value))),
-    "atan2": _plain(lambda y, x: math.degrees(math.atan2(y, x))),
     "max": _plain(max), "min": _plain(min), "distance": _plain(_distance),
     "vectmagn": _plain(lambda value: math.hypot(*value.values())),
     "numtostr": _plain(number_text), "dnumtostr": _plain(number_text), "valtostr": _plain(value_text),
@@ -573,8 +569,7 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
     "bitand": _bits(lambda a, b: a & b), "bitor": _bits(lambda a, b: a | b), "bitxor": _bits(lambda a,
     b: a ^ b),
     "bitlsh": _bits(lambda a, b: a << b), "bitrsh": _bits(lambda a, b: a >> b),
-    "bitcheckdnum": _plain(lambda value, bit: bool(int(value) >> int(bit) - 1 & 1)),
-    "bitcheck": _plain(lambda value, bit: bool(int(value) >> int(bit) - 1 & 1)),
+    **dict.fromkeys(["bitcheckdnum", "bitcheck"], _bits(lambda value, bit: bool(value & 1 << bit - 1))),
     "gettime": _plain(lambda **_: 0), "ctime": _plain(lambda: "00:00:00"),
     "cdate": _plain(lambda: "2000-01-01"),
     "runmode": _plain(lambda **_: 0), "opmode": _plain(lambda: 1),

@@ -44,6 +44,7 @@ class RapidParser(StatementParser):
         "*": 6, "/": 6, "div": 6, "mod": 6,
     }  # fmt: skip
     unary: ClassVar = {"not": 2, "-": 7, "+": 7}
+    keywords: ClassVar = RESERVED | {"true", "false"}
     terminators: ClassVar = name_set(
         """endproc endfunc endtrap endmodule endif endfor endwhile endtest elseif else case default
         backward error

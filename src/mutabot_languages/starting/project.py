@@ -13,7 +13,7 @@ from mutabot_languages.registry import language_for
 
 from . import texts
 from .signals import cell_map_text, signals_of
-from .trial import LONGEST, Trial, tried
+from .trial import LONGEST, ProgramTrial, tried
 
 
 def project(root: Path, files: Sequence[Path]) -> tuple[dict[str, str], list[str]] | None:
@@ -81,7 +81,7 @@ def _is_of(language: str, file: Path) -> bool:
     return language == "rapid" or (language == "krl" and file.suffix.lower() == ".src")
 
 
-def _test_text(files: Iterable[str], found: Trial) -> str:
+def _test_text(files: Iterable[str], found: ProgramTrial) -> str:
     first, *others = files
     more = "".join(f", ROOT / {json.dumps(one)}" for one in others)
     given = {"program": first, "more": more, "arm": found.arm, "first": json.dumps(first)}
@@ -98,7 +98,7 @@ def _test_text(files: Iterable[str], found: Trial) -> str:
     return texts.TEST.format(**given, constants=constants, how=how, checks=checks, name="ends_as_it_did")
 
 
-def _told(found: Trial, name: str) -> list[str]:
+def _told(found: ProgramTrial, name: str) -> list[str]:
     if found.problem:
         return [
             f"{name} does not run to its end on the cell: {found.problem}",

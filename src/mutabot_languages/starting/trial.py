@@ -30,7 +30,7 @@ print(json.dumps([run.seconds, [pose.x, pose.y, pose.z], [box.x, box.y, box.z], 
 
 
 @dataclass(frozen=True, slots=True)
-class Trial:
+class ProgramTrial:
     """What one run showed.
 
     Attributes:
@@ -54,12 +54,12 @@ class Trial:
         return self.seconds > LONGEST
 
 
-def tried(files: Sequence[Path], cell_map: str) -> Trial:
+def tried(files: Sequence[Path], cell_map: str) -> ProgramTrial:
     """Run a program on the first arm that it runs on; where it runs on none, what the first one showed."""
     with tempfile.TemporaryDirectory() as folder:
         signals = Path(folder, "cell_map.toml")
         signals.write_text(cell_map, encoding="utf-8")
-        first: Trial | None = None
+        first: ProgramTrial | None = None
         for arm in ARMS:
             found = _run(arm, [str(signals), LONGEST, *map(str, files)])
             if not found.problem:
@@ -71,13 +71,15 @@ def tried(files: Sequence[Path], cell_map: str) -> Trial:
     return first
 
 
-def _run(arm: str, arguments: list[Any]) -> Trial:
+def _run(arm: str, arguments: list[Any]) -> ProgramTrial:
     words = [sys.executable, "-c", _SCRIPT, json.dumps([arm, *arguments])]
     try:
         done = subprocess.run(words, capture_output=True, text=True, check=False, timeout=_PATIENCE)
     except subprocess.TimeoutExpired:
-        return Trial(arm, problem=f"the run took more than {_PATIENCE:g} s")
+        return ProgramTrial(arm, problem=f"the run took more than {_PATIENCE:g} s")
     if done.returncode:
-        return Trial(arm, problem=(done.stderr.strip().splitlines() or ["it ended without a word"])[-1])
+        return ProgramTrial(
+            arm, problem=(done.stderr.strip().splitlines() or ["it ended without a word"])[-1]
+        )
     seconds, tool, box, notes = json.loads(done.stdout.splitlines()[-1])
-    return Trial(arm, seconds, tuple(tool), tuple(box), tuple(notes))
+    return ProgramTrial(arm, seconds, tuple(tool), tuple(box), tuple(notes))

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Generator, Mapping
 from typing import Any, ClassVar
 
-from mutabot_languages.core.frames import IDENTITY, Frame
+from mutabot_languages.core.frames import Frame
 from mutabot_languages.core.machine import OF_NUMBERS, Dialect, Evaluation
 from mutabot_languages.core.names import name_set
 from mutabot_languages.core.scope import ControlFlow, RoutineScope, Steps, Structure
@@ -424,4 +424,3 @@ def _has_inverse(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> St
 FUNCTIONS["get_inverse_kin_has_solution"] = _has_inverse
 FUNCTIONS["set_flag"] = _writer("flag")
 FUNCTIONS["get_flag"] = _output("flag")
-NO_TOOL = IDENTITY

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
+from mutabot_languages.core.names import name_set
 from mutabot_languages.core.parser import StatementParser, Unexpected
 from mutabot_languages.core.text import SourceText
 from mutabot_languages.core.tokens import Lexis
@@ -13,21 +14,11 @@ _END = frozenset({"end"})
 _BRANCH = frozenset({"end", "elif", "else"})
 _CASE = frozenset({"end", "case", "default"})
 #: words that begin a line whatever brackets are still open
-_BEGINNINGS = frozenset(
-    (
-        "def", "thread", "sec", "if", "elif", "else", "while", "end", "return", "global", "local", "break",
-        "continue",
-    )
-)  # fmt: skip
+_BEGINNINGS = name_set("def thread sec if elif else while end return global local break continue")
 _OPENING = frozenset("([{")
 _CLOSING = frozenset(")]}")
 CONSTANTS = {"True": True, "False": False, "true": True, "false": False, "None": None}
-KEYWORDS = frozenset(
-    {
-        "def", "thread", "sec", "end", "if", "elif", "else", "while", "return", "break", "continue", "halt",
-        "global", "local", "run", "and", "or", "xor", "not", "pass",
-    }
-)  # fmt: skip
+KEYWORDS = _BEGINNINGS | name_set("halt run and or xor not pass")
 
 
 class URScriptParser(StatementParser):
@@ -51,6 +42,7 @@ class URScriptParser(StatementParser):
         "*": 5, "/": 5, "%": 5,
     }  # fmt: skip
     unary: ClassVar = {"not": 3, "-": 6, "+": 6}
+    keywords: ClassVar = KEYWORDS | CONSTANTS.keys()
     terminators: ClassVar = frozenset({"end", "elif", "else"})
 
     def __init__(self, source: SourceText) -> None:

@@ -174,3 +174,10 @@ def test_frames_join_turn_and_come_back() -> None:
     assert frame.turn((1, 0, 0)) == pytest.approx(
         (Frame(rotation=frame.rotation) * Frame((1, 0, 0))).position
     )
+
+
+def test_a_thread_without_an_end_ends_with_the_program(tmp_path: Path) -> None:
+    text = "def prog():\n  thread idle():\n    while True:\n      sleep(0.1)\n    end\n  end\n"
+    text += "  t = run idle()\n  sleep(0.3)\nend\n"
+    for seed in range(4):
+        assert run(tmp_path, "a.script", text, seed=seed)[1].seconds == pytest.approx(0.3, abs=0.02)

@@ -9,14 +9,13 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.cli.app import project_of
 from mutabot_init.beside import started
 from mutabot_init.layout import other_files
 from mutabot_languages import load
 from mutabot_languages.registry import language_for
 from mutabot_languages.starting import project as starting
 from mutabot_languages.starting.signals import signals_of
-from mutabot_languages.starting.trial import Trial
+from mutabot_languages.starting.trial import ProgramTrial
 from tests.packages.languages.programs import FILES, written
 
 UP = """MODULE Up
@@ -31,7 +30,9 @@ ENDMODULE
 """
 
 
-def begun(folder: Path, monkeypatch: pytest.MonkeyPatch, found: Trial) -> tuple[dict[str, str], list[str]]:
+def begun(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, found: ProgramTrial
+) -> tuple[dict[str, str], list[str]]:
     monkeypatch.setattr(starting, "tried", lambda files, cell_map: found)
     made = started(folder, other_files(folder, []))
     assert made is not None
@@ -47,7 +48,7 @@ def test_init_makes_a_project_whose_tests_pass_and_that_mutabot_lists(tmp_path: 
     tests = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider"]
     ended = subprocess.run(tests, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert ended.returncode == 0, ended.stdout
-    assert project_of(tmp_path).configuration.program == ("up.mod",)
+    assert tomllib.loads((tmp_path / "mutabot.toml").read_text())["program"] == ["up.mod"]
     changed = subprocess.run([*command, "diff", "reverse-offset"], capture_output=True, text=True, check=True)
     assert "Offs(pNow,0,0,-50)" in changed.stdout
 
@@ -57,7 +58,7 @@ def test_the_cell_map_names_the_signals_that_a_program_uses(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, language: str
 ) -> None:
     written(tmp_path, language)
-    files, lines = begun(tmp_path, monkeypatch, Trial("gen3", 1.0, (0, 0, 0), (0, 0, 0)))
+    files, lines = begun(tmp_path, monkeypatch, ProgramTrial("gen3", 1.0, (0, 0, 0), (0, 0, 0)))
     cell_map = tomllib.loads(files["cell_map.toml"])
     output, signal = {
         "urscript": ("standard_digital_out[0]", "standard_digital_in[3]"),
@@ -85,7 +86,7 @@ def test_modules_of_rapid_are_one_program_that_begins_in_the_one_with_main(
 ) -> None:
     (tmp_path / "a.mod").write_text("MODULE A\nPROC grip()\nSet doGrip;\nENDPROC\nENDMODULE\n")
     (tmp_path / "b.mod").write_text("MODULE B\nPROC main()\ngrip;\nENDPROC\nENDMODULE\n")
-    files, _ = begun(tmp_path, monkeypatch, Trial("ur5e", 61.0, (0, 0, 0), (0, 0, 0)))
+    files, _ = begun(tmp_path, monkeypatch, ProgramTrial("ur5e", 61.0, (0, 0, 0), (0, 0, 0)))
     test = files["tests/test_b.py"]
     assert 'load(ROOT / "b.mod", ROOT / "a.mod")' in test
     assert "robots.ur5e()" in test
@@ -96,7 +97,7 @@ def test_modules_of_rapid_are_one_program_that_begins_in_the_one_with_main(
 def test_why_a_program_does_not_run_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "a.script").write_text("socket_open('a', 1)\n")
     problem = "unsupported: socket_open at line 1 of a.script"
-    files, lines = begun(tmp_path, monkeypatch, Trial("gen3", problem=problem))
+    files, lines = begun(tmp_path, monkeypatch, ProgramTrial("gen3", problem=problem))
     assert any(problem in line for line in lines)
     assert "program.run(cell)" in files["tests/test_a.py"]
 
@@ -106,7 +107,7 @@ def test_tests_and_cell_maps_that_are_there_stay(tmp_path: Path, monkeypatch: py
     (tmp_path / "cell_map.toml").write_text("")
     (tmp_path / "tests").mkdir()
     (tmp_path / "tests" / "test_it.py").write_text("def test_it(): pass\n")
-    files, _ = begun(tmp_path, monkeypatch, Trial("gen3"))
+    files, _ = begun(tmp_path, monkeypatch, ProgramTrial("gen3"))
     assert [*files] == ["mutabot.toml"]
 
 

@@ -21,6 +21,7 @@ from mutabot.evidence.paths import Row, TrackPath
 from mutabot.evidence.recording import RecordedCall, Recording, Track, TrackKind
 from mutabot.frozen import frozen
 from mutabot.journal.files import REPORT_MARK, clear
+from mutabot.languages.registry import highlighting_of
 from mutabot.model import By
 from mutabot.model.quantity import value_text
 from mutabot.report.document import data_of, finite
@@ -86,6 +87,11 @@ def campaign_data(campaign: Results, name: str) -> dict[str, Any]:
         "thresholds": thresholds.summary,
         "furtherLadders": len(thresholds.ladders[_LADDERS:]),
     }
+
+
+def sources_data(campaign: Results) -> list[Any]:
+    """The mutated files: name, text, and what is marked in it."""
+    return [[file, text, highlighting_of(file)] for file, text in campaign.sources.items()]
 
 
 def _row(result: MutantResult, tests: Mapping[str, int]) -> dict[str, Any]:
@@ -184,9 +190,8 @@ def write_folder(folder: Path, contents: Contents, limit: int = LIMIT) -> Writte
 def _write_data(folder: Path, contents: Contents, limit: int) -> int:
     """Write all data; return how many recordings had no room."""
     campaign = contents.campaign
-    sources = [[file, text] for file, text in campaign.sources.items()]
     used = (folder / "campaign.js").write_bytes(script("campaign", campaign_data(campaign, contents.name)))
-    used += (folder / "sources.js").write_bytes(script("sources", sources))
+    used += (folder / "sources.js").write_bytes(script("sources", sources_data(campaign)))
     films = _copy_films(folder / "films", contents)
     for result in campaign.mutants:
         number = result.mutant.number

@@ -13,7 +13,7 @@ from mutabot.results.results import MutantResult, Results
 from mutabot.results.stored import StoredEvidence
 from mutabot.results.suggested import kept_suggestions
 
-from .folder import Recorded, campaign_data, mutant_page, script
+from .folder import Recorded, campaign_data, mutant_page, script, sources_data
 
 #: bytes of recordings that a mutant's page may take
 _ROOM = 4_000_000
@@ -74,8 +74,7 @@ class ReportPages:
         if self._campaign is None:
             return b""
         if "sources" not in self._whole:
-            texts = [[file, text] for file, text in self._campaign.sources.items()]
-            self._whole["sources"] = script("sources", texts)
+            self._whole["sources"] = script("sources", sources_data(self._campaign))
         return self._whole["sources"]
 
     def mutant(self, number: int) -> bytes | None:

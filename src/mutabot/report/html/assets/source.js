@@ -19,11 +19,11 @@
     opened = location.hash;
     mutabot.load("sources", "data/sources.js").then((sources) => {
       if (gone) return;
-      const text = new Map(sources).get(file);
+      const [, text, marked] = sources.find(([name]) => name === file) || [];
       holder.replaceChildren(text === undefined
         ? empty("The text of this file was not written down.", "The journal is of an older version of mutabot, or the file could not be read. The mutants are in ",
           h("a", { href: address(["mutants"], { file }) }, "the list"), ".")
-        : code(file, text, campaign.mutants.filter((one) => one.spans.some((span) => span.file === file))));
+        : code(file, text, marked, campaign.mutants.filter((one) => one.spans.some((span) => span.file === file))));
       const wanted = asked.line && document.getElementById(`L${asked.line}`);
       if (wanted) { wanted.classList.add("wanted"); if (isNew) wanted.scrollIntoView({ block: "center" }); }
       stops.push(survivors(holder, wanted, isNew));
@@ -65,30 +65,29 @@
     return () => removeEventListener("keydown", keys);
   }
 
-  function code(file, text, mutants) {
+  function code(file, text, marked, mutants) {
     const byLine = new Map();
     for (const one of mutants) {
       const lines = new Set(one.spans.filter((span) => span.file === file).map((span) => span.line));
       for (const line of lines) byLine.set(line, [...(byLine.get(line) || []), one]);
     }
     const box = h("div", { class: "code", role: "list", "aria-label": `${file}, line by line` });
-    coloured(file, text.replace(/\n$/, "")).forEach((line, index) => box.append(row(file, line, index + 1, byLine.get(index + 1) || [])));
+    coloured(text.replace(/\n$/, ""), marked).forEach((line, index) => box.append(row(file, line, index + 1, byLine.get(index + 1) || [])));
     const toggle = h("label", { class: "toggle" }, h("input", { type: "checkbox", checked: true, onchange: (event) => { box.classList.toggle("bare", !event.target.checked); } }), "Survivors under their lines");
     return h("div", null, h("div", { class: "told walk" }, toggle), box, marks.legend(new Set(mutants.map(LETTER))),
       mutants.some((one) => one.survives && one.indistinguishable) ? h("p", { class: "hint" }, "Outlined: survived, and nothing that was compared differs from the original.") : "");
   }
 
-  const TOKENS = /([rRbBfFuU]{0,2}(?:"""[^]*?"""|'''[^]*?'''|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'))|(#[^\n]*)|\b(and|as|assert|async|await|break|case|class|continue|def|del|elif|else|except|finally|for|from|global|if|import|in|is|lambda|match|nonlocal|not|or|pass|raise|return|try|while|with|yield|None|True|False)\b/g;
   const KINDS = ["string", "comment", "keyword"];
-  /** The lines of a text as lists of parts; in Python, words of the language, strings and comments are marked. */
-  function coloured(file, text) {
+  /** The lines of a text as lists of parts; words of the language, strings and comments are marked. */
+  function coloured(text, [pattern, flags]) {
     const lines = [[]];
     const put = (part, kind) => part.split("\n").forEach((piece, index) => {
       if (index) lines.push([]);
       if (piece) lines[lines.length - 1].push(kind ? h("span", { class: kind }, piece) : piece);
     });
     let at = 0;
-    for (const found of file.endsWith(".py") ? text.matchAll(TOKENS) : []) {
+    for (const found of pattern ? text.matchAll(new RegExp(pattern, flags)) : []) {
       put(text.slice(at, found.index), "");
       put(found[0], KINDS[found.slice(1).findIndex((part) => part !== undefined)]);
       at = found.index + found[0].length;
