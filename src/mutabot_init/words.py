@@ -116,7 +116,7 @@ NOUNS = _by_word(
         "action": "action actions act ctrl",
         "none": "boot stamp timestamp mask rate axis code status err errno id index idx port channel "
         "timeout name mode number num count steps samples iterations n blocking radius gain gains limit "
-        "limits size rgb lookahead key flag flags tolerance tolerances threshold epsilon unit units",
+        "limits size rgb lookahead key flag flags tolerance tolerances threshold epsilon unit units inertia",
     }
 )
 #: what a setter may be about, whatever its argument is called

@@ -160,7 +160,7 @@ def reason_of(result: MutantResult) -> str:
     lines = [rounds_text(result), *filter(None, [acceptance_text(result)])]
     status = result.status
     if result.lets_through:
-        lines.append(result.why)
+        lines.append(told_text(result))
     told: set[str] = set()
     for outcome in result.outcomes:
         text = outcome.message or ""
@@ -173,7 +173,7 @@ def reason_of(result: MutantResult) -> str:
 def survivor_text(result: MutantResult) -> str:
     """Describe a survivor: what it does, in which rounds it survived, and its effect on the world."""
     what = f"{result.mutant.description}{also_text(result.mutant.site)}"
-    return f"{what}: {rounds_text(result)}. {why_alone(result)}"
+    return f"{what}: {rounds_text(result)}. {told_text(result)}"
 
 
 def also_text(site: Site) -> str:
@@ -187,18 +187,19 @@ def places_text(site: Site, place: Callable[[Span], str]) -> str:
     return ",\n".join(map(place, site.spans))
 
 
-def why_alone(result: MutantResult) -> str:
-    """Return the line about a mutant without its description."""
-    return result.why.removeprefix(f"{result.mutant.description}; ")
-
-
-def effect_text(result: MutantResult) -> str:
-    """Return the line about a mutant with the test in which it happened, and how many rounds killed it."""
-    why, rate = why_alone(result), result.kill_rate
+def told_text(result: MutantResult) -> str:
+    """Return the line about a mutant with the test and the round in which it happened."""
+    why = result.why.removeprefix(f"{result.mutant.description}; ")
     number, diverged = telling(result) or (0, None)
     if diverged is not None and diverged.story and diverged.story in why:
         place = place_text(result, number, diverged)
         why += f" (in {place})" if place else ""
+    return why
+
+
+def effect_text(result: MutantResult) -> str:
+    """Return the line about a mutant with the test in which it happened, and how many rounds killed it."""
+    why, rate = told_text(result), result.kill_rate
     if result.lets_through and rate.killed:
         where = "" if result.survived else f" in {rate.valid - rate.killed} of {rate.valid} rounds"
         why += f"{where}; killed in {rate.killed} of {rate.valid} rounds"

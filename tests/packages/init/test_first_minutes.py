@@ -332,6 +332,21 @@ def mutabot(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
 
 
+def test_an_inertia_is_no_mass(tmp_path: Path) -> None:
+    files = {
+        "robot.py": "class Arm:\n    def set_payload(self, weight, inertia): self.it = weight, inertia\n",
+        "program.py": "def run(arm): arm.set_payload(0.5, 0.01)\n",
+        "test_program.py": "import program, robot\ndef test_it(): program.run(robot.Arm())\n",
+    }
+    write(tmp_path, files)
+    propose(tmp_path)
+    lines = (tmp_path / "robot.toml").read_text().splitlines()
+    weight, inertia = (
+        [line for line in lines if f"arguments.{name}" in line] for name in ("weight", "inertia")
+    )
+    assert [["mass" in line for line in found] for found in (weight, inertia)] == [[True], [False]]
+
+
 def test_a_program_that_only_computes_is_said_to_call_no_robot(tmp_path: Path) -> None:
     files = {
         "sums.py": "def doubled(numbers): return [2 * one for one in numbers]\n",

@@ -13,6 +13,7 @@ import pytest
 
 import schemas
 from mutabot.errors import UsageError
+from mutabot.model import Diverged
 from mutabot.report.format import Material, format_of, names
 from mutabot.report.texts import portable
 from report.material import HOSTILE, ROOT, made, stored, with_text
@@ -124,3 +125,14 @@ def test_files_are_named_from_the_root_of_the_repository_on(tmp_path: Path, name
 def test_a_campaign_that_was_interrupted_says_so(tmp_path: Path, name: str) -> None:
     campaign = stored(tmp_path, outcomes=samples.OUTCOMES[:3], finish="interrupted")
     assert re.search("interrupted|not complete", made(name, campaign))
+
+
+@pytest.mark.parametrize("name", ["github", "junit", "lines", "markdown", "mutation-testing", "sarif"])
+def test_a_story_stands_beside_the_test_and_the_round_in_which_it_happened(tmp_path: Path, name: str) -> None:
+    there = Diverged("tests/test_a.py::test_far", 5.0, "", "box ended 0.3 m off")
+    outcomes = tuple(
+        replace(one, diverged=(there,)) if (one.mutant, one.round) == (samples.SKIP.id, 1) else one
+        for one in samples.OUTCOMES
+    )
+    text = made(name, stored(tmp_path, outcomes=outcomes)).replace("\\_", "_")
+    assert set(re.findall(r"box ended 0\.3 m off(.{0,23})", text)) == {" (in test_far, round 2)"}

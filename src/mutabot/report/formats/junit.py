@@ -18,7 +18,7 @@ from mutabot.report.texts import (
     rounds_text,
     short_reason,
     state_of,
-    why_alone,
+    told_text,
 )
 
 if TYPE_CHECKING:
@@ -104,7 +104,7 @@ def _case(suite: Xml.Element, result: MutantResult, material: Material) -> None:
         return
     reason = f": {short_reason(result)}" if state != NOT_RUN else ""
     ended = acceptance_text(result) or f"{rounds_text(result)}{reason}"
-    why = why_alone(result) if element == "failure" else ended
+    why = told_text(result) if element == "failure" else ended
     told = Xml.SubElement(case, element, {"message": one_line(f"{mutant.description}: {why}")})
     if element != "skipped":
         told.set("type", state.replace(" ", "-"))
