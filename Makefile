@@ -105,6 +105,7 @@ bench: $(READY)
 	$(RUN) benchmarks/example_seeds.py palletising 5
 	$(RUN) benchmarks/example_seeds.py dispensing 100
 	$(RUN) benchmarks/example_seeds.py handover 30
+	$(RUN) benchmarks/example_seeds.py assembly 30
 	$(RUN) benchmarks/stories_judged.py
 	$(RUN) benchmarks/stories_judged.py --bare --sample 60
 	$(RUN) benchmarks/html_report.py

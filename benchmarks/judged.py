@@ -38,6 +38,7 @@ EXAMPLES = {
     "palletising": {"robot": 40},
     "dispensing": {"robot": 40},
     "handover": {"robot": 40},
+    "assembly": {"robot": 40},
     "ros1": {"robot": 25, "middleware": 35, "conventional": 10},
     "ros2": {"robot": 25, "middleware": 35, "conventional": 10},
     "ros2_docking": {"robot": 23, "conventional": 10},

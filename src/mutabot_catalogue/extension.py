@@ -45,6 +45,7 @@ _OPERATORS = """
     amounts   wrong-payload       WrongPayload
     amounts   partial-opening     PartialOpening
     amounts   silent-limit        SilentLimit
+    flags     stuck-flag          StuckFlag
     messages  drop                Drop
     messages  duplicate           Duplicate
     messages  stale               Stale

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from mutabot.config.configuration import load_configuration
+from mutabot.config.vocabulary.load import load_vocabulary
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "handover"
 pytestmark = pytest.mark.skipif(
@@ -61,6 +62,24 @@ EDITS = {
         'if not await robot.wait(lambda: signals.is_on("gripped"), TAKEN_WITHIN):',
         "if False:",
         ("weak", "medium", "strong"),
+    ),
+    "the zone is not given back": (
+        "taking.py",
+        '    station.zone.release("right")\n',
+        "",
+        ("weak", "medium", "strong"),
+    ),
+    "the light curtain is bridged": (
+        "moving.py",
+        "if not guards.is_clear():",
+        "if False:",
+        ("strong",),
+    ),
+    "nothing is slower beside a person": (
+        "moving.py",
+        "return SLOW if guards.distance() < SLOW_BELOW else FULL",
+        "return FULL",
+        ("strong",),
     ),
 }
 
@@ -112,4 +131,8 @@ def test_a_bar_that_both_robots_hold_does_not_jitter() -> None:
 
 
 def test_its_equipment_has_a_vocabulary_beside_the_cells() -> None:
-    assert load_configuration(EXAMPLE).vocabulary == ("cell", "station.toml")
+    configuration = load_configuration(EXAMPLE)
+    found = load_vocabulary(configuration.vocabulary, configuration.root)
+    assert {"station:Zone.request", "mutabot_cell.arm:Arm.start_move_to"} <= {
+        one.target for one in found.operations
+    }
