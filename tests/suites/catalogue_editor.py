@@ -213,6 +213,9 @@ class CatalogueEditor(CallEditor):
     def _stuck_reading(self) -> Edit:
         return self._result(self._partial(f"{CATALOGUE}.stuck, {self.mutant['id']!r}"))
 
+    def _stuck_flag(self) -> Edit:
+        return self._result(f"(lambda value: {self.variant == 'true'})")
+
     def _spike(self) -> Edit:
         limits = self._quantity().get("range")
         change = self._partial(f"{CATALOGUE}.spiked, {tuple(limits) if limits else None!r}")

@@ -336,6 +336,9 @@ FAULTS = {
         "arm.where()", "Arm.where", "result", "1",
         f"{P}.changed('', {P}.partial({CATALOGUE}.old, 'mission.py:x#1:call:y', 1), arm.where())",
     ),
+    "stuck-flag": (
+        "arm.where()", "Arm.where", "result", "true", f"{P}.changed('', (lambda value: True), arm.where())"
+    ),
     "double-command": (
         "arm.open()", "Arm.open", None, "30%", f"{CATALOGUE}.by_chance(0.3, arm.open, {P}.twice(arm.open))()"
     ),
