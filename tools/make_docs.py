@@ -27,6 +27,7 @@ An *operator* makes one kind of small fault, on the operations and quantities th
 [vocabulary](vocabulary.md) describes. A call is left alone if the fault would change nothing or would leave
 the allowed range or values. `mutabot operators` prints where each operator acts, and which bugs it stands
 for. *Idle* ones [answer the program](vocabulary.md#answers-to-doing-nothing) in the place of the robot.
+`mutabot run --operators common` keeps those that are [common](real-bugs.md#which-operators-are-common).
 Faults of messages on their way: [middleware](middleware.md).
 
 ## Published operators

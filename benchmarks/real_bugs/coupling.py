@@ -4,74 +4,53 @@ Each program of ``programs`` is right, has suites of three strengths, and patche
 as it was found in public robot programs. All tests run with every bug and every mutant. Asked is
 
 * which bugs and which share of the mutants of each family each suite notices;
-* whether a random half of a program's tests that kills more mutants catches more bugs: the rank correlation
-  (Spearman) over many halves of the same size, so that more tests are no reason;
-* for how many bugs there is a mutant that is killed by exactly the tests that catch the bug.
+* whether, of many random parts of a program's tests, all of one size, those that kill more mutants catch more
+  bugs: the rank correlation (Spearman), beside that of the lines covered;
+* for how many bugs there is a mutant that is killed by exactly the tests that catch the bug;
+* how many dominators there are: classes of mutants that no other one subsumes (``comparison.subsumption``).
 
-Use: ``python benchmarks/real_bugs/coupling.py [--json FILE]``. Takes a few minutes.
+Intervals are those of 2000 draws of programs with replacement (bootstrap, 95 %).
+
+Use: ``python benchmarks/real_bugs/coupling.py [NAMES] [--json FILE | --read FILE]``.
 """
 
 from __future__ import annotations
 
 import argparse
-import json
+import multiprocessing
 import random
-import shutil
 import sys
-import tempfile
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from statistics import fmean
+from typing import TypeVar
 
-from mutabot.campaign.request import Progress
-from mutabot.campaign.run import run_campaign
-from mutabot.cli.request import request_of
-from mutabot.journal.reader import JournalReader
-from mutabot.model import Verdict
-from mutabot.results.results import read_results
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-ROOT = Path(__file__).resolve().parent
+from comparison.subsumption import dominators
+from real_bugs.gathering import BUGS, FAMILIES, PROGRAMS, STRENGTHS, Found, gather, read, write
 
-
-PROGRAMS = ROOT / "programs"
-BUGS = "patch"
-FAMILIES = ("robot", "bugs", "conventional")
-STRENGTHS = ("weak", "medium", "strong")
-HALVES, SEED = 1000, 1
-#: the tests that notice a mutant or a bug
-Kills = frozenset[str]
-
-
-class SilentProgress(Progress):
-    """A progress that shows nothing."""
-
-
-@dataclass(frozen=True)
-class KillMatrix:
-    """Who notices what in a program.
-
-    Attributes:
-        tests: all tests.
-        kills: by family, the tests that notice each mutant that counts, by its number and description.
-    """
-
-    tests: tuple[str, ...]
-    kills: Mapping[str, Mapping[str, Kills]]
-
-    @classmethod
-    def of(cls, data: Mapping[str, Mapping[str, Sequence[str]]]) -> KillMatrix:
-        """Return what plain data says."""
-        kills = {
-            family: {what: frozenset(by) for what, by in mutants.items()} for family, mutants in data.items()
-        }
-        tests = {test for mutants in kills.values() for by in mutants.values() for test in by}
-        return cls(tuple(sorted(tests)), kills)
-
-    def score(self, family: str, tests: Kills) -> float:
-        """Return the share of the mutants of a family that these tests notice."""
-        found = self.kills[family].values()
-        return fmean(bool(one & tests) for one in found) if found else 0.0
+#: what a score may be made of
+GROUPS: Mapping[str, tuple[str, ...]] = {
+    "robot": ("robot",),
+    "bugs": ("bugs",),
+    "conventional": ("conventional",),
+    "robot, bugs": ("robot", "bugs"),
+    "robot, bugs, conventional": ("robot", "bugs", "conventional"),
+}
+LINES = "lines covered"
+#: scores that are compared
+COMPARED = (
+    ("robot", "conventional"), ("bugs", "conventional"), ("robot, bugs, conventional", "conventional"),
+    ("robot, bugs", LINES), ("conventional", LINES),
+)  # fmt: skip
+PARTS, DRAWS, SEED = 400, 2000, 1
+#: mutants and programs that an operator must have to be looked at by itself
+MUTANTS, OF_PROGRAMS = 20, 4
+T = TypeVar("T")
+#: what makes a table of programs, line by line
+Table = Callable[[Sequence[Found]], Iterable[str]]
 
 
 def main() -> int:
@@ -82,85 +61,156 @@ def main() -> int:
     parser.add_argument("names", nargs="*", help="programs; all without")
     parser.add_argument("--json", type=Path, help="where to write who notices what")
     parser.add_argument("--read", type=Path, help="what was written so, instead of running anything")
+    parser.add_argument("--sample", type=int, help="so many mutants of calls and of text of each")
+    parser.add_argument("--jobs", type=int, default=2, help="programs at a time")
     given = parser.parse_args()
     if given.read is not None:
-        data = json.loads(given.read.read_text(encoding="utf-8"))
+        programs = read(given.read)
     else:
-        programs = sorted(one for one in PROGRAMS.iterdir() if (one / "mutabot.toml").exists())
-        data = {one.name: run(one) for one in programs if not given.names or one.name in given.names}
+        names = given.names or sorted(one.name for one in PROGRAMS.iterdir() if (one / "program.py").exists())
+        with multiprocessing.get_context("fork").Pool(given.jobs, maxtasksperchild=1) as pool:
+            programs = pool.starmap(gather, [(one, given.sample) for one in names], chunksize=1)
     if given.json is not None:
-        given.json.write_text(json.dumps(data, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-    found = {name: KillMatrix.of(one) for name, one in data.items()}
-    print(_of_suites([*found.values()]))
-    print(_of_halves([*found.values()]))
-    print(_of_coupling([*found.values()]))
+        write(given.json, programs)
+    for part in (of_suites, of_parts, of_coupling, of_operators, of_minimal):
+        print("\n".join([*part(programs), ""]))
     return 0
 
 
-def run(program: Path) -> dict[str, dict[str, list[str]]]:
-    """Run all tests of a program with each of its bugs and mutants; return by family who notices which."""
-    with tempfile.TemporaryDirectory() as name:
-        copy = Path(name).resolve() / program.name
-        ignored = shutil.ignore_patterns(".mutabot", "__pycache__", ".pytest_cache")
-        shutil.copytree(program, copy, ignore=ignored)
-        request = replace(request_of(copy, family=[BUGS, *FAMILIES]), every_test=True)
-        with JournalReader.open(run_campaign(request, SilentProgress())) as journal:
-            results = read_results(journal)
-    found: dict[str, dict[str, list[str]]] = {family: {} for family in (BUGS, *FAMILIES)}
-    for one in results.mutants:
-        (outcome,) = one.outcomes
-        if outcome.verdict in (Verdict.KILLED, Verdict.TIMEOUT, Verdict.SURVIVED, Verdict.NOT_COVERED):
-            named = f"{one.mutant.number} {one.mutant.operator}: {one.mutant.description}"
-            found[one.mutant.family][named] = sorted({kill.test for kill in outcome.kills})
-    return found
-
-
-def _of_suites(found: Sequence[KillMatrix]) -> str:
-    lines = [f"| suite | bugs | {' | '.join(FAMILIES)} |", "|---" * (2 + len(FAMILIES)) + "|"]
+def of_suites(programs: Sequence[Found]) -> Iterable[str]:
+    """Which bugs and mutants each suite notices."""
+    yield f"| suite | bugs | {' | '.join(FAMILIES)} |"
+    yield "|---" * (2 + len(FAMILIES)) + "|"
     for number, name in enumerate(STRENGTHS):
-        words = tuple(f"test_{one}.py" for one in STRENGTHS[: number + 1])
+        suites = tuple(f"test_{one}.py" for one in STRENGTHS[: number + 1])
         shares = []
         for family in (BUGS, *FAMILIES):
             caught = [
-                any(word in test for test in kills for word in words)
-                for one in found
-                for kills in one.kills[family].values()
+                any(suite in test for test in kills for suite in suites)
+                for one in programs
+                for kills in one.kills((family,))
             ]
-            shares.append(f"{sum(caught)} of {len(caught)} = {100 * fmean(caught):.0f} %")
-        lines.append(f"| {name} | {' | '.join(shares)} |")
-    return "\n".join([*lines, ""])
+            shares.append(f"{sum(caught)} of {len(caught)} = {100 * fmean(caught or [0]):.0f} %")
+        yield f"| {name} | {' | '.join(shares)} |"
 
 
-def _of_halves(found: Sequence[KillMatrix]) -> str:
+@dataclass(frozen=True)
+class Parts:
+    """Random parts of a program's tests, all of one size, and the bugs that each catches."""
+
+    found: Found
+    tests: tuple[frozenset[str], ...]
+    bugs: tuple[float, ...]
+
+    @classmethod
+    def of(cls, found: Found, share: float) -> Parts:
+        """Draw them; ``share``: of the tests."""
+        draw = random.Random(SEED)
+        size = max(2, round(share * len(found.tests)))
+        tests = tuple(frozenset(draw.sample(found.tests, size)) for _ in range(PARTS))
+        return cls(found, tests, tuple(noticed(found.kills((BUGS,)), one) for one in tests))
+
+    def correlation(self, score: Callable[[frozenset[str]], float]) -> float:
+        """Return the rank correlation of a score of the parts with the bugs that they catch."""
+        return spearman([score(one) for one in self.tests], self.bugs)
+
+
+def of_parts(programs: Sequence[Found]) -> Iterable[str]:
+    """Whether parts that kill more mutants, or cover more lines, catch more bugs."""
+    quarter, half = ([Parts.of(one, share) for one in programs] for share in (0.25, 0.5))
+    by = {name: (_correlations(quarter, own), _correlations(half, own)) for name, own in GROUPS.items()}
+    by[LINES] = (
+        [one.correlation(one.found.coverage) for one in quarter],
+        [one.correlation(one.found.coverage) for one in half],
+    )
+    yield "| score | a quarter of the tests | a half | programs with a positive correlation (half) |"
+    yield "|---|---|---|---|"
+    for name, (of_quarter, of_half) in by.items():
+        positive = sum(one > 0 for one in of_half)
+        yield f"| {name} | {_interval(of_quarter)} | {_interval(of_half)} | {positive} of {len(of_half)} |"
+    yield from ("", "| difference | a quarter of the tests | a half |", "|---|---|---|")
+    for one, other in COMPARED:
+        pairs = zip(by[one], by[other], strict=True)
+        gaps = [[a - b for a, b in zip(*pair, strict=True)] for pair in pairs]
+        yield f"| {one} – {other} | {' | '.join(map(_interval, gaps))} |"
+
+
+def _correlations(parts: Iterable[Parts], families: tuple[str, ...]) -> list[float]:
+    return [_correlation(one, one.found.kills(families)) for one in parts]
+
+
+def _correlation(part: Parts, kills: Sequence[frozenset[str]]) -> float:
+    return part.correlation(lambda tests: noticed(kills, tests))
+
+
+def of_coupling(programs: Sequence[Found]) -> Iterable[str]:
+    """For how many bugs there is a mutant that is killed by exactly the tests that catch it."""
+    yield "| family | bugs that are caught and have a mutant killed by exactly the same tests |"
+    yield "|---|---|"
+    for name, families in GROUPS.items():
+        by_program = [
+            [tests in one.kills(families) for tests in one.kills((BUGS,)) if tests] for one in programs
+        ]
+        rows = [one for one in by_program if one]
+        low, high = interval(rows, _share)
+        count, size = sum(map(sum, rows)), sum(map(len, rows))
+        share = f"{count} of {size} = {100 * count / size:.0f} %"
+        yield f"| {name} | {share} ({100 * low:.0f}–{100 * high:.0f}) |"
+
+
+def _share(rows: Sequence[Sequence[bool]]) -> float:
+    return sum(map(sum, rows)) / sum(map(len, rows))
+
+
+def of_operators(programs: Sequence[Found]) -> Iterable[str]:
+    """Which operators' kills go with bugs caught."""
+    yield "| operator | mutants | rank correlation (half) | killed by exactly the tests that catch a bug |"
+    yield "|---|---|---|---|"
+    half = [Parts.of(one, 0.5) for one in programs]
+    rows = []
+    names = {one.operator for found in programs for one in found.mutants if one.operator}
+    for name in sorted(names):
+        having = [part for part in half if part.found.kills_of(name)]
+        kills = [(part, tests) for part in having for tests in part.found.kills_of(name)]
+        if len(kills) < MUTANTS or len(having) < OF_PROGRAMS:
+            continue
+        correlations = [_correlation(part, part.found.kills_of(name)) for part in having]
+        coupled = [tests in part.found.kills((BUGS,)) for part, tests in kills if tests]
+        row = f"| {name} | {len(kills)} | {_interval(correlations)} | {100 * fmean(coupled or [0]):.0f} % |"
+        rows.append((fmean(correlations), row))
+    yield from (row for _, row in sorted(rows, reverse=True))
+
+
+def of_minimal(programs: Sequence[Found]) -> Iterable[str]:
+    """How many mutants are left of each group once subsumed ones are gone."""
+    yield "| family | mutants | killed | dominators |"
+    yield "|---|---|---|---|"
+    for name, families in GROUPS.items():
+        kills = [one.kills(families) for one in programs]
+        killed = sum(bool(tests) for row in kills for tests in row)
+        left = sum(len(dominators(_with_rounds(row))) for row in kills)
+        yield f"| {name} | {sum(map(len, kills))} | {killed} | {left} |"
+
+
+def _with_rounds(kills: Sequence[frozenset[str]]) -> dict[int, frozenset[tuple[str, int]]]:
+    return {number: frozenset((test, 0) for test in tests) for number, tests in enumerate(kills)}
+
+
+def noticed(kills: Sequence[frozenset[str]], tests: frozenset[str]) -> float:
+    """Return the share of bugs or mutants that these tests notice; 0 if there are none."""
+    return sum(not one.isdisjoint(tests) for one in kills) / len(kills) if kills else 0.0
+
+
+def interval(rows: Sequence[T], mean: Callable[[Sequence[T]], float]) -> tuple[float, float]:
+    """Return the 95 % interval of a mean over programs, which are drawn with replacement."""
     draw = random.Random(SEED)
-    halves = [
-        [frozenset(draw.sample(one.tests, len(one.tests) // 2)) for _ in range(HALVES)] for one in found
-    ]
-    lines = ["| family | rank correlation with bugs caught, by program | mean |", "|---|---|---|"]
-    for family in FAMILIES:
-        ranks = [
-            spearman([one.score(family, half) for half in own], [one.score(BUGS, half) for half in own])
-            for one, own in zip(found, halves, strict=True)
-        ]
-        shown = ", ".join(f"{one:.2f}" for one in ranks)
-        lines.append(f"| {family} | {shown} | {fmean(ranks):.2f} |")
-    return "\n".join([*lines, ""])
+    found = sorted(mean(draw.choices(rows, k=len(rows))) for _ in range(DRAWS))
+    return found[int(0.025 * DRAWS)], found[int(0.975 * DRAWS) - 1]
 
 
-def _of_coupling(found: Sequence[KillMatrix]) -> str:
-    lines = [
-        "| family | bugs that are caught and have a mutant killed by exactly the same tests |",
-        "|---|---|",
-    ]
-    for families in (*((one,) for one in FAMILIES), FAMILIES):
-        coupled = [
-            any(tests in one.kills[family].values() for family in families)
-            for one in found
-            for tests in one.kills[BUGS].values()
-            if tests
-        ]
-        lines.append(f"| {', '.join(families)} | {sum(coupled)} of {len(coupled)} |")
-    return "\n".join(lines)
+def _interval(values: Sequence[float]) -> str:
+    low, high = interval(values, fmean)
+    return f"{fmean(values):.2f} ({low:.2f} to {high:.2f})"
 
 
 def spearman(one: Sequence[float], other: Sequence[float]) -> float:

@@ -183,6 +183,17 @@ def test_a_sample_reaches_the_campaign(fake: Campaign) -> None:
     assert fake.request.sample is None
 
 
+def test_a_selection_of_operators_reaches_the_campaign(
+    fake: Campaign, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["run"]) == 0
+    assert fake.request.operators == "all"
+    assert main(["run", "--operators", "common"]) == 0
+    assert fake.request.operators == "common"
+    assert main(["run", "--operators", "comon"]) == 2
+    assert "did you mean 'common'?" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("command", ["run", "list"])
 @pytest.mark.parametrize("size", ["0%", "150%", "-3", "abc", "0", ""])
 def test_an_absurd_sample_is_2_before_anything_runs(
@@ -278,10 +289,10 @@ def test_an_option_that_there_is_not_is_no_part_of_a_request(project: Path) -> N
 
 
 @pytest.mark.needs("dask")
-def test_run_has_twenty_one_options() -> None:
+def test_run_has_twenty_two_options() -> None:
     group: Any = typer.main.get_command(app)
     context = group.context_class(group, info_name="mutabot")
-    assert len(group.resolve_command(context, ["run"])[1].params) == 21
+    assert len(group.resolve_command(context, ["run"])[1].params) == 22
 
 
 def test_a_project_elsewhere_can_be_named(

@@ -16,13 +16,14 @@ from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.duration import Duration, duration_of
 from mutabot.campaign.engines.engine import try_controls
 from mutabot.campaign.faults.providers import family_of, rules_of, texts_of
-from mutabot.campaign.plan import Plan, draw, make_plan
+from mutabot.campaign.plan import Plan, draw, make_plan, of_common
 from mutabot.campaign.request import CheckReport, ExecutorChoice, Preview, Progress, Request
 from mutabot.campaign.reuse.original import OriginalRuns
 from mutabot.campaign.reuse.snapshot import OpenedFiles
 from mutabot.campaign.sharding.shards import part_of
 from mutabot.campaign.suppressions import divided, suppressions_of
 from mutabot.campaign.typos import refuse_typos
+from mutabot.config.options import COMMON
 from mutabot.errors import JournalError, NothingToDoError, in_short
 from mutabot.execution.interruption import interruptions_kept
 from mutabot.execution.processes import provide
@@ -139,6 +140,7 @@ def selected(campaign: Campaign, plan: Plan) -> Plan:
     if not any(Place.of(one) in reached for one in plan.mutants):
         raise NothingToDoError(_why_no_mutants(request, plan, campaign.baseline))
     mutants = select(plan.mutants, request.only, request.skip, left_out=plan.left_out)
+    mutants = of_common(mutants) if request.operators == COMMON else mutants
     if not mutants:
         raise NothingToDoError("the selection leaves no mutant to run")
     if request.sample is None:

@@ -90,6 +90,14 @@ def summaries(mutants: Iterable[Mutant]) -> dict[str, str]:
     return {name: known[by, name] for _, name, by in used if (by, name) in known}
 
 
+def of_common(mutants: Iterable[Mutant]) -> list[Mutant]:
+    """The mutants among them of operators that ``--operators common`` keeps."""
+    mutants = list(mutants)
+    providers = {one.provider: provider(one.provider) for one in mutants}
+    common = {(name, rule.name) for name, one in providers.items() for rule in one.rules() if rule.is_common}
+    return [one for one in mutants if (one.provider, one.operator) in common]
+
+
 def drawing(mutants: Iterable[Mutant]) -> list[str]:
     """Return the names of the operators of these mutants that draw a number for each round."""
     used = {(mutant.provider, mutant.operator) for mutant in mutants}
@@ -145,6 +153,7 @@ def listed_rules(families: Collection[str] = ()) -> list[dict[str, str]]:
     """Describe the operators of these families, or all: by family, in the order of the documentation.
 
     ``source`` is the bug class that one stands for, or the published operators that it makes; else empty.
+    ``common`` is ``yes`` for those that ``--operators common`` keeps; else empty.
 
     Raises OperatorError for a plug-in that is of no use.
     """
@@ -154,5 +163,6 @@ def listed_rules(families: Collection[str] = ()) -> list[dict[str, str]]:
     for rule in sorted(rules, key=lambda one: wanted.index(one.family)):
         told = {name: getattr(rule, name) for name in ("name", "family", "summary", "where")}
         published = f"Published operators: {rule.published}." if rule.published else ""
-        found.append({**told, "source": rule.rationale or published})
+        common = "yes" if rule.is_common else ""
+        found.append({**told, "source": rule.rationale or published, "common": common})
     return found

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Protocol, Self
 
 from mutabot.campaign.project_files import ProjectListing
 from mutabot.config.configuration import Configuration
-from mutabot.config.options import AUTO, ENGINES, FORK, Sample, Shard
+from mutabot.config.options import ALL, AUTO, ENGINES, FORK, Sample, Shard
 from mutabot.errors import UsageError, unknown_name_text
 from mutabot.extensions import brought, told_to_processes
 from mutabot.families import USUAL
@@ -104,6 +104,7 @@ class Request:
         vocabulary: the robot API.
         rounds, seed, jobs: as in the configuration, unless the command line says otherwise.
         only, skip: selections as in ``select``.
+        operators: which operators' mutants are selected: ``all``, or ``common`` for those that are so.
         engine: name of the engine; ``auto`` for the first that can judge a mutant.
         executor: what runs the tasks; None for worker processes on this machine.
         fresh: whether to run everything, also what an earlier campaign has found.
@@ -132,6 +133,7 @@ class Request:
     jobs: int
     only: tuple[str, ...] = ()
     skip: tuple[str, ...] = ()
+    operators: str = ALL
     engine: str = AUTO
     executor: ExecutorChoice | None = None
     fresh: bool = False

@@ -38,6 +38,10 @@ _ONLY = (
 _SKIP = "Exclude these mutants. Same syntax as --only. Repeatable."
 _SETTING = "Set a key of the configuration for this command. Repeatable."
 _FAMILY = "Families of mutants, see `mutabot operators`. Repeatable, or with commas."
+_OPERATORS = (
+    "all, or common: only mutants of operators whose faults are frequent among real bugs, and of which few "
+    "are useless."
+)
 _SAMPLE = "Only a random sample: 10% of each family and role, or 50 of each family."
 _SINCE = "Run only what changes since this git revision could have affected; reuse the other results."
 _JOURNAL = "Also reuse valid outcomes from this journal, e.g. one downloaded from CI."
@@ -49,6 +53,7 @@ Only = Annotated[list[str] | None, Option("--only", metavar="WHICH", help=_ONLY)
 Skip = Annotated[list[str] | None, Option("--skip", metavar="WHICH", help=_SKIP)]
 Settings = Annotated[list[str] | None, Option("-o", metavar="KEY=VALUE", help=_SETTING)]
 Families = Annotated[list[str] | None, Option("--family", metavar="NAME", help=_FAMILY)]
+Operators = Annotated[str, Option("--operators", metavar="WHICH", help=_OPERATORS)]
 Sample = Annotated[str | None, Option("--sample", metavar="SIZE", help=_SAMPLE)]
 Rounds = Annotated[
     int | None, Option("--rounds", metavar="N", min=1, max=ROUNDS, help="Rounds, each with new seeds.")
@@ -103,6 +108,7 @@ class Planning(Setting, total=False):
 
     only: Only
     skip: Skip
+    operators: Operators
     sample: Sample
     seed: Seed
     shard: Shard

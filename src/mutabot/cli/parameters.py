@@ -22,7 +22,7 @@ from mutabot.extensions import ExtensionPart, brought
 
 from .options import Running, Shared
 
-_DEFAULTS: Mapping[str, Any] = {"engine": "auto", "fresh": False}
+_DEFAULTS: Mapping[str, Any] = {"engine": "auto", "fresh": False, "operators": "all"}
 #: kinds of parts of which each is an option; and what is said when two are chosen
 _CHOICES = {
     "executors": "a campaign has one executor",

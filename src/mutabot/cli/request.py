@@ -11,7 +11,7 @@ from typing import Unpack
 from mutabot.campaign.request import ExecutorChoice, Request
 from mutabot.campaign.simulation import with_simulation
 from mutabot.config.configuration import Configuration, load_configuration
-from mutabot.config.options import AUTO, ENGINES, Sample, Shard, seconds_of
+from mutabot.config.options import ALL, AUTO, ENGINES, OPERATORS, Sample, Shard, seconds_of
 from mutabot.config.vocabulary import load_vocabulary
 from mutabot.errors import UsageError, unknown_name_text
 from mutabot.extensions import brought
@@ -47,6 +47,9 @@ def request_of(
     sample, shard, budget = given.get("sample"), given.get("shard"), given.get("budget")
     if engine not in (AUTO, *ENGINES):
         raise UsageError(unknown_name_text("engine", engine, (AUTO, *ENGINES)))
+    operators = given.get("operators", ALL)
+    if operators not in OPERATORS:
+        raise UsageError(unknown_name_text("selection of operators", operators, OPERATORS))
     size = Sample.parse(sample) if sample is not None else None
     families = families_of(given.get("family"))
     configuration = load_configuration(project, families, given.get("settings") or ())
@@ -61,6 +64,7 @@ def request_of(
         jobs=given.get("jobs") or configuration.jobs or len(os.sched_getaffinity(0)),
         only=_listed(given.get("only"), root),
         skip=_listed(given.get("skip"), root),
+        operators=operators,
         engine=engine,
         executor=chosen,
         fresh=given.get("fresh", False),

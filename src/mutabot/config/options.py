@@ -14,6 +14,9 @@ from typing import Any
 from mutabot.errors import UsageError, shortened
 from mutabot.frozen import frozen
 
+#: which operators' mutants are selected: of all that are asked for, or of those that are common among them
+ALL, COMMON = "all", "common"
+OPERATORS = (ALL, COMMON)
 #: names of the engines, and of the choice between them
 AUTO, FORK, REPLAY = "auto", "fork", "replay"
 ENGINES = (FORK, REPLAY)

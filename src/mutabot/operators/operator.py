@@ -66,6 +66,8 @@ class Rule(ABC):
             users demand another one, the plan asks ``FaultProvider.at_magnitude`` for it.
         has_moments: whether its mutants act at the moments that users ask for (``when``), which are
             ``Mutant.moment``, and not wherever they are reached.
+        is_common: whether it is of those that ``--operators common`` keeps: its faults are among the frequent
+            real ones, and few of its mutants are of no use. ``benchmarks/real_bugs/rates.py`` says which are.
 
     ``where``, ``rationale`` and ``published`` are paragraphs of the docstring, which begin with ``Where:``,
     ``Stands for:`` and ``Published:``, unless they are given.
@@ -80,6 +82,7 @@ class Rule(ABC):
     published: ClassVar[str] = ""
     has_sizes: ClassVar[bool] = False
     has_moments: ClassVar[bool] = False
+    is_common: ClassVar[bool] = False
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()

@@ -52,6 +52,7 @@ class ArithmeticReplacement(_BinaryOperator):
     """An arithmetic operator becomes each of the others, or the operation one of its operands."""
 
     name = "AOR"
+    is_common = True
     rank = 20
     signs: ClassVar = {
         ast.Add: ("add", "+"),

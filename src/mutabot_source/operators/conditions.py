@@ -22,6 +22,7 @@ class ConditionalReplacement(ConventionalOperator):
     """A condition's and becomes or, xor, one of its operands, always true, or always false."""
 
     name = "COR"
+    is_common = True
     rank = 40
     examples: ClassVar[tuple[TextExample, ...]] = (
         TextExample("z = x and y\n", each("z = {}\n", "x or y, (not x) != (not y), x, y, False, True")),
@@ -88,6 +89,7 @@ class RelationalReplacement(ConventionalOperator):
     """A comparison becomes each of the others, or always true, or always false."""
 
     name = "ROR"
+    is_common = True
     rank = 30
     examples: ClassVar[tuple[TextExample, ...]] = (
         TextExample("z = x < y\n", each("z = {}\n", "x <= y, x > y, x >= y, x == y, x != y, False, True")),

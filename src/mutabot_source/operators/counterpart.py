@@ -28,6 +28,7 @@ class Counterpart(ConventionalOperator):
     """
 
     name = "counterpart"
+    is_common = True
     family = BUGS
     rank = 260
     examples: ClassVar[tuple[TextExample, ...]] = (

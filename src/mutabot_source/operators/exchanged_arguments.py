@@ -38,6 +38,7 @@ class ExchangedArguments(ConventionalOperator):
     """
 
     name = "exchanged-arguments"
+    is_common = True
     family = BUGS
     rank = 210
     examples: ClassVar[tuple[TextExample, ...]] = (

@@ -29,6 +29,7 @@ class LostArgument(ConventionalOperator):
     """
 
     name = "lost-argument"
+    is_common = True
     family = BUGS
     rank = 200
     examples: ClassVar[tuple[TextExample, ...]] = (

@@ -27,6 +27,7 @@ class LostCheck(ConventionalOperator):
     """
 
     name = "lost-check"
+    is_common = True
     family = BUGS
     rank = 250
     examples: ClassVar[tuple[TextExample, ...]] = (

@@ -32,6 +32,7 @@ class LostConversion(ConventionalOperator):
     """
 
     name = "lost-conversion"
+    is_common = True
     family = BUGS
     rank = 230
     examples: ClassVar[tuple[TextExample, ...]] = (

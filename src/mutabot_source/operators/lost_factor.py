@@ -31,6 +31,7 @@ class LostFactor(ConventionalOperator):
     """
 
     name = "lost-factor"
+    is_common = True
     family = BUGS
     rank = 290
     examples: ClassVar[tuple[TextExample, ...]] = (

@@ -21,6 +21,7 @@ class NeighbourValue(ConventionalOperator):
     """
 
     name = "neighbour-value"
+    is_common = True
     family = BUGS
     rank = 270
     examples: ClassVar[tuple[TextExample, ...]] = (

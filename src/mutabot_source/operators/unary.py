@@ -50,6 +50,7 @@ class UnaryInsertion(ConventionalOperator):
     """A value gets a minus, a bitwise or a logical not in front, whichever its type takes."""
 
     name = "UOI"
+    is_common = True
     rank = 80
     examples: ClassVar[tuple[TextExample, ...]] = (
         TextExample("y = 0.2\n", ("y = -0.2\n",)),

@@ -17,6 +17,7 @@ class VariableReplacement(ConventionalOperator):
     """A variable becomes another one in scope that had a value of the same type."""
 
     name = "SVR"
+    is_common = True
     rank = 100
     asks_variables = True
     examples: ClassVar[tuple[TextExample, ...]] = (

@@ -32,6 +32,7 @@ class Skip(CommandOperator):
     """
 
     name = "skip"
+    is_common = True
     needs = frozenset({Need.IDLE})
     does_nothing = True
     fault = "do nothing"

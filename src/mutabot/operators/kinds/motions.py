@@ -55,6 +55,7 @@ class Reverse(ValueOperator):
     """
 
     name = "reverse"
+    is_common = True
     of_read = False
     examples = (
         Example.changed(_MOVE, {"dy": 0.2, "yaw": 0.0}, {"dy": -0.2, "yaw": 0.0}),

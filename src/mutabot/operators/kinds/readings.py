@@ -38,6 +38,7 @@ class Negate(ValueOperator):
     """
 
     name = "negate"
+    is_common = True
     kinds = MEASURED - PLAIN
     of_written = False
     examples = (
@@ -111,6 +112,7 @@ class Misread(ValueOperator):
     """
 
     name = "misread"
+    is_common = True
     of_written = False
     examples = (
         Example.changed(_SEE, "red", "blue"),

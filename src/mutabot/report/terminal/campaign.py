@@ -150,7 +150,7 @@ def print_rules(console: Console, rules: Iterable[Mapping[str, str]]) -> None:
         console.print(heading(family))
         for rule in group:
             console.print(Text(rule["name"], style="bold"))
-            more = [f"{name}: {rule[name]}" for name in ("where", "source") if rule[name]]
+            more = [f"{name}: {rule[name]}" for name in ("where", "source", "common") if rule[name]]
             for line in (rule["summary"], *more):
                 console.print(below(line, 3))
     console.print(f"\n{plural(len(found), 'operator')}")

@@ -37,7 +37,11 @@ def test_the_current(thickness, amperes):
 
 
 def test_the_current_is_set_before_the_arc():
-    assert [one if isinstance(one, str) else one[0] for one in welded().source.log] == ["current", "on", "off"]
+    assert [one if isinstance(one, str) else one[0] for one in welded().source.log] == [
+        "current",
+        "on",
+        "off",
+    ]
 
 
 def test_a_second_seam_is_measured_by_itself():
