@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import copy
 import operator
-from collections.abc import Callable, Generator, Mapping
+from collections.abc import Callable, Generator, Mapping, Sequence
 from typing import Any, ClassVar
 
 from mutabot_languages.errors import LanguageError, ProgramError, UnsupportedError
@@ -274,7 +274,7 @@ class Evaluation:
         return int(value) - self.dialect.first
 
     def values(
-        self, nodes: list[ProgramNode], scope: RoutineScope
+        self, nodes: Sequence[ProgramNode], scope: RoutineScope
     ) -> Generator[TaskOperation, Any, list[Any]]:
         """The values of several expressions, in their order."""
         found = list[Any]()
@@ -331,7 +331,7 @@ class Evaluation:
     def call_routine(
         self,
         routine: Routine,
-        arguments: list[ProgramNode],
+        arguments: Sequence[ProgramNode],
         node: ProgramNode,
         scope: RoutineScope,
         outer: RoutineScope | None = None,
@@ -369,7 +369,7 @@ class Evaluation:
     def _bind(
         self,
         routine: ProgramNode,
-        arguments: list[ProgramNode],
+        arguments: Sequence[ProgramNode],
         node: ProgramNode,
         scope: RoutineScope,
         inner: RoutineScope,

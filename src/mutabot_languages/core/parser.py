@@ -229,6 +229,8 @@ class StatementParser:
 
     def expression(self, least: int = 1) -> ProgramNode:
         """Read an expression whose operators bind at least so tightly. Raises Unexpected."""
+        if self.kinds[self.at] == "number" and self.words[self.at + 1] not in self.binary:
+            return self.primary()  # by far the most of them, in data
         if self.depth > DEEPEST:
             raise Unexpected("fewer parentheses inside each other")
         self.depth += 1

@@ -10,7 +10,7 @@ Expressions have the kinds ``number``, ``text``, ``constant``, ``name``, ``call`
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 STATEMENTS = frozenset(
@@ -46,8 +46,8 @@ class ProgramNode:
         value: Any = None,
     ) -> None:
         self.kind, self.name, self.start, self.end = kind, name, start, end
-        self.parts: list[ProgramNode] = parts if parts is not None else []
-        self.bodies: list[list[ProgramNode]] = bodies if bodies is not None else []
+        self.parts: Sequence[ProgramNode] = parts if parts is not None else ()
+        self.bodies: Sequence[list[ProgramNode]] = bodies if bodies is not None else ()
         self.value = value
 
     def walk(self) -> Iterator[ProgramNode]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from mutabot_languages.core.frames import IDENTITY, Frame
@@ -423,7 +423,7 @@ def _call_by_var(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> S
 
 
 def _call_by_name(
-    task: ProgramTask, node: ProgramNode, scope: RoutineScope, name: str, arguments: list[ProgramNode]
+    task: ProgramTask, node: ProgramNode, scope: RoutineScope, name: str, arguments: Sequence[ProgramNode]
 ) -> Steps:
     routine = task.find_routine(name.rpartition(":")[2], scope)
     if routine is None:

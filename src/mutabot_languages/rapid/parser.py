@@ -352,7 +352,7 @@ class RapidParser(StatementParser):
         kind, word, start = self.kinds[self.at], self.words[self.at], self.starts[self.at]
         if kind == "number":
             self.at += 1
-            return self.node("number", word, start, value=_number(word))
+            return ProgramNode("number", word, start, self.ends[self.at - 1], None, None, _number(word))
         if kind == "text":
             self.at += 1
             written = self.source.text[start + 1 : self.ends[self.at - 1] - 1]
@@ -409,9 +409,9 @@ class RapidParser(StatementParser):
 
 
 def _number(word: str) -> int | float:
-    if word[:2] in ("0x", "0b", "0o"):
-        return int(word, 0)
-    return int(word) if word.isdecimal() else float(word)
+    if word.isdecimal():
+        return int(word)
+    return int(word, 0) if word[1:2] in ("x", "b", "o") else float(word)
 
 
 _READERS: dict[str, Callable[[RapidParser, int], ProgramNode]] = {

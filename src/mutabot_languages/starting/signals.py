@@ -144,6 +144,6 @@ def _of_urscript(nodes: list[ProgramNode]) -> Iterator[NamedSignal]:
             yield NamedSignal(name, found["side"] == "out", name)
 
 
-def _wanted(parts: list[ProgramNode]) -> bool:
+def _wanted(parts: Sequence[ProgramNode]) -> bool:
     """Whether a signal is compared with something else than 0 and FALSE."""
     return not any(one.kind in ("number", "constant") and not one.value for one in parts[:1])
