@@ -25,6 +25,7 @@ from typing import Any
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests"))
 
+from mutabot_languages.core.text import decode  # noqa: E402
 from mutabot_languages.mutation.planning import PlannedText, planned_texts  # noqa: E402
 from mutabot_languages.mutation.provider import variant_of  # noqa: E402
 from suites.agreement import campaign, request_for, seeds_of  # noqa: E402
@@ -132,7 +133,8 @@ def judged(copy: Path, one: PlannedText, seeds: Mapping[str, int]) -> str:
 
 def apply(file: Path, diff: list[str]) -> None:
     """Apply a unified diff without context to a file, as somebody would who edits it."""
-    lines = file.read_text(encoding="utf-8").split("\n")
+    text, encoding = decode(file.read_bytes())
+    lines = text.split("\n")
     found = _HUNK.match(diff[2])
     assert found is not None
     removed = [line[1:] for line in diff[3:] if line.startswith("-")]
@@ -140,7 +142,7 @@ def apply(file: Path, diff: list[str]) -> None:
     first = int(found[1]) - 1
     assert lines[first : first + len(removed)] == removed, diff
     lines[first : first + len(removed)] = added
-    file.write_text("\n".join(lines), encoding="utf-8")
+    file.write_bytes("\n".join(lines).encode(encoding))
 
 
 if __name__ == "__main__":

@@ -28,12 +28,12 @@ _Folder = Annotated[Path, typer.Argument(metavar="DIR", help="The folder to writ
 def diff(context: CommandContext, request: Request, words: _Words = None) -> None:
     """Show mutants of robot programs as differences of their text.
 
-    Each is what `patch` takes, below a comment with its id.
+    Each is what `patch` takes, below a comment with its id, in the encoding of its file.
     """
     for one in _chosen(request, words):
         context.print(f"# {mutant_id(one)}")
         for line in one.program.diff(one.difference):
-            context.print(line)
+            context.print_bytes(f"{line}\n".encode(one.program.encoding))
 
 
 def export(context: CommandContext, request: Request, folder: _Folder, words: _Words = None) -> None:

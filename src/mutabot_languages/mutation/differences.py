@@ -83,11 +83,10 @@ class ProgramFile:
         return applied(self.text, difference.edits)
 
     def diff(self, difference: TextChange) -> list[str]:
-        """The difference as a unified diff without context."""
+        """The difference as a unified diff without context: lines without line feeds, else as in the file."""
         old = _physical(self.text)
         new = _physical(self.changed(difference))
-        lines = difflib.unified_diff(old, new, f"a/{self.file}", f"b/{self.file}", n=0, lineterm="")
-        return [line.rstrip("\r\n") for line in lines]
+        return [*difflib.unified_diff(old, new, f"a/{self.file}", f"b/{self.file}", n=0, lineterm="")]
 
     def is_sound(self, difference: TextChange) -> bool:
         """Whether the changed text differs and still reads as well as the original does."""

@@ -12,7 +12,7 @@ import pytest
 from mutabot_languages.mutation.planning import PlannedText, mutants_of, planned_texts, read_program
 from mutabot_languages.mutation.rewriting import Sizes
 from mutabot_languages.mutation.rules import BY_NAME
-from tests.packages.languages.programs import FILES, written
+from tests.packages.languages.programs import FILES, RAPID, written
 
 
 def planned(folder: Path, language: str) -> list[PlannedText]:
@@ -161,3 +161,14 @@ def test_diff_and_export_show_and_write_them(tmp_path: Path) -> None:
     assert exported == original.replace(b"WAIT FOR $IN[25]==TRUE", b"WAIT SEC 0")
     assert (tmp_path / "out/1/pick.dat").read_bytes() == (tmp_path / "pick.dat").read_bytes()
     assert "is not empty" in mutabot("export", "out").stderr
+
+
+def test_a_printed_difference_has_the_bytes_of_its_file_so_that_patch_takes_it(tmp_path: Path) -> None:
+    text = RAPID.replace("WaitTime 0.5;", "WaitTime 0.5; ! Größe").replace("\n", "\r\n")
+    (tmp_path / "pick.mod").write_bytes(text.encode("latin-1"))
+    settings = 'program = ["pick.mod"]\nvocabulary = ["cell"]\ntests = ["."]\n'
+    (tmp_path / "mutabot.toml").write_text(settings)
+    command = [sys.executable, "-m", "mutabot", "-C", str(tmp_path), "diff", "scale-wait"]
+    shown = subprocess.run(command, capture_output=True, check=True).stdout.split(b"\n")
+    assert b"-    WaitTime 0.5; ! Gr\xf6\xdfe\r" in shown
+    assert b"+    WaitTime 0.05; ! Gr\xf6\xdfe\r" in shown
