@@ -76,14 +76,16 @@ EDITS = {
     "belt speed": "cell.belt().drive_factor = FACTOR",
     "belt encoder": "cell.belt().encoder_factor = FACTOR",
     "camera bias": """
-        from dataclasses import replace
+        import dataclasses
         seen = cell.sensors.box_position
-        cell.sensors.box_position = lambda *names: replace(seen(*names), x=seen(*names).x + AMOUNT)
+        cell.sensors.box_position = lambda *names: dataclasses.replace(
+            p := seen(*names), x=p.x + AMOUNT
+        )
         """,
     "camera scale": """
-        from dataclasses import replace
+        import dataclasses
         seen = cell.sensors.box_position
-        cell.sensors.box_position = lambda *names: replace(
+        cell.sensors.box_position = lambda *names: dataclasses.replace(
             p := seen(*names), x=p.x * FACTOR, y=p.y * FACTOR, z=p.z * FACTOR
         )
         """,
