@@ -100,8 +100,9 @@ def _test_text(files: Iterable[str], found: ProgramTrial) -> str:
 
 def _told(found: ProgramTrial, name: str) -> list[str]:
     if found.problem:
+        why = found.problem.partition(": ")[2] or found.problem  # without the name of the exception
         return [
-            f"{name} does not run to its end on the cell: {found.problem}",
+            f"{name} does not run to its end on the cell: {why}",
             "say in cell_map.toml, in the test or in the program what is lacking (docs/languages.md)",
         ]
     ends = (

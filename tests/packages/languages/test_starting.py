@@ -96,9 +96,12 @@ def test_modules_of_rapid_are_one_program_that_begins_in_the_one_with_main(
 
 def test_why_a_program_does_not_run_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "a.script").write_text("socket_open('a', 1)\n")
-    problem = "unsupported: socket_open at line 1 of a.script"
+    problem = "UnsupportedError: unsupported: socket_open at line 1 of a.script"
     files, lines = begun(tmp_path, monkeypatch, ProgramTrial("gen3", problem=problem))
-    assert any(problem in line for line in lines)
+    assert (
+        "a.script does not run to its end on the cell: unsupported: socket_open at line 1 of a.script"
+        in lines
+    )
     assert "program.run(cell)" in files["tests/test_a.py"]
 
 
