@@ -154,3 +154,12 @@ def test_turned_aside_is_the_angle_whatever_the_sign_of_the_quaternions() -> Non
     flipped = [(*row[:3], *(-part for part in row[3:])) for row in other]
     assert turned_aside(other, usual) == pytest.approx(40.0, abs=0.2)
     assert turned_aside(flipped, usual) == pytest.approx(40.0, abs=0.2)
+
+
+def test_what_turns_to_and_fro_between_two_moments_may_have_turned_as_far_unseen() -> None:
+    usual, rocking, leaning = (
+        RecordedPaths(turning(*angles)).paths["tool"].rows
+        for angles in ((80, 80, 88, 80, 80), (80, 72, 80, 80, 80), (80, 60, 60, 80, 80))
+    )
+    assert turned_aside(rocking, usual) == pytest.approx(0.0, abs=0.2)
+    assert turned_aside(leaning, usual) == pytest.approx(12.0, abs=0.2)

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from math import asin, degrees, dist, inf, isnan, sqrt
+from math import asin, degrees, dist, hypot, inf, isnan, sqrt
 from typing import Self
 
 from mutabot.evidence.recording import Recording, Track, TrackKind, bytes_of, from_bytes
@@ -23,7 +23,7 @@ Row = tuple[float, ...]
 #: a length that counts as none, m
 LENGTH = 0.001
 #: orientations of a run that are compared, and how near two quaternions are that count as one: 0.1 degrees
-_MOST_TURNS, _SAME_TURN = 150, 0.0009
+_MOST_TURNS, _SAME_TURN = 300, 0.0009
 #: two times that differ by less are the same moment, s
 _SAME = 1e-6
 #: how far a path may be from a line, in what the points at its ends swerve: if the next ones do not, and how
@@ -81,41 +81,75 @@ def aside(points: Iterable[Point], path: Sequence[Point], bows: Sequence[float] 
 def turned_aside(rows: Sequence[Row], path: Sequence[Row]) -> float:
     """Return the greatest angle (deg) of orientations from those on a path, also between its moments.
 
+    What turns to and fro from one moment to the next, as a part that lands does, may have turned as far
+    between them: that much is no difference.
+
     Unit quaternions at the angle a lie 2 sin(a / 4) apart, and those between two moments near their chord.
     """
-    known = _turns(path)
-    chords = [*pairwise(known)] or [(known[0], known[0])]
+    chords = _chords(_turns(path))
     worst = 0.0
-    for one in _turns(rows):
+    for one in _without_repetitions(_turns(rows)):
         least = inf
-        for start, end in chords:
-            least = min(least, _chord(one, start, end), _chord([-part for part in one], start, end))
+        for start, end, unseen in chords:
+            square = min(_chord(one, start, end), _chord([-part for part in one], start, end))
+            least = min(least, sqrt(square) - unseen)
             if least <= worst:
                 break
         worst = max(worst, least)
-    return degrees(4.0 * asin(min(1.0, sqrt(worst) / 2.0)))
+    return degrees(4.0 * asin(min(1.0, worst / 2.0)))
 
 
 def _turns(rows: Sequence[Row]) -> list[list[float]]:
-    """Return the quaternions, each with the sign nearer to its predecessor, without repetitions."""
+    """Return the quaternions, each with the sign nearer to its predecessor."""
     found: list[list[float]] = []
     for row in rows[:: len(rows) // _MOST_TURNS + 1]:
         one = list(row[3:7])
         if found and sum(a * b for a, b in zip(one, found[-1], strict=True)) < 0.0:
             one = [-part for part in one]
+        found.append(one)
+    return found
+
+
+def _without_repetitions(turns: Sequence[list[float]]) -> list[list[float]]:
+    found: list[list[float]] = []
+    for one in turns:
         if not found or dist(one, found[-1]) > _SAME_TURN:
             found.append(one)
     return found
 
 
+def _chords(turns: Sequence[list[float]]) -> list[tuple[list[float], list[float], float]]:
+    """Return the chords between moments, each with how far the path may have been from it."""
+    inner = (_strayed(*three) for three in zip(turns[1:], turns, turns[2:], strict=False))
+    strayed = [0.0, *inner, 0.0]
+    found = [
+        (start, end, max(strayed[number : number + 2]))
+        for number, (start, end) in enumerate(pairwise(turns))
+        if dist(start, end) > _SAME_TURN
+    ]
+    return found or [(turns[0], turns[-1], 0.0)]
+
+
+def _strayed(turn: Sequence[float], start: Sequence[float], end: Sequence[float]) -> float:
+    """Return how far an orientation is from the shortest turn between two others."""
+    share = _share(turn, start, end)
+    foot = [a + share * (b - a) for a, b in zip(start, end, strict=True)]
+    length = hypot(*foot)
+    return dist(turn, [part / length for part in foot]) if length else 0.0
+
+
 def _chord(point: Sequence[float], start: Sequence[float], end: Sequence[float]) -> float:
     """Return the square of a point's distance from the line through two others."""
+    share = _share(point, start, end)
+    return sum((c - a - share * (b - a)) ** 2 for a, b, c in zip(start, end, point, strict=True))
+
+
+def _share(point: Sequence[float], start: Sequence[float], end: Sequence[float]) -> float:
+    """Return where between two others a point's nearest one is, from 0 to 1."""
     along = [b - a for a, b in zip(start, end, strict=True)]
-    way = [b - a for a, b in zip(start, point, strict=True)]
     length = sum(part * part for part in along)
-    share = sum(a * b for a, b in zip(along, way, strict=True)) / length if length else 0.0
-    share = min(1.0, max(0.0, share))
-    return sum((b - share * a) ** 2 for a, b in zip(along, way, strict=True))
+    way = sum((c - a) * part for a, c, part in zip(start, point, along, strict=True))
+    return min(1.0, max(0.0, way / length)) if length else 0.0
 
 
 def _segment(one: Point, other: Point) -> tuple[float, ...]:
