@@ -110,8 +110,8 @@ def test_exceptions_that_a_package_names_tell_of_the_tools_in_processes_of_the_t
     module = ModuleType("lab_simulator")
     module.UnsupportedError = UnsupportedError  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "lab_simulator", module)
-    monkeypatch.setattr(extensions._Told, "parts", None)
-    assert "failures" in extensions.told_to_processes()
+    monkeypatch.setattr(extensions._SentParts, "parts", None)
+    assert "failures" in extensions.references_for_processes()
     extensions.use({"failures": {"unsupported": "lab_simulator:UnsupportedError"}})
     assert failure_in(UnsupportedError("no contacts"), ()) == "UnsupportedError: no contacts"
     assert failure_in(RuntimeError("no contacts"), ()) is None
@@ -121,12 +121,12 @@ def test_exceptions_that_a_package_names_tell_of_the_tools_in_processes_of_the_t
 def test_processes_of_the_tests_are_told_of_the_programs_own_languages_alone(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(extensions._Told, "parts", None)
+    monkeypatch.setattr(extensions._SentParts, "parts", None)
     (tmp_path / "cell").mkdir()
     for name in ("cell/pick.mod", "cell/mission.py", "other.src"):
         (tmp_path / name).write_text("")
     assert languages_of(tmp_path, ("cell/mission.py",)) == frozenset()
     assert languages_of(tmp_path, ("cell",)) == {"rapid"}
     assert languages_of(tmp_path, ("cell", "other.src")) == {"rapid", "krl"}
-    assert extensions.told_to_processes()["languages"] == {}
-    assert [*extensions.told_to_processes({"rapid"})["languages"]] == ["rapid"]
+    assert extensions.references_for_processes()["languages"] == {}
+    assert [*extensions.references_for_processes({"rapid"})["languages"]] == ["rapid"]

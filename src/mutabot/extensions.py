@@ -2,8 +2,8 @@
 
 A package declares an ``Extension`` under the entry point group ``mutabot``. Every part of it is named by a
 reference, ``module:attribute`` or ``module``, and imported only when it is used. Entry points are read once,
-by the controller; processes of the tests are told the references they need (``told_to_processes``, ``use``),
-since reading entry points is slow.
+by the controller, since that is slow; processes of the tests get the references that they need
+(``references_for_processes``, ``use``).
 """
 
 from __future__ import annotations
@@ -212,7 +212,7 @@ class ExtensionPart:
         return f"{self.name!r} of package {self.owner!r} ({self.reference})"
 
 
-class _Told:
+class _SentParts:
     """The parts of packages that the controller has sent to this process; None in the controller itself."""
 
     parts: Mapping[str, Mapping[str, ExtensionPart]] | None = None
@@ -225,8 +225,8 @@ def brought(kind: str, own: Collection[str] = ()) -> Mapping[str, ExtensionPart]
 
     Raises ExtensionError for a package that cannot be used, and for two parts of one name.
     """
-    if _Told.parts is not None:
-        return _Told.parts.get(kind, {})
+    if _SentParts.parts is not None:
+        return _SentParts.parts.get(kind, {})
     found: dict[str, ExtensionPart] = {}
     for owner, extension in _declared():
         for name, declared in getattr(extension, kind).items():
@@ -271,7 +271,7 @@ def not_installed(name: str, kind: str) -> str | None:
     return f"comes with the package {package}, which is not installed"
 
 
-def told_to_processes(languages: Collection[str] = ()) -> dict[str, dict[str, str]]:
+def references_for_processes(languages: Collection[str] = ()) -> dict[str, dict[str, str]]:
     """Return the references that processes of the tests need, by kind and name.
 
     ``languages``: those of the program beside Python. What reads others need not be there, nor be loaded.
@@ -288,7 +288,7 @@ def told_to_processes(languages: Collection[str] = ()) -> dict[str, dict[str, st
 
 def use(parts: Mapping[str, Mapping[str, str]]) -> None:
     """Use only these parts, which the controller has found, in a process of the tests."""
-    _Told.parts = {
+    _SentParts.parts = {
         kind: {name: ExtensionPart(name, reference, _package(reference)) for name, reference in told.items()}
         for kind, told in parts.items()
     }

@@ -118,13 +118,13 @@ class Types(ABC):
                 if operation.is_field(quantity):
                     key = f"{_TABLES[form][side]}.{quantity.name}"
                     yield from self._look_at_steps(message, quantity.path, key)
-            for refused in operation.told_as_refused if places is self.read else ():
+            for refused in operation.all_refused if places is self.read else ():
                 if refused.topic is None:
                     yield from self._look_at_steps(message, refused.parsed, "refused.path")
 
     def _look_at_told(self, operation: Operation) -> Iterator[Finding]:
         """Look for refusals on topics whose types are known."""
-        for refused in operation.told_as_refused:
+        for refused in operation.all_refused:
             listened = {} if refused.topic is None else self.of(Form.RECEIVE, refused.topic)
             for name, kind in listened.items():
                 try:

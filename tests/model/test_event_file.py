@@ -353,7 +353,7 @@ def in_fork(file: EventFile, work: Callable[[], object], died: ForkDied | None =
     pid = os.fork()
     if pid == 0:
         try:
-            file.go_on_apart()
+            file.continue_separately()
             work()
             os._exit(0)
         finally:
@@ -372,7 +372,7 @@ def test_what_two_forks_tell_side_by_side_comes_when_each_has_ended(tmp_path: Pa
             file.forks += 1
             pid = os.fork()
             if pid == 0:
-                file.go_on_apart()
+                file.continue_separately()
                 for count in range(5):
                     file.send(TokensHeld(10 * number + count))
                     os.read(reading, 1)  # until the other one has written, too

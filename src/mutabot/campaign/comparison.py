@@ -42,7 +42,7 @@ def _angles_of(operations: Sequence[Operation]) -> dict[CommandName, dict[str, Q
     }
 
 
-def _values_apart(before: Any, after: Any, angles: Mapping[str, Quantity]) -> float:
+def _values_distance(before: Any, after: Any, angles: Mapping[str, Quantity]) -> float:
     """Return the greatest distance of two sets of values by quantity."""
     if not angles or not isinstance(before, Mapping) or not isinstance(after, Mapping):
         return _distance(before, after)
@@ -307,7 +307,7 @@ def _first_difference(
             ("wrote", before.written, after.written),
             ("read", before.read, after.read),
         ):
-            if _values_apart(was, is_now, known) > tolerance:
+            if _values_distance(was, is_now, known) > tolerance:
                 return f"call {index}, {_place_text(after.key)}: {verb} {_change(was, is_now)}"
     more = len(mutant.events) - len(original.events)
     if more == 0 or original.truncated or mutant.truncated:

@@ -45,7 +45,7 @@ def decide(campaign: Campaign, mutants: Sequence[Mutant], journal: Journal, earl
     """
     short = replace(campaign, is_short=not campaign.request.every_test)
     alone, _ = split_ladders(mutants)  # a search goes by what it finds: it needs the whole suite
-    without, rest = _fixed(campaign), 0.0
+    without, rest = _original_seconds(campaign), 0.0
     for round in range(campaign.request.rounds):
         walls = [campaign.baseline.ends[round, test].wall for test in campaign.baseline.suite(round)]
         until = [0.0, *accumulate(walls)]
@@ -77,7 +77,7 @@ def confirm(
     left = [one for one in drawn if not one.confirmed]
     again = list(campaign.again)
     campaign.again.clear()
-    spent = _fixed(campaign)
+    spent = _original_seconds(campaign)
     spent += sum(one.wall for one in (*found, *again) if (one.mutant, one.round) not in done)
     due = left if any(map(is_wrong, drawn)) else list(_affordable(campaign, by_id, left, spent))
     if left:
@@ -119,7 +119,7 @@ def _affordable(
         yield one
 
 
-def _fixed(campaign: Campaign) -> float:
+def _original_seconds(campaign: Campaign) -> float:
     """Return the time (s) that a campaign takes for the original alone, in all its runs."""
     request, baseline = campaign.request, campaign.baseline
     rounds = range(request.rounds)

@@ -69,7 +69,7 @@ class CampaignEvidence:
                 self.recordings.forget(ORIGINAL, round)  # what an earlier campaign recorded makes way
             for end in ends:
                 if repetition:
-                    self.add_again(round, end)
+                    self.add_rerun(round, end)
                 elif end.recording is not None:
                     found = self._add_original(round, end, end.recording)
                     self.problems.update(dict.fromkeys(found.problems))
@@ -91,7 +91,7 @@ class CampaignEvidence:
             self._passed.setdefault(end.test, []).append(round)
         return found
 
-    def add_again(self, round: int, end: TestEnd) -> None:
+    def add_rerun(self, round: int, end: TestEnd) -> None:
         """Add a further run of the original, which shows how far things are apart without any fault."""
         changed = self._changed(round, end)
         found = noise_between(*changed[:2]) if changed is not None else {}

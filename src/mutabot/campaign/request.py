@@ -14,7 +14,7 @@ from mutabot.campaign.project_files import ProjectListing
 from mutabot.config.configuration import Configuration
 from mutabot.config.options import ALL, AUTO, ENGINES, FORK, Sample, Shard
 from mutabot.errors import UsageError, unknown_name_text
-from mutabot.extensions import brought, told_to_processes
+from mutabot.extensions import brought, references_for_processes
 from mutabot.families import USUAL
 from mutabot.faults import Project
 from mutabot.frozen import frozen
@@ -263,7 +263,7 @@ class Request:
             private_files=self.configuration.private_files,
             oracle_nodes=self.configuration.oracle_nodes,
             evidence=self.evidence,
-            extensions=told_to_processes(languages_of(self.root, self.configuration.program)),
+            extensions=references_for_processes(languages_of(self.root, self.configuration.program)),
             guards=self.guards,
             **details,
         )

@@ -98,7 +98,7 @@ def differences(
         before, after = original[name], mutant[name]
         if before.track.kind is not after.track.kind:
             continue
-        rows = [(time, one, other) for time, one, other in _together(before, after) if time <= until]
+        rows = [(time, one, other) for time, one, other in _paired_rows(before, after) if time <= until]
         if any(one != other for _, one, other in rows):
             apart = (_apart(measure, before, after, rows, noise, spread) for measure in measures_of(before))
             found += [one for one in apart if one is not None]
@@ -109,14 +109,14 @@ def noise_between(one: RecordedPaths, other: RecordedPaths) -> dict[str, float]:
     """Return by how much each thing differs between two equal runs of the original."""
     found = {}
     for name in one.paths.keys() & other.paths.keys():
-        rows = list(_together(one.paths[name], other.paths[name]))
+        rows = list(_paired_rows(one.paths[name], other.paths[name]))
         for measure in measures_of(one.paths[name]):
             gaps = (measure.between(first, second) for _, first, second in rows if first != second)
             found[measure.name] = max(gaps, default=0.0)
     return found
 
 
-def _together(before: TrackPath, after: TrackPath) -> Iterator[tuple[float, Row, Row]]:
+def _paired_rows(before: TrackPath, after: TrackPath) -> Iterator[tuple[float, Row, Row]]:
     """Yield each moment of either run with the rows of both; the last row of an ended run holds."""
     if before.when == after.when:
         yield from zip(before.when, before.rows, after.rows, strict=True)

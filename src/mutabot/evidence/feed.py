@@ -183,7 +183,7 @@ class Feed:
         for block in self._blocks:
             tape.block(block)
         tape.recording.robots = tuple(dict.fromkeys((*tape.recording.robots, *self._robots)))
-        tape.told_by(lambda: self._offset + self._time())
+        tape.use_clock(lambda: self._offset + self._time())
         tape.at_end.append(lambda: self._finish(tape))
 
     def _finish(self, tape: Tape) -> None:

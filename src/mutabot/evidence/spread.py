@@ -30,7 +30,7 @@ def spread_between(runs: Sequence[RecordedPaths]) -> Spread:
         for name in one.paths.keys() & other.paths.keys():
             before, after = one.paths[name], other.paths[name]
             for measure in measures_of(before) if before.track.kind is after.track.kind else ():
-                far = _ends_apart(measure, before, after)
+                far = _end_distance(measure, before, after)
                 ends[measure.name] = max(far, ends.get(measure.name, 0.0))
                 beside = (aside_of(measure, *pair) or 0.0 for pair in ((before, after), (after, before)))
                 paths[measure.name] = max(*beside, paths.get(measure.name, 0.0))
@@ -45,7 +45,7 @@ def spread_between(runs: Sequence[RecordedPaths]) -> Spread:
     )
 
 
-def _ends_apart(measure: Measure, before: TrackPath, after: TrackPath) -> float:
+def _end_distance(measure: Measure, before: TrackPath, after: TrackPath) -> float:
     """Return how far apart a thing ends; if each seed places it elsewhere, by how far it has moved since."""
     apart = measure.between(before.rows[-1], after.rows[-1])
     return min(apart, dist(_moved(before), _moved(after))) if measure.unit == "m" else apart

@@ -142,7 +142,7 @@ class _ComparedRuns:
         """Return the sentence, most important part first; empty if the world was the same."""
         parts = [*self._cut(), *list(self._contacts(measured))[:_MOST_CONTACTS]]
         others = [(one.deviation, self._motion(one)) for one in measured]
-        told = [one for one in apart if _is_told(one)]
+        told = [one for one in apart if _is_significant(one)]
         others += [(one.deviation, _strayed(one, is_whole=not self.is_cut)) for one in told]
         others += _detours(told, is_whole=not self.is_cut)
         parts += [text for _, text in sorted(others, key=lambda one: -one[0]) if text]
@@ -298,7 +298,7 @@ def _amount(value: float, unit: str = "m", digits: int = 2) -> str:
     return amount(float(f"{value:.{digits}g}"), unit)
 
 
-def _is_told(one: Apart) -> bool:
+def _is_significant(one: Apart) -> bool:
     """Return whether it is more than delay and the original's spread, and worth a sentence."""
     return not one.is_delay and one.deviation > 1.0 and not one.name.endswith("margin")
 

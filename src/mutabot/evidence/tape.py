@@ -78,7 +78,7 @@ class Tape:
         Nobody knows before whether anything will tell the simulated time. Until something does, it is that of
         the wall clock, below zero so that it is known for what it is.
         """
-        told = self._told()
+        told = self._clock_time()
         return self.at_wall(monotonic()) if told is None else told
 
     def at_wall(self, moment: float) -> float:
@@ -98,11 +98,11 @@ class Tape:
                 last()
         self.at_end.clear()
 
-    def told_by(self, clock: Callable[[], float]) -> None:
+    def use_clock(self, clock: Callable[[], float]) -> None:
         """Use this function for the simulated time, s."""
         self.clock, self.is_simulated = clock, True
 
-    def _told(self) -> float | None:
+    def _clock_time(self) -> float | None:
         try:
             return self.clock() if self.clock is not None else None
         except Exception as error:  # a simulator that was closed: the program's calls must go on

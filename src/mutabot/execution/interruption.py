@@ -54,7 +54,7 @@ class _InterruptionGuard:
             self.is_late = False
             raise OutOfTimeError
 
-    def be_late(self) -> None:
+    def set_time_up(self) -> None:
         """Note that the time is up."""
         if self.may_raise:
             raise OutOfTimeError
@@ -116,7 +116,7 @@ def limited(until: float, clock: Callable[[], float]) -> Iterator[None]:
         if left > 0:
             signal.setitimer(signal.ITIMER_REAL, left)
         else:
-            keeper.be_late()
+            keeper.set_time_up()
 
     before = signal.signal(signal.SIGALRM, look)
     signal.setitimer(signal.ITIMER_REAL, max(until - clock(), 1e-3))

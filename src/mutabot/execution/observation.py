@@ -14,8 +14,8 @@ from tempfile import TemporaryDirectory
 from typing import Any, Generic, TypeVar
 
 from mutabot.execution.processes import command, kill_group
-from mutabot.execution.task import said_in
-from mutabot.extensions import libraries, told_to_processes
+from mutabot.execution.task import tail_of
+from mutabot.extensions import libraries, references_for_processes
 from mutabot.model.codec import from_data, to_data
 from mutabot.model.event_file import FOLDER
 from mutabot.model.observation import JOB, SEEN, TESTS, VARIABLE, ObservationJob
@@ -71,7 +71,7 @@ def observe(
         folder, log = home / FOLDER, home / "log.txt"
         folder.mkdir()
         job = ObservationJob(
-            str(root), tuple(program), tuple(tests), observer, told_to_processes(), tuple(libraries())
+            str(root), tuple(program), tuple(tests), observer, references_for_processes(), tuple(libraries())
         )
         (folder / JOB).write_text(json.dumps(to_data(job)), encoding="utf-8")
         words = [*command(arguments, home), *_OWN]
@@ -83,7 +83,7 @@ def observe(
             return found
         else:
             trouble = (
-                "; ".join(found.problems[:3]) or f"no test ran{said_in(log.read_text(errors='replace'))}"
+                "; ".join(found.problems[:3]) or f"no test ran{tail_of(log.read_text(errors='replace'))}"
             )
         return Observed(found.seen, found.outcomes, found.problems, trouble)
 

@@ -455,7 +455,7 @@ def environment(job_file: str, pipe: int) -> dict[str, str]:
 _OF_PROCESSES = ("evidence", "languages", "model", "operators", "runtime")
 
 
-def compile_us() -> None:
+def compile_own_modules() -> None:
     """Compile the modules of mutabot that processes of the tests import, as those write no compiled files.
 
     Some installers and all editable installations leave that to the first import, which would be each

@@ -35,7 +35,7 @@ _OF_NO_USE = re.compile(
 _LINES = 20
 
 
-def said_in(log: str) -> str:
+def tail_of(log: str) -> str:
     """Return the last lines of a process's output, in their own layout, to append to a message."""
     lines = [line.rstrip() for line in _ESCAPES.sub("", log).splitlines() if line.strip()]
     lines = [_without_frame(line) for line in lines if not _OF_NO_USE.match(line)] or lines

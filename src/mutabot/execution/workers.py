@@ -28,7 +28,7 @@ from mutabot.execution.processes import (
     ForkServerProcess,
     Home,
     Spawned,
-    compile_us,
+    compile_own_modules,
     refuse_full_disk,
 )
 from mutabot.execution.remains import claim, end_abandoned, end_left_over, remove_folder
@@ -149,7 +149,7 @@ class Workers:
         self._may_share = True
         self.pool = TokenPool(self._jobs)
         self.look: Callable[[], None] | None = None
-        compile_us()
+        compile_own_modules()
         self._folder = _work_folder(root / ".mutabot")
 
     def __enter__(self) -> Workers:

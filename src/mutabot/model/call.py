@@ -35,7 +35,7 @@ class Unchanged(Exception):  # noqa: N818  # no error: a reason
     """Raised if an operator leaves a call, or what it reads, unchanged; the text says why."""
 
 
-def _nobody(why: str) -> Callable[..., Any]:
+def _unavailable(why: str) -> Callable[..., Any]:
     """Return a placeholder for a function that is not available, which raises LookupError with a reason."""
 
     def raises(*_: object) -> Any:
@@ -44,11 +44,11 @@ def _nobody(why: str) -> Callable[..., Any]:
     return raises
 
 
-_NO_READING = _nobody("no reading tells where the robot is now")
-_NO_CLOCK = _nobody("nothing tells the time of the simulation")
-_NO_WAIT = _nobody("nothing lets the program's time pass")
-_NO_PREVIOUS = _nobody("the arguments of the call before this one are not known")
-NO_DEFER = _nobody("nothing here can make a call later")
+_NO_READING = _unavailable("no reading tells where the robot is now")
+_NO_CLOCK = _unavailable("nothing tells the time of the simulation")
+_NO_WAIT = _unavailable("nothing lets the program's time pass")
+_NO_PREVIOUS = _unavailable("the arguments of the call before this one are not known")
+NO_DEFER = _unavailable("nothing here can make a call later")
 
 
 @dataclass(frozen=True, slots=True)

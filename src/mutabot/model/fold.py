@@ -218,7 +218,7 @@ def fold_fork(
 
 
 @frozen
-class Known:
+class TestFacts:
     """Facts about a test and the processes below it that only the test process knows.
 
     Attributes:
@@ -236,37 +236,37 @@ class Known:
     signalled: Collection[int] = ()
 
 
-def fold(end: events.TestEnd, records: Sequence[ChildRecord], known: Known) -> events.TestEnd:
+def fold(end: events.TestEnd, records: Sequence[ChildRecord], facts: TestFacts) -> events.TestEnd:
     """Return the end of a test, combined with the events of the processes below it."""
     if not records:
         return end
-    end = _with_calls(end, records, known)
+    end = _with_calls(end, records, facts)
     end = _with_deeds(end, records)
-    return _with_ends(end, records, known)
+    return _with_ends(end, records, facts)
 
 
-def calls_of(records: Sequence[ChildRecord], known: Known) -> Iterator[tuple[int, events.Called]]:
+def calls_of(records: Sequence[ChildRecord], facts: TestFacts) -> Iterator[tuple[int, events.Called]]:
     """Yield the calls of each process in order, one process after the other, each with its site."""
     for one in records:
-        yield from ((known.index_of(one.sites[call.site]), call) for call in one.called)
+        yield from ((facts.index_of(one.sites[call.site]), call) for call in one.called)
 
 
-def _with_calls(end: events.TestEnd, records: Sequence[ChildRecord], known: Known) -> events.TestEnd:
-    called = list(calls_of(records, known))
+def _with_calls(end: events.TestEnd, records: Sequence[ChildRecord], facts: TestFacts) -> events.TestEnd:
+    called = list(calls_of(records, facts))
     trace = [*end.trace, *((site, call.written, call.read, call.answer) for site, call in called)]
     used = [one.used for one in records if one.used is not None]
     times = [end.simulated, *(one.simulated for one in used)]
     below: dict[str, set[int]] = {}
     for one in records:
-        sites = {known.index_of(one.sites[call.site]) for call in one.called}
+        sites = {facts.index_of(one.sites[call.site]) for call in one.called}
         below.setdefault(one.origin, set()).update(sites)
-    noted = [(known.index_of(one.sites[each.site]), each.refused) for one in records for each in one.noted]
+    noted = [(facts.index_of(one.sites[each.site]), each.refused) for one in records for each in one.noted]
     return replace(
         end,
         refused_calls=(*end.refused_calls, *((site, number) for site, number in noted if number is not None)),
         live=tuple(sorted({*end.live, *(site for site, number in noted if number is None)})),
         below={origin: tuple(sorted(sites)) for origin, sites in below.items() if sites},
-        trace=tuple(trace[: events.TRACE_LIMIT]) if known.job.record else (),
+        trace=tuple(trace[: events.TRACE_LIMIT]) if facts.job.record else (),
         truncated=end.truncated or len(trace) > events.TRACE_LIMIT,
         operations=end.operations + max(len(called), sum(one.operations for one in used)),
         commands=end.commands + sum(one.commands for one in used),
@@ -298,7 +298,7 @@ def _with_deeds(end: events.TestEnd, records: Sequence[ChildRecord]) -> events.T
     return end
 
 
-def _with_ends(end: events.TestEnd, records: Sequence[ChildRecord], known: Known) -> events.TestEnd:
+def _with_ends(end: events.TestEnd, records: Sequence[ChildRecord], facts: TestFacts) -> events.TestEnd:
     """Return the end of a test, adjusted for how the processes below it ended."""
     raised = [one.raised for one in records if one.raised is not None]
     failure = end.failure or next((one.failure for one in raised if one.failure is not None), None)
@@ -317,19 +317,19 @@ def _with_ends(end: events.TestEnd, records: Sequence[ChildRecord], known: Known
         one.is_in_call = False
     if end.refused is not None and any(one.is_refusal for one in raised):
         end = replace(end, caught=False)
-    if end.outcome == "failed" and end.failure is None and known.job.mutant is not None:
-        end = replace(end, failure=_lost(end, records, known))
+    if end.outcome == "failed" and end.failure is None and facts.job.mutant is not None:
+        end = replace(end, failure=_lost(end, records, facts))
     return end
 
 
-def _lost(end: events.TestEnd, records: Sequence[ChildRecord], known: Known) -> str | None:
+def _lost(end: events.TestEnd, records: Sequence[ChildRecord], facts: TestFacts) -> str | None:
     """Return why a failed test shows nothing about the mutant; None if it does."""
     for one in records:
-        code = known.codes.get(one.began.pid)
+        code = facts.codes.get(one.began.pid)
         is_killed = code is not None and code < 0 and -code not in OWN_FAULT
-        if code is not None and is_killed and not one.ended and not _was_signalled(one, known):
+        if code is not None and is_killed and not one.ended and not _was_signalled(one, facts):
             return f"the process {one.name} was killed from outside, by signal {-code}"
-    if end.acted or known.has_acted or end.refused is not None:
+    if end.acted or facts.has_acted or end.refused is not None:
         return None
     for one in records:
         if one.raised is not None and not one.raised.in_thread:
@@ -337,7 +337,7 @@ def _lost(end: events.TestEnd, records: Sequence[ChildRecord], known: Known) -> 
     return None
 
 
-def _was_signalled(record: ChildRecord, known: Known) -> bool:
+def _was_signalled(record: ChildRecord, facts: TestFacts) -> bool:
     """Return whether the tests, or a process below them, sent the process a signal."""
     pid, group = record.began.pid, record.began.group
-    return not {pid, -pid, -group, ANYBODY}.isdisjoint(known.signalled)
+    return not {pid, -pid, -group, ANYBODY}.isdisjoint(facts.signalled)

@@ -393,13 +393,13 @@ def is_like(pattern: str, text: str) -> bool:
     """
     first, *between = pattern.split("*")
     if not between:
-        return pattern == text or _fixed(pattern).fullmatch(text) is not None
+        return pattern == text or _literal_pattern(pattern).fullmatch(text) is not None
     last = between.pop()
     at, end = len(first), len(text) - len(last)
-    if at > end or not _fixed(first).match(text) or not _fixed(last).fullmatch(text, end):
+    if at > end or not _literal_pattern(first).match(text) or not _literal_pattern(last).fullmatch(text, end):
         return pattern == text
     for part in filter(None, between):
-        found = _fixed(part).search(text, at, end)
+        found = _literal_pattern(part).search(text, at, end)
         if found is None:
             return pattern == text
         at = found.end()
@@ -407,7 +407,7 @@ def is_like(pattern: str, text: str) -> bool:
 
 
 @lru_cache(maxsize=1024)
-def _fixed(part: str) -> re.Pattern[str]:
+def _literal_pattern(part: str) -> re.Pattern[str]:
     """Return the regular expression for a part of a pattern without stars."""
     return re.compile("".join("." if sign == "?" else re.escape(sign) for sign in part), re.DOTALL)
 

@@ -371,7 +371,7 @@ class Operation:
         return root is None or (self.named is not None and root == WRITTEN.get(self.named.form))
 
     @property
-    def told_as_refused(self) -> tuple[Refused, ...]:
+    def all_refused(self) -> tuple[Refused, ...]:
         """All ways in which the robot reports, by data, that it refuses any of its calls."""
         return (*self.refused, *(one for pattern in self.patterns for one in pattern.refused))
 

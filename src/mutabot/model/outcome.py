@@ -423,7 +423,7 @@ def same_end(first: Outcome, second: Outcome) -> bool:
 def in_words(outcome: Outcome) -> str:
     """Return how a mutant ended: ``killed by check in tests/test_box.py::test_arrives: assert 1 == 2``."""
     is_told = bool((outcome.message or "").strip())
-    return f"{end_in_words(outcome)}: {first_line(outcome.message)}" if is_told else end_in_words(outcome)
+    return f"{describe_end(outcome)}: {first_line(outcome.message)}" if is_told else describe_end(outcome)
 
 
 def first_line(text: str | None) -> str:
@@ -432,7 +432,7 @@ def first_line(text: str | None) -> str:
     return lines[0] if lines else "no message"
 
 
-def end_in_words(outcome: Outcome) -> str:
+def describe_end(outcome: Outcome) -> str:
     """Describe how the test ended, without the message."""
     by = f" by {outcome.by}" if outcome.by is not None else ""
     test = f" in {outcome.test}" if outcome.test is not None else ""

@@ -63,15 +63,15 @@ class ExecutedByTests:
 
     def __init__(self, told: Iterable[tuple[str, Executed | None]]) -> None:
         self._numbers: dict[str, int] = {}
-        self._told: list[Executed | None] = []
+        self._by_test: list[Executed | None] = []
         for number, (test, executed) in enumerate(told):
             self._numbers[test] = number
-            self._told.append(executed)
+            self._by_test.append(executed)
 
     def by(self, tests: Iterable[str]) -> Executed | None:
         """Return the units that these tests depend on; None if those of any test are unknown."""
         last = max((self._numbers[test] for test in tests if test in self._numbers), default=-1)
-        return together(self._told[: last + 1])
+        return together(self._by_test[: last + 1])
 
 
 FunctionNode = ast.FunctionDef | ast.AsyncFunctionDef

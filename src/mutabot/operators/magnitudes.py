@@ -78,7 +78,7 @@ def own_ladder(quantity: Quantity) -> Magnitudes | None:
     # orientations as a whole are angles; plain numbers have no measure
     unit = "rad" if quantity.is_whole else quantity.unit
     measure = dimension_of(unit) if unit is not None else None
-    told = _told(quantity)
+    told = _from_vocabulary(quantity)
     if told is not None and (told.unit is None or dimension_of(told.unit) is measure):
         return told
     if quantity.kind is Kind.COUNT:
@@ -88,7 +88,7 @@ def own_ladder(quantity: Quantity) -> Magnitudes | None:
 
 def ladder_in(quantity: Quantity | None, measure: Dimension) -> Magnitudes:
     """Return the magnitudes of faults measured in time, or as a share of the value."""
-    told = _told(quantity) if quantity is not None else None
+    told = _from_vocabulary(quantity) if quantity is not None else None
     if told is not None and told.unit is not None and dimension_of(told.unit) is measure:
         return told
     return LADDERS[measure]
@@ -102,7 +102,7 @@ def per_second(quantity: Quantity) -> Magnitudes | None:
     return Magnitudes(f"{own.unit or ''}/s", tuple(float(f"{step * _PER_SECOND:.6g}") for step in own.steps))
 
 
-def _told(quantity: Quantity) -> Magnitudes | None:
+def _from_vocabulary(quantity: Quantity) -> Magnitudes | None:
     """Return the ladder in the vocabulary; None if it has none."""
     if quantity.ladder is None:
         return None

@@ -276,7 +276,7 @@ class Estimate:
 
 def false_kills(repeats: Repeats, level: float = LEVEL) -> Estimate | None:
     """Estimate how many of the kills that still count are false; None if no kill was repeated."""
-    found = _together((repeats.doubted, repeats.others), level)
+    found = _sum_of((repeats.doubted, repeats.others), level)
     if found is None:
         return None
     changed = repeats.doubted.changed + repeats.others.changed
@@ -289,10 +289,10 @@ def false_kills(repeats: Repeats, level: float = LEVEL) -> Estimate | None:
 
 def false_survivors(repeats: Repeats, level: float = LEVEL) -> Estimate | None:
     """Estimate how many of the survivors that still count would not survive again; None without repeats."""
-    return _together((repeats.survivors,), level)
+    return _sum_of((repeats.survivors,), level)
 
 
-def _together(strata: tuple[Repeated, ...], level: float) -> Estimate | None:
+def _sum_of(strata: tuple[Repeated, ...], level: float) -> Estimate | None:
     """Return the sum over kinds of outcomes. The ends are summed too, so the interval is conservative."""
     looked = [one for one in strata if one.repeated]
     if not looked:

@@ -81,7 +81,7 @@ class EventFile:
         elif self._bell is not None and isinstance(event, _PROMPT):
             self._ring(self._bell)
 
-    def go_on_apart(self) -> None:
+    def continue_separately(self) -> None:
         """Write into a separate file from now on, in a process that was just forked.
 
         Its name tells the ``ForkEnded.fork`` of its parent, which has counted it in ``forks``.
@@ -94,7 +94,7 @@ class EventFile:
         self._last = self.forks = 0
 
     def keep_number(self) -> None:
-        """Open the file at the parent's path, which is in a private folder, after ``go_on_apart``."""
+        """Open the file at the parent's path, which is in a private folder, after ``continue_separately``."""
         number = self._file
         self._open()
         os.dup2(self._file, number, inheritable=False)

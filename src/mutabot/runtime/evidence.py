@@ -209,7 +209,7 @@ class Meter:
     guarded: str | None = None
     began: float = field(default_factory=process_time)
 
-    def go_on_in_copy(self) -> None:
+    def continue_in_copy(self) -> None:
         """Restart the count of processor time in a process that was just forked."""
         self.began = process_time()
 

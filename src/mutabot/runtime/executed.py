@@ -69,7 +69,7 @@ class ExecutedUnits(SourceStep):
                 self._keep({(name, WHOLE)})
         loading.add(self)
         loading.hook_pytest(self.wants, self.change)
-        listen(("open", "import", "exec", *STARTS), self._hear)
+        listen(("open", "import", "exec", *STARTS), self._on_audit_event)
 
     def wants(self, path: str) -> bool:
         """Return whether a file is the project's own."""
@@ -147,12 +147,12 @@ class ExecutedUnits(SourceStep):
             return None
         return real[len(self._root) :]
 
-    def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
+    def _on_audit_event(self, event: str, arguments: tuple[Any, ...]) -> None:
         """Record an audit event that outcomes may depend on, beside executed units."""
         if event == "open":
             path, _, flags = arguments
             if isinstance(path, str | bytes | os.PathLike) and not flags & (os.O_WRONLY | os.O_TRUNC):
-                name = None if _is_by_us() else self._name(os.fsdecode(path))
+                name = None if _is_own() else self._name(os.fsdecode(path))
                 if name is not None and not (name.endswith(".py") and _is_import()):
                     if self._in_call:
                         self._test.add((name, WHOLE))
@@ -164,7 +164,7 @@ class ExecutedUnits(SourceStep):
             name = self._name(arguments[0].co_filename)
             if name is not None and name not in self._loaded:
                 self._keep({(name, WHOLE)})
-        elif event in STARTS and not (_is_by_us() or _is_foreign(event, arguments) or self._is_of_library()):
+        elif event in STARTS and not (_is_own() or _is_foreign(event, arguments) or self._is_of_library()):
             self._keep({(ALL_FILES, WHOLE)})
 
     def _is_of_library(self) -> bool:
@@ -188,7 +188,7 @@ def _who(readers: tuple[str, ...]) -> str:
     return str(frame.f_globals.get("__name__", "")) if frame is not None else ""
 
 
-def _is_by_us() -> bool:
+def _is_own() -> bool:
     """Return whether mutabot causes the event, possibly through modules that read program text."""
     return _who(("linecache", "tokenize", "codecs")).startswith("mutabot.")
 

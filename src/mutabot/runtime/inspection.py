@@ -37,7 +37,7 @@ class Inspection:
         self.is_asked = is_asked
         self._send = send
         self.elsewhere: set[str] = set()
-        self._told: set[tuple[str, str]] = set()
+        self._reported: set[tuple[str, str]] = set()
         self._unfit: dict[tuple[str, str], Callable[[], None]] = {}
         self._fit: dict[str, set[str]] = {}
 
@@ -65,9 +65,9 @@ class Inspection:
 
     def tell(self, source: str, finding: Finding) -> None:
         """Report a finding about an entry of the vocabulary, unless one was reported before."""
-        if (source, finding.key) in self._told:
+        if (source, finding.key) in self._reported:
             return
-        self._told.add((source, finding.key))
+        self._reported.add((source, finding.key))
         problem = Problem(source, finding.key, finding.text, finding.name, finding.known)
         self._send(Remark(source, finding.key, finding.text) if finding.is_remark else problem)
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 
-def _import_us_unrewritten() -> None:
+def _import_mutabot_unrewritten() -> None:
     """Keep pytest from rewriting mutabot's own modules when they are imported.
 
     It would rewrite the asserts of everything in a plugin's distribution, and parse each module anew in
@@ -23,7 +23,7 @@ def _import_us_unrewritten() -> None:
             getattr(finder, "_marked_for_rewrite_cache", {}).clear()
 
 
-_import_us_unrewritten()  # before anything else of us is imported
+_import_mutabot_unrewritten()  # before anything else of us is imported
 
 from mutabot.model import call  # noqa: E402
 from mutabot.model.job import JOB_VARIABLE, PIPE_VARIABLE  # noqa: E402
@@ -161,7 +161,7 @@ def pytest_fixture_setup(fixturedef: Any, request: Any) -> Generator[None, Any, 
     seeded = _seeded(request.config)
     if seeded is None or fixturedef.scope == "function":
         return (yield)
-    with seeds.seeded_apart(seeded.seed_of(f"{fixturedef.baseid}::{fixturedef.argname}")):
+    with seeds.seeded_separately(seeded.seed_of(f"{fixturedef.baseid}::{fixturedef.argname}")):
         return (yield)
 
 

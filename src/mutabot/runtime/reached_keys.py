@@ -16,17 +16,17 @@ class ReachedKeys:
     """The keys that are awaited in this process.
 
     Args:
-        told: told the keys that are reached at once; of a call, also its number among those of its site.
-        on_first_tick: told when the clock begins in a test.
+        on_reach: called with the keys that are reached at once, and a call's number among those of its site.
+        on_first_tick: called when the clock begins in a test.
 
     Attributes:
         asks_calls: whether a call is awaited.
     """
 
     def __init__(
-        self, told: Callable[[list[Key], int | None], None], on_first_tick: Callable[[], None]
+        self, on_reach: Callable[[list[Key], int | None], None], on_first_tick: Callable[[], None]
     ) -> None:
-        self._told, self._on_first_tick = told, on_first_tick
+        self._on_reach, self._on_first_tick = on_reach, on_first_tick
         self._times: tuple[float, ...] = ()
         self._due: list[float] = []
         self._counted: frozenset[Key] = frozenset()
@@ -68,4 +68,4 @@ class ReachedKeys:
         if self._counted and key in self._counted:
             self._counts[key] += 1
             keys.append(Activation.nth(self._counts[key], key))
-        self._told(keys, number)
+        self._on_reach(keys, number)

@@ -14,7 +14,7 @@ from typing import Any, Protocol
 from mutabot.model.call import derive
 from mutabot.model.codec import printable
 
-__all__ = ["derive", "seed_all", "seeded_apart"]
+__all__ = ["derive", "seed_all", "seeded_separately"]
 
 
 def seed_all(seed: int) -> None:
@@ -26,7 +26,7 @@ def seed_all(seed: int) -> None:
 
 
 @contextmanager
-def seeded_apart(seed: int) -> Iterator[None]:
+def seeded_separately(seed: int) -> Iterator[None]:
     """Seed the generators for a block, and restore their states afterwards.
 
     Fixtures shared by several tests draw from their own seed: what they draw must not depend on which

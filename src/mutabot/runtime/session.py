@@ -130,7 +130,7 @@ class Session:
             reader = ClockReader(clock, lambda: self.meter, self._clock_is_wrong, self.reached.tick)
             self.callables.wrap(clock.tick, reader.handle)
         self._listen()
-        self._ask_for_answers()
+        self._find_answer_readers()
         if self.job.record or self.job.serving is not None:
             # what the program does while it is imported counts for every test that comes after
             self.passing.meter = Meter()
@@ -139,7 +139,7 @@ class Session:
         if self.job.mutant is not None:
             self._take_on(self.job.mutant, self.job.active[self.job.mutant.id])
 
-    def _ask_for_answers(self) -> None:
+    def _find_answer_readers(self) -> None:
         """Find the mutants of the job that may ask for a command's last answer."""
         idle = [(one, Idle.of(one.idle)) for one in self._mutants_of_job() if one.idle is not None]
         self._asking = [(one.operation, one.pattern, answers) for one, answers in idle if answers.varying]
@@ -160,13 +160,13 @@ class Session:
         """Intercept calls at their sites, whatever replaces an operation there."""
         called = [one for one in self._adapters if one.operation.kind in (None, "methods")]
         self.standing = Standing(called, self.callables, self.locator, self._sees_itself)
-        self._tell_standing()
+        self._report_replacements()
         names = {one.operation.last_name for one in called}
         handing = Handing(self.standing, self.passing.given)
         self.call_sites = CallSites(names, self.locator.role, self.standing, self._sees_itself, handing)
         self.call_sites.install()
 
-    def _tell_standing(self) -> None:
+    def _report_replacements(self) -> None:
         """Report what the baseline observed at the sites of the job's mutants."""
         mutants = self._mutants_of_job()
         self.standing.known = dict(self.job.known) | {one.site.span: one.operation for one in mutants}
@@ -177,12 +177,12 @@ class Session:
         """Receive messages that may show refusals, or the robot's position."""
         operations = self.job.vocabulary.operations
         asked = {name for operation in operations for name in operation.currents}
-        told = (one for operation in operations for one in operation.told_as_refused)
+        told = (one for operation in operations for one in operation.all_refused)
         self._telling = [adapter for adapter in self._adapters if adapter.operation.target in asked]
         if any(refused.topic is not None for refused in told) or any(
             adapter.operation.named is not None for adapter in self._telling
         ):
-            self._heeded().on_heard = self._heard
+            self._heeded().on_heard = self._on_message
 
     def _heeded(self) -> Messages:
         """Return the names on middlewares, which are hooked when they are first needed."""
@@ -191,7 +191,7 @@ class Session:
             self.targets.append(self.messages)
         return self.messages
 
-    def _heard(self, name: str, message: Any) -> None:
+    def _on_message(self, name: str, message: Any) -> None:
         if self.mutant is not None:
             self.mutant.heard(name, message)
         self.passing.refused.heard(name, message)
@@ -280,7 +280,7 @@ class Session:
         """Become this mutant, in a process that was just forked."""
         self.fork_parent, self.is_fork = None, True
         if self.meter is not None:
-            self.meter.go_on_in_copy()
+            self.meter.continue_in_copy()
         if self.text is not None:
             self.text.alternatives.on_place = None
             self.text.alternatives.activate()
@@ -290,9 +290,9 @@ class Session:
         """Continue with a job of the same program and vocabulary. What was installed stays."""
         self.job, self.pipe = job, pipe
         self.inspection.is_asked = job.inspect
-        self._ask_for_answers()
+        self._find_answer_readers()
         self.passing.on_end = self.inspection.note if job.inspect else None
-        self._tell_standing()
+        self._report_replacements()
         if self.text is not None:
             self.text.pipe = pipe
 
@@ -373,7 +373,7 @@ class Session:
         self.passing.meter = None
         if self.text is not None:
             if self.fork_parent is not None:
-                self.fork_parent.tell_undiverged(self.text.alternatives.hits)
+                self.fork_parent.report_undiverged(self.text.alternatives.hits)
             self.text.end_test()
 
     def take_probes(self) -> Reading:
@@ -427,14 +427,14 @@ class Session:
             stood = self.standing.stood | {seen.span: seen.operation for seen in self.recorder.sites}
             for span in sorted(self.standing.alone & stood.keys()):
                 self._send(KnownLater(span, stood[span]))
-            self._send(self.calls_asked())
+            self._send(self.intercepted_calls())
         if self.job.inspect:
             self.inspect_targets()
             if self.standing.noted is not None:
                 for operation, finding in self.standing.noted.findings(self.job.vocabulary.operations):
                     self.inspection.tell(operation.source, finding)
 
-    def calls_asked(self) -> CallsAsked:
+    def intercepted_calls(self) -> CallsAsked:
         """Return which calls were intercepted until now, and which replacements were called."""
         files = sorted(map(self.locator.relative, self.call_sites.asked))
         return CallsAsked(tuple(files), tuple(sorted(self.standing.alone)))
@@ -478,13 +478,13 @@ class Session:
 
     def acted(self) -> None:
         """Report that the fault changed something in the running test."""
-        self._tell_acted(tape.now())
+        self._report_acted(tape.now())
 
     def acted_in_call(self) -> None:
         """Note that the mutant acted in a call, at the time when the call began."""
-        self._tell_acted(self.recorder.began)
+        self._report_acted(self.recorder.began)
 
-    def _tell_acted(self, seconds: float | None) -> None:
+    def _report_acted(self, seconds: float | None) -> None:
         self.recording.note_fault(len(self.recorder.trace), seconds)
         self.pipe.send(Acted(self.test))
 

@@ -93,7 +93,9 @@ class SessionHooks:
             if job.vocabulary.operations:  # else no operator of calls will act
                 preload()
             hooks = cls(
-                job, pipe, ForkServer(job.serving, pipe, LOG, home, job.private_files, not _tests_us(job))
+                job,
+                pipe,
+                ForkServer(job.serving, pipe, LOG, home, job.private_files, not _tests_us(job)),
             )
         else:
             hooks = cls(job, pipe)

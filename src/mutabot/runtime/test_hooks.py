@@ -56,7 +56,7 @@ class ForkedRun:
         self._shared = session.meter.simulated if session.meter is not None else None
         self._is_early = not session.test
         self._has_acted = False
-        listen((*STARTS, *FORKINGS), self._hear)
+        listen((*STARTS, *FORKINGS), self._on_audit_event)
 
     def start_test(self, test: str) -> None:
         """Begin a test, the fork's second at least."""
@@ -89,7 +89,7 @@ class ForkedRun:
         told = ForkTestEnd(self.mutant.id, end, tuple(sites), self._shared, self._is_early, is_test_control)
         self._session.pipe.send(told)
 
-    def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
+    def _on_audit_event(self, event: str, arguments: tuple[Any, ...]) -> None:
         """Make the first process that the program starts the mutant as well."""
         if self._tests.members is None and os.getpid() == self._pid:
             try:
@@ -149,7 +149,7 @@ class TestHooks:
         self._reading = Reading()
         self._started = (0.0, 0.0)
         self._used = TimeUsed.from_now()
-        listen(("socket.bind",), self._hear)
+        listen(("socket.bind",), self._on_audit_event)
 
     def start_clocks(self, *, is_new: bool = False) -> None:
         """Start the clocks of a test; ``is_new``: in a process that was just forked."""
@@ -209,7 +209,7 @@ class TestHooks:
             self.members.start_test(test)
         session.start_test(test, partial(objects_of_fixtures, item))
 
-    def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
+    def _on_audit_event(self, event: str, arguments: tuple[Any, ...]) -> None:
         """Note a fixed address at which the test listens, which two processes cannot share."""
         address = arguments[1]
         is_chosen = isinstance(address, tuple) and len(address) > 1 and address[1] == 0
@@ -318,7 +318,7 @@ class TestHooks:
             reading=self._reading.seconds,
             not_along=self._reading.not_along,
             more_checks=self.looks.more,
-            recording=session.recording.text(session.recorder.told()),
+            recording=session.recording.text(session.recorder.recorded_calls()),
             executed=self.units.of_test(alone=is_alone),
             trace=tuple(session.recorder.trace) if is_compared else (),
             returned=tuple(returns.entries) if is_compared and returns is not None else (),

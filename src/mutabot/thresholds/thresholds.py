@@ -113,7 +113,7 @@ def _text(ladder: Ladder, magnitude: float) -> str:
     return amount(magnitude, ladder.unit)
 
 
-def violations_in_words(ladder: Ladder) -> Iterator[str]:
+def describe_violations(ladder: Ladder) -> Iterator[str]:
     """Yield violations as text: ``noticed at 5 mm, survives 20 mm, round 3``; equal rounds together."""
     rounds: dict[tuple[float, float], list[int]] = {}
     for one in ladder.violations:

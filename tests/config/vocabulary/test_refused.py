@@ -51,7 +51,7 @@ def test_each_case_of_a_call_has_refusals_of_its_own(tmp_path: Path) -> None:
     text = f'[[operation]]\n{CALL}{STATUS}\nwhen = {{ argument = "kind", value = 1 }}'
     (operation,) = loaded(tmp_path, text).operations
     assert operation.patterns[0].refused == (Refused(".status", (5, 6)),)
-    assert operation.told_as_refused == operation.patterns[0].refused
+    assert operation.all_refused == operation.patterns[0].refused
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.thresholds.thresholds import amount, line_of, violations_in_words
+from mutabot.thresholds.thresholds import amount, describe_violations, line_of
 from results.thresholds import journals
 
 
@@ -76,7 +76,7 @@ def test_what_is_unstable_inside_a_bracket_does_not_open_it(tmp_path: Path) -> N
 
 def test_a_larger_fault_that_is_missed_is_told(tmp_path: Path) -> None:
     found = journals.ladder(tmp_path, "SSSSCCC", "SSSSCCC", "SSCSSCC")
-    assert list(violations_in_words(found)) == ["noticed at 5 mm, survives 20 mm, round 3"]
+    assert list(describe_violations(found)) == ["noticed at 5 mm, survives 20 mm, round 3"]
     assert line_of(found) == "noticed in 2 of 3 rounds from 20 mm, in all 3 from 50 mm; in none up to 10 mm"
 
 

@@ -119,7 +119,7 @@ own.mkdir(parents=True)
 reading, writing = os.pipe()
 pid = os.fork()
 if pid == 0:
-    files.go_on_apart(str(own))
+    files.continue_separately(str(own))
     os.write(writing, b"x")
     seen = [pathlib.Path("new/link").read_text(), sorted(os.listdir(root)), os.listdir(root / "moved")]
     pathlib.Path("report.txt").write_text("child")
@@ -148,12 +148,12 @@ memory.mkdir()
 (home / "forks/1/1").mkdir(parents=True)
 pid = os.fork()
 if pid == 0:
-    files.go_on_apart(str(home / "forks/1"))
+    files.continue_separately(str(home / "forks/1"))
     seen = (memory / "pose").read_text()
     (memory / "pose").write_text("child")
     inner = os.fork()
     if inner == 0:
-        files.go_on_apart(str(home / "forks/1/1"))
+        files.continue_separately(str(home / "forks/1/1"))
         (home / "seen").write_text(seen + " " + (memory / "pose").read_text())
         (memory / "pose").unlink()
         os._exit(0)

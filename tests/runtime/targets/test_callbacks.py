@@ -211,5 +211,5 @@ def test_the_trace_has_a_call_in_a_callback_before_the_operation_around_it(make_
     times = iter(range(100))
     session.recorder.clock = lambda: float(next(times))
     stage.run(session)
-    assert [call.written for call in session.recorder.told()] == [{"x": 2.0}, {}, {"x": 3.0}]
+    assert [call.written for call in session.recorder.recorded_calls()] == [{"x": 2.0}, {}, {"x": 3.0}]
     assert session.recorder.when == [(1.0, 2.0), (0.0, 3.0), (4.0, 5.0)]

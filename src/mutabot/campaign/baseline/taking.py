@@ -17,7 +17,7 @@ from mutabot.campaign.probe_readings import probe_intervals_of
 from mutabot.campaign.request import Progress, Request
 from mutabot.config.mistakes import problem_error
 from mutabot.errors import BaselineError, NothingToDoError
-from mutabot.execution.task import ABNORMAL, Result, Task, said_in
+from mutabot.execution.task import ABNORMAL, Result, Task, tail_of
 from mutabot.families import OF_CALLS
 from mutabot.languages.python import unused_calls
 from mutabot.model import Instrumentation, Span
@@ -218,7 +218,7 @@ def _run(
     texts = tuple(text for one in of_providers.values() for text in one)
     recording = Instrumentation(texts, record=True) if texts else None
     suite.run(_first_runs(suite, recording))
-    is_looked_at = recording is None or not _fails_if_looked_at(suite, recording)
+    is_looked_at = recording is None or not _fails_if_instrumented(suite, recording)
     if if_all_pass and suite.failing():
         return False
     if suite.learns():
@@ -248,7 +248,7 @@ def _first_runs(suite: _Suite, recording: Instrumentation | None) -> Iterator[Ta
         yield suite.task(round, 0, inspect=round == 0, instrumentation=recording)
 
 
-def _fails_if_looked_at(suite: _Suite, recording: Instrumentation) -> bool:
+def _fails_if_instrumented(suite: _Suite, recording: Instrumentation) -> bool:
     """Return whether tests fail only if the program text is instrumented; if so, use runs without that."""
     first, failing = dict(suite.results), suite.failing()
     if not failing:
@@ -329,15 +329,15 @@ def _refuse(result: Result, arguments: Sequence[str]) -> None:
         )
     if result.end is None:
         text = f"the tests cannot be run on the original: {result.death(said=False)}"
-        raise BaselineError(f"{text}{said_in(result.log)}")
+        raise BaselineError(f"{text}{tail_of(result.log)}")
     if result.end.errors:
         raise BaselineError("the tests cannot be collected:\n" + "\n".join(result.end.errors))
     how = ABNORMAL.get(result.end.exit_status)
     if how is not None:
         text = f"pytest ended with exit status {result.end.exit_status} ({how})"
-        raise BaselineError(f"the tests cannot be run on the original: {text}{said_in(result.log)}")
+        raise BaselineError(f"the tests cannot be run on the original: {text}{tail_of(result.log)}")
     if not result.end.collected:
-        raise NothingToDoError(f"pytest finds no tests with {' '.join(arguments)}{said_in(result.log)}")
+        raise NothingToDoError(f"pytest finds no tests with {' '.join(arguments)}{tail_of(result.log)}")
     kept = next((end for end in result.ends if end.guarded is not None), None)
     if kept is not None:
         raise BaselineError(

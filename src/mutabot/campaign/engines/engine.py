@@ -139,7 +139,7 @@ def _by_fork(
         yield from _believed(trust, mutants[one.mutant], one, left)
     left.runs += [(mutant, one.round) for mutant, one in hindered if not trust.believes(one)]
     hindered = [(mutant, one) for mutant, one in hindered if trust.believes(one)]
-    _tell(campaign, left)
+    _report_replayed(campaign, left)
     clear_up(campaign, left.suspects)
     left.runs = [run for run in left.runs if run[0].id not in controls]
     yield from run_alone(campaign, hindered)
@@ -180,7 +180,7 @@ def try_controls(campaign: Campaign, mutants: Sequence[Mutant]) -> tuple[int, Un
     return ended, left
 
 
-def _tell(campaign: Campaign, left: Unhandled) -> None:
+def _report_replayed(campaign: Campaign, left: Unhandled) -> None:
     """Tell the user which mutants run in processes of their own, and why."""
     tests: dict[str, list[str]] = {}
     for test, reason in left.reasons.items():

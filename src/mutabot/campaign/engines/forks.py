@@ -366,7 +366,7 @@ class _ForkRound:
         found = observation(end, self._places)
         self._baseline.compare_runs(self._round, end, found, self._campaign.request.vocabulary)
         if self._campaign.evidence is not None:
-            self._campaign.evidence.add_again(self._round, end)
+            self._campaign.evidence.add_rerun(self._round, end)
         own = replace(end, hits=0, acted=0, wall=0.0, cpu=0.0, trace=(), recording=None)
         self._own_ends.append(own)
         for mutant in undiverged.keys() & self._open.keys():

@@ -283,7 +283,7 @@ def _why_unmet(
     match need:
         case Need.ERROR if not _has_raised(original, place):
             return "no call raises in the baseline"
-        case Need.PLACE if not _is_told(subject, vocabulary):
+        case Need.PLACE if not _has_reading(subject, vocabulary):
             return f"{subject.current or 'no reading'} does not tell where it is"
         case Need.CLOCK if vocabulary.clock is None:
             return "the vocabulary names no clock"
@@ -305,7 +305,7 @@ def _has_raised(original: Original, place: Place) -> bool:
     return any(one.has_raised for one in of_command)
 
 
-def _is_told(subject: Subject, vocabulary: Vocabulary) -> bool:
+def _has_reading(subject: Subject, vocabulary: Vocabulary) -> bool:
     """Return whether the vocabulary names a reading of the current value of the subject's quantity."""
     reading = vocabulary.operation(subject.current or "")
     if reading is None or subject.quantity is None:

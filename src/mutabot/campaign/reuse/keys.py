@@ -164,7 +164,7 @@ class Dependencies:
         self.installed = installed
         self.files, self.notes, self.texts = state.files, state.notes, state.texts
         self.parts: dict[str, Parts] = {}
-        self._told = 0
+        self._returned = 0
         self._idle: dict[int, Executed] = {}
         self._made: dict[tuple[int, ...], tuple[tuple[object, ...], list[str]]] = {}
         self._groups: dict[tuple[str, ...], tuple[str, ...]] = {}
@@ -174,7 +174,7 @@ class Dependencies:
         self.common = {
             **{name: digest for name, digest in self.files.items() if name not in self.texts},
             **dict(self._around()),
-            **_around_files(request, self.files, installed, read),
+            **_environment_parts(request, self.files, installed, read),
         }
         self._common = self._stored(self.common)
         self._operations = {
@@ -388,8 +388,8 @@ class Dependencies:
 
     def new_parts(self) -> Mapping[str, Parts]:
         """Return the parts that are new since the last call."""
-        new = dict(islice(self.parts.items(), self._told, None))
-        self._told = len(self.parts)
+        new = dict(islice(self.parts.items(), self._returned, None))
+        self._returned = len(self.parts)
         return new
 
     def _stored(self, parts: Parts) -> str:
@@ -422,15 +422,15 @@ class OutcomeWriter:
         accepting: Accepted = journal.meta().get(ACCEPTED) or Accepted()
         self._acceptances = accepting.mutants
         for outcome in journal.outcomes():
-            self._tell_of(outcome, is_reused=True)
+            self._report_units(outcome, is_reused=True)
 
     def add_outcome(self, outcome: Outcome) -> None:
         """Add an outcome, replacing an earlier one of the same mutant and round."""
         key = self._key_of(outcome, self._dependencies) if self._dependencies is not None else ""
         self.journal.add_outcome(replace(outcome, executed=None), key=key)
-        self._tell_of(outcome)
+        self._report_units(outcome)
 
-    def _tell_of(self, outcome: Outcome, *, is_reused: bool = False) -> None:
+    def _report_units(self, outcome: Outcome, *, is_reused: bool = False) -> None:
         mutant = self._mutants.get(outcome.mutant)
         if mutant is not None:
             self._tell(MutantEnd(mutant, outcome, self._acceptances.get(mutant.id), is_reused))
@@ -506,10 +506,10 @@ def everything_of(request: Request, files: Parts, installed: Parts) -> Parts:
     vocabulary = request.vocabulary
     entries = (_operation_parts(vocabulary, one.target) for one in vocabulary.operations)
     operations = {name: digest for one in entries for name, digest in one.items()}
-    return {**_around_files(request, files, installed, read), **operations, **files}
+    return {**_environment_parts(request, files, installed, read), **operations, **files}
 
 
-def _around_files(
+def _environment_parts(
     request: Request, files: Parts, installed: Parts, read: Callable[[Path], bytes | None]
 ) -> dict[str, str]:
     """Return what all outcomes depend on besides the content of the project's files."""

@@ -188,7 +188,7 @@ def text_of(found: Reused) -> str:
     if reused == planned:
         return f"reused all {planned} outcomes: nothing that they depend on has changed"
     parts = [f"reused {reused} of {planned} outcomes"]
-    parts += reasons_in_words(found.why.values())
+    parts += describe_reasons(found.why.values())
     unsound = len(found.unsound - found.why.keys())
     if unsound:
         parts.append(f"{unsound} run again: {_UNSOUND}")
@@ -198,7 +198,7 @@ def text_of(found: Reused) -> str:
     return "; ".join(parts)
 
 
-def reasons_in_words(why: Iterable[str]) -> list[str]:
+def describe_reasons(why: Iterable[str]) -> list[str]:
     """Describe how many mutants are run again, by reason."""
     counts = Counter(why)
     parts = [f"{count} run again: {reason}" for reason, count in counts.most_common(_SHOWN)]
@@ -434,7 +434,7 @@ def only_altered(
         taken_over=len(found.done),
         not_judged=dict(reasons.most_common()),
     )
-    _tell(since, revision.short, progress)
+    _report_selection(since, revision.short, progress)
     journal.set_meta(SINCE, since)
     known = {mutant for mutant, _ in found.done | altered.keys()}
     journal.keep_planned(known)
@@ -442,7 +442,7 @@ def only_altered(
     return replace(plan, mutants=[mutant for mutant in plan.mutants if mutant.id in known])
 
 
-def _tell(since: Since, short: str, progress: Progress) -> None:
+def _report_selection(since: Since, short: str, progress: Progress) -> None:
     """Print which mutants are run and which are not, by the kind of reason."""
     total = sum(since.run.values())
     unjudged = sum(since.not_judged.values())

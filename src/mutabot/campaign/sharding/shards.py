@@ -83,12 +83,12 @@ def write_shard(
         dependencies: None if they are not known yet, or files change.
     """
     if shard is not None:
-        depends = {**dependencies.everything, **_asked(dependencies.request)} if dependencies else None
+        depends = {**dependencies.everything, **_settings_of(dependencies.request)} if dependencies else None
         said = records.ShardOf(shard.number, shard.of, tuple(one.number for one in part.mutants), depends)
         journal.set_meta(records.SHARD, said)
 
 
-def _asked(request: Request) -> dict[str, str]:
+def _settings_of(request: Request) -> dict[str, str]:
     """Return the other settings that decide which outcomes a campaign has."""
     sample = request.sample.text if request.sample is not None else "none"
     return {"rounds": str(request.rounds), "families": ", ".join(request.families), "sample": sample}

@@ -387,7 +387,7 @@ def mutant_page(
         data_of.facts(suggestion, "code test notes") if suggestion is not None and suggestion.code else None
     )
     return {
-        **told(data_of(result)),
+        **without_empty(data_of(result)),
         "change": result.change,
         "told": place,
         "suggestion": check,
@@ -395,11 +395,11 @@ def mutant_page(
     }
 
 
-def told(value: Any) -> Any:
+def without_empty(value: Any) -> Any:
     """Return data without empty values."""
     if isinstance(value, dict):
-        return {key: told(item) for key, item in value.items() if item not in _NOTHING}
-    return [told(item) for item in value] if isinstance(value, list) else value
+        return {key: without_empty(item) for key, item in value.items() if item not in _NOTHING}
+    return [without_empty(item) for item in value] if isinstance(value, list) else value
 
 
 #: characters of a value that are shown
@@ -439,9 +439,11 @@ class Recorded:
     def _places(self, result: MutantResult) -> Iterator[tuple[int, str]]:
         found = [(number, one) for number, one in enumerate(result.rounds) if one is not None]
         for number, outcome in sorted(found, key=lambda one: weight_of(one[1]), reverse=True):
-            told = [one.test for one in outcome.diverged]
+            diverged = [one.test for one in outcome.diverged]
             tests = self.evidence.tests(result.mutant.id, number)
-            for test in sorted(tests, key=lambda one: told.index(one) if one in told else len(told)):
+            for test in sorted(
+                tests, key=lambda one: diverged.index(one) if one in diverged else len(diverged)
+            ):
                 yield number, test
 
     def _original(self, round: int, test: str, recording: Recording | None) -> int | None:

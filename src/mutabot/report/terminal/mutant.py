@@ -11,7 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from mutabot.errors import plural
-from mutabot.model.outcome import Verdict, end_in_words, numbers_text
+from mutabot.model.outcome import Verdict, describe_end, numbers_text
 from mutabot.report.sections import Section, between
 from mutabot.report.texts import acceptance_text, effect_text, excerpts, places_text, telling
 
@@ -67,7 +67,7 @@ def print_replayed(console: Console, mutant: Mutant, rounds: Iterable[Replayed])
         if one.first is not None and not one.agrees:
             ends.append((f"in the journal ({one.first.engine})", one.first))
         for name, outcome in ends:
-            console.print(below("\n".join([f"{name}: {end_in_words(outcome)}", *_details(outcome)])))
+            console.print(below("\n".join([f"{name}: {describe_end(outcome)}", *_details(outcome)])))
 
 
 def _facts(result: MutantResult) -> Table:
@@ -105,7 +105,7 @@ def _rounds(result: MutantResult, *, everything: bool) -> Section:
     """Return the rounds, equal ones together with the details of the first; on one screen only a few."""
     groups: dict[Any, list[int]] = {}
     for number, outcome in enumerate(result.rounds):
-        groups.setdefault(outcome and (end_in_words(outcome), outcome.place), []).append(number)
+        groups.setdefault(outcome and (describe_end(outcome), outcome.place), []).append(number)
     most = telling(result)
     lines = [letters(result.rounds).plain] if len(result.rounds) > 1 else []
     for numbers in groups.values():

@@ -31,7 +31,7 @@ _TELLING = 0.1
 _STALE, _RECENT = 0.25, 5.0
 _NOT_COVERED = "not covered"
 #: states that are told at once
-_TOLD = ("survived", _NOT_COVERED)
+_SHOWN = ("survived", _NOT_COVERED)
 
 
 class Pace:
@@ -92,7 +92,7 @@ class Tally:
     def __init__(self) -> None:
         self._states: dict[tuple[str, int], str] = {}
         self._counts: Counter[str] = Counter()
-        self._told: set[str] = set()
+        self._shown: set[str] = set()
 
     def add(self, end: MutantEnd) -> str | None:
         """Count an outcome. Return a message if a survivor is new, or no longer one."""
@@ -106,10 +106,10 @@ class Tally:
         self._counts[state] += 1
         # of a place that no test reaches, the mutants are told together
         told = end.mutant.site.id if state == _NOT_COVERED else end.mutant.id
-        is_new = state in _TOLD and told not in self._told
-        if end.mutant.has_sizes or not (is_new or before in _TOLD):
+        is_new = state in _SHOWN and told not in self._shown
+        if end.mutant.has_sizes or not (is_new or before in _SHOWN):
             return None
-        self._told.add(told)
+        self._shown.add(told)
         if end.is_reused:
             return None
         mutant = end.mutant
@@ -187,7 +187,7 @@ class Bar:
         """Count an outcome, and print a survivor above the bars."""
         text = self._tally.add(end)
         if text is not None:
-            self._progress.console.print(Text(plain(text), style="red" if end.state in _TOLD else ""))
+            self._progress.console.print(Text(plain(text), style="red" if end.state in _SHOWN else ""))
 
     def advance(self, line: str | None = None) -> None:
         """Advance the progress bar, and show the counts beside it, or ``line`` if there are none."""
@@ -247,7 +247,7 @@ class Lines:
         """Count a step, and print the progress if the last line about it is long enough ago."""
         self._pace.advance()
         if self._pace.done == self._pace.total or time.monotonic() - self._last >= self._every:
-            self._tell(line)
+            self._print_progress(line)
 
     @property
     def left(self) -> float | None:
@@ -258,7 +258,7 @@ class Lines:
         """Print a line."""
         self._print(text)
 
-    def _tell(self, line: str | None = None) -> None:
+    def _print_progress(self, line: str | None = None) -> None:
         self._last = time.monotonic()
         pace = self._pace
         of = "" if pace.total is None else f"/{pace.total}"
@@ -268,7 +268,7 @@ class Lines:
     def _live(self) -> None:
         while not self._is_over.wait(self._every / 10):
             if self._text and time.monotonic() - self._last >= self._every:
-                self._tell()
+                self._print_progress()
 
     def _print(self, text: str) -> None:
         with self._lock:

@@ -10,7 +10,7 @@ from rich.text import Text
 
 from mutabot.errors import plural
 from mutabot.report.sections import Section
-from mutabot.thresholds.thresholds import Thresholds, amount, line_of, rounds_left_out, violations_in_words
+from mutabot.thresholds.thresholds import Thresholds, amount, describe_violations, line_of, rounds_left_out
 
 from .console import print_section
 
@@ -65,7 +65,7 @@ def _sections(thresholds: Thresholds) -> dict[str, list[str]]:
     known = [(f"{one.place} {one.name}", one) for one in thresholds.ladders]
     return {
         "Out of order: a larger fault was missed": [
-            f"{name}: {text}" for name, one in known for text in violations_in_words(one)
+            f"{name}: {text}" for name, one in known for text in describe_violations(one)
         ],
         "Rounds that do not count": [
             f"{name}: {text}" for name, one in known for text in rounds_left_out(one)

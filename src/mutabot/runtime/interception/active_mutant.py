@@ -182,7 +182,7 @@ class ActiveMutant:
     def __post_init__(self) -> None:
         self.evidence, self.early = Evidence(), Evidence()
         self._told_by: tuple[Refused, ...] = ()
-        self._commands, self._told, self._is_passed = 0, 0, False
+        self._commands, self._reported, self._is_passed = 0, 0, False
         self._forget()
 
     def _forget(self) -> None:
@@ -249,7 +249,7 @@ class ActiveMutant:
             )
         passage = CallRecord(call)
         mutated = _MutatedCall(self, adapter, made, passage, does_nothing=is_due and self._does_nothing)
-        self._commands, self._told, self._is_passed = 0, 0, False
+        self._commands, self._reported, self._is_passed = 0, 0, False
         middleware = _one_is_due if self._due else self._middleware if is_due else _not_yet
         try:
             known: dict[str, Any] = {"is_refusal": partial(is_refusal, names=self.refusals)}
@@ -257,7 +257,7 @@ class ActiveMutant:
                 known["idle"] = self._idle_answer(self._idle, adapter, made.call)
             reply = await run_middleware(passage, middleware, mutated.proceed, **known)
             if reply.more:
-                reply = passage.received = call_faults.heard_of(passage.call, reply)
+                reply = passage.received = call_faults.received_part(passage.call, reply)
             self.note(passage)
             self._due += [(hit, mutated, _held(one)) for one in passage.deferred]
             last = passage.answered[-1] if passage.answered else None
@@ -312,10 +312,10 @@ class ActiveMutant:
         """Check whether a message says that the robot refuses a command."""
         if not any(one.topic is not None and fnmatchcase(name, one.topic) for one in self._told_by):
             return
-        self._told += 1
+        self._reported += 1
         if self.watched:
             self.refused_as(heard(self.watched, name, message))
-            if self._is_passed and self._told >= self._commands:
+            if self._is_passed and self._reported >= self._commands:
                 self.watched = ()
 
     def passed_by(self, call: Call) -> None:
@@ -326,7 +326,7 @@ class ActiveMutant:
         """
         if self.watched and call.operation.target == self.operation.target:
             self._is_passed = True
-            if not 0 < self._told < self._commands:
+            if not 0 < self._reported < self._commands:
                 self.watched = ()
 
     def count(self, call: Call) -> None:
@@ -485,7 +485,7 @@ class _MutatedCall:
         action = partial(self.adapter.perform, call, self.passage.call)
         try:
             if call.call_faults:
-                await call_faults.before(call, self._last_words)
+                await call_faults.before(call, self._report_before_death)
             result = call_faults.perform(call, action) if call.call_faults else action()
             if self.made.is_async and inspect.isawaitable(result):
                 result = await result
@@ -510,7 +510,7 @@ class _MutatedCall:
         """Whether the robot refuses this call in the original too, so that the tests judge it."""
         return self.made.number in self.mutant.usual
 
-    def _last_words(self) -> None:
+    def _report_before_death(self) -> None:
         """Report what the mutant did, as this process is about to end because of it."""
         self.mutant.note(self.passage)
         self.mutant.on_call(False)

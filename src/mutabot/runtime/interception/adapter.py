@@ -239,7 +239,9 @@ class Adapter:
     def _read_message(self, invocation: Invocation, path: Path) -> None:
         """Read the text, bytes or printed object that identifies the command of a call."""
         if path.root == "self" and invocation.instance is None:
-            self._tell("message", f"{self.operation.target} is called on no object, so it has no self")
+            self._report_problem(
+                "message", f"{self.operation.target} is called on no object, so it has no self"
+            )
         start = invocation.start_of(path)
         try:
             invocation.message = path.get(start) if start is not None else None
@@ -265,7 +267,7 @@ class Adapter:
             if all(case.key == "mode" for case in unfit):
                 undecided.append(pattern)
         if undecided:
-            self._tell_undecided(undecided, invocation)
+            self._report_undecided(undecided, invocation)
         return None, self._values(self.operation.arguments, invocation)
 
     def _written(
@@ -285,7 +287,7 @@ class Adapter:
         kind = type(message).__name__
         which = f"{'an' if kind[:1].lower() in 'aeiou' else 'a'} {kind}"
         text = f"{self.operation.message} is {which}, whose text cannot be changed"
-        self._tell("message", f"{text}; describe the arguments beside it, and no opposite")
+        self._report_problem("message", f"{text}; describe the arguments beside it, and no opposite")
         return False
 
     def _values(self, quantities: tuple[Quantity, ...], invocation: Invocation) -> dict[str, Value]:
@@ -308,12 +310,12 @@ class Adapter:
                 self.on_problem(f"{key}.{quantity.name}", _unread(quantity, error))
                 continue
             if value is UNKNOWN:
-                self.on_problem(f"{key}.{quantity.name}", _strange(quantity, found))
+                self.on_problem(f"{key}.{quantity.name}", _strange_value_error(quantity, found))
             elif value is not None:
                 values[quantity.name] = value
         return values
 
-    def _tell_undecided(self, patterns: list[Pattern], invocation: Invocation) -> None:
+    def _report_undecided(self, patterns: list[Pattern], invocation: Invocation) -> None:
         """Report the argument whose value fits no mode of the vocabulary."""
         cases = [case for pattern in patterns for case in pattern.when if case.key == "mode"]
         for argument in dict.fromkeys(case.argument for case in cases):
@@ -321,9 +323,9 @@ class Adapter:
             found = _names(invocation, argument)
             if not set(found) & set(known):
                 text = f"{argument} is {found[-1]}, for which mode says nothing; it knows {', '.join(known)}"
-                self._tell("mode", text)
+                self._report_problem("mode", text)
 
-    def _tell(self, key: str, text: str) -> None:
+    def _report_problem(self, key: str, text: str) -> None:
         self.on_problem(key, PathError(text))
 
     def perform(self, call: Call, original: Call) -> Any:
@@ -399,11 +401,11 @@ class Adapter:
         """Report a coroutine that is not awaited, and a successful call that contradicts its signature."""
         if type(result) is CoroutineType:
             text = f"{self.operation.target} returns a coroutine but is not a coroutine function"
-            self._tell("call", f"{text}; name the coroutine function behind it")
+            self._report_problem("call", f"{text}; name the coroutine function behind it")
         if invocation.values is None and self.operation.signature is not None:
             given = [*("…" for _ in invocation.args), *(f"{name}=…" for name in invocation.kwargs)]
             text = f"{self.operation.signature} does not take the call ({', '.join(given)})"
-            self._tell("signature", text)
+            self._report_problem("signature", text)
 
     def _other(self, target: str, invocation: Invocation) -> Any:
         """Return another attribute of the same object, or of its module if that is not possible."""
@@ -564,7 +566,7 @@ def _unread(quantity: Quantity, error: Exception) -> PathError:
     return PathError(f"{quantity.path or 'the result'} cannot be read: {in_words(error)}")
 
 
-def _strange(quantity: Quantity, found: Any) -> StrangeValueError:
+def _strange_value_error(quantity: Quantity, found: Any) -> StrangeValueError:
     """Return an error that says what to describe instead of an object that is no plain data."""
     path, kind = str(quantity.path), class_name(type(found))
     what = f"{path or 'the result'} is of {kind}, which is not plain data, so its value is left as it is"

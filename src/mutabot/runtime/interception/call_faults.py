@@ -73,7 +73,7 @@ async def after(call: Call, result: Any) -> None:
         await cancel(result)
 
 
-def heard_of(call: Call, reply: Reply) -> Reply:
+def received_part(call: Call, reply: Reply) -> Reply:
     """Return the part of a reply that the program receives; a wait for one message gets the first only."""
     means: MiddlewareControls | None = call.payload.where.means
     if means is None or not means.once or not reply.more:

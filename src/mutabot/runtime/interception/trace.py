@@ -97,14 +97,14 @@ class Recorder:
             self.on_site(self.sites[-1])
         return index
 
-    def told(self) -> list[RecordedCall]:
+    def recorded_calls(self) -> list[RecordedCall]:
         """Return the recorded calls of the running test with their times."""
         return [
-            self.told_of(index, written, read, began, ended)
+            self.recorded_call(index, written, read, began, ended)
             for (index, written, read, _), (began, ended) in zip(self.trace[:_TOLD], self.when, strict=False)
         ]
 
-    def told_of(
+    def recorded_call(
         self, index: int, written: Any, read: Any, began: float | None, ended: float | None = None
     ) -> RecordedCall:
         """Return one call at the site of this index; ``ended`` is ``began`` if it is not known."""

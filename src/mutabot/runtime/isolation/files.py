@@ -87,7 +87,7 @@ class PrivateFiles:
             # forks begin where nothing is covered: to uncover it again takes as long as to cover it
             self._bare = os.open("/proc/self/ns/mnt", os.O_RDONLY | os.O_CLOEXEC)
             call("unshare", _CLONE_NEWNS, what=_NO_MOUNTS)
-            self._lay()
+            self._mount_overlays()
         except OSError as error:
             if self._bare >= 0:
                 self._go_back()
@@ -140,7 +140,7 @@ class PrivateFiles:
         folder, log = os.path.join(self.home, FORKS, name), os.stat(os.path.join(self.home, LOG))
         processes = os.path.join(folder, FOLDER)
         os.makedirs(processes)
-        self.go_on_apart(folder)
+        self.continue_separately(folder)
         # by the name that its environment has: whatever it starts finds its own folder, and not the parent's
         _mount(processes, os.path.join(self.home, FOLDER), None, _MS_BIND)
         isolate_files(log)  # what leads to the parent's log leads nowhere
@@ -151,7 +151,7 @@ class PrivateFiles:
         """Return to the mounts without overlays; the working folder is the root then."""
         call("setns", self._bare, _CLONE_NEWNS, what="there is no way back to the files on disk")
 
-    def go_on_apart(self, folder: str) -> None:
+    def continue_separately(self, folder: str) -> None:
         """Continue with private files in a process that was just forked, while its parent waits.
 
         What the parent did to its files is copied. ``folder`` lies in the home, which both have. Raises
@@ -170,10 +170,10 @@ class PrivateFiles:
         if keeps_ids():
             _mount("proc", "/proc", None, 0, kind="proc")  # that of its process namespace
         self._own = folder
-        self._lay()
+        self._mount_overlays()
         os.chdir(place)
 
-    def _lay(self) -> None:
+    def _mount_overlays(self) -> None:
         """Mount an overlay over each private folder."""
         folders = (*private_folders(self.root), os.path.dirname(os.path.dirname(self.home)))
         if self._below is None:  # the same in all forks, and the list is long
@@ -188,7 +188,7 @@ class PrivateFiles:
                 for number in numbers:
                     folder, lower = folders[number], lowers[number]
                     is_memory = in_memory and folder == os.path.realpath(_SHARED_MEMORY)
-                    _lay_over(folder, lower, _layers(own, number, in_memory=is_memory))
+                    _mount_overlay(folder, lower, _layers(own, number, in_memory=is_memory))
                     # what is mounted in it comes back before the next folder, which may lie in such a one
                     for inner, descriptor in again:
                         if inner != folder and is_below(inner, folder):
@@ -297,7 +297,7 @@ def _layers(own: int, number: int, *, in_memory: bool) -> str:
     return f"{_path(own)}/{_IN_MEMORY}/{number}" if in_memory and not os.path.isdir(on_disk) else on_disk
 
 
-def _lay_over(folder: str, lower: int, layers: str) -> None:
+def _mount_overlay(folder: str, lower: int, layers: str) -> None:
     """Mount an overlay with these layers over a folder."""
     os.makedirs(f"{layers}/work")
     with suppress(FileExistsError):  # it was copied
@@ -406,16 +406,14 @@ def _renew(descriptor: int, status: os.stat_result, copies: dict[_Shared, int]) 
         is_deleted = status.st_nlink == 0
         if is_deleted and flags & os.O_ACCMODE == os.O_RDONLY:
             return
-        opened = (
-            _in_memory(descriptor, position) if is_deleted else _opened_again(descriptor, position, flags)
-        )
+        opened = _in_memory(descriptor, position) if is_deleted else _reopened(descriptor, position, flags)
         if opened is None:
             return
         copies[shared] = opened
     os.dup2(copies[shared], descriptor, inheritable=os.get_inheritable(descriptor))
 
 
-def _opened_again(descriptor: int, position: int, flags: int) -> int | None:
+def _reopened(descriptor: int, position: int, flags: int) -> int | None:
     """Open a file a second time; return None if it is mutabot's own, in a folder hidden from tests."""
     path = os.readlink(f"/proc/self/fd/{descriptor}")
     try:

@@ -163,7 +163,7 @@ class ForkParent:
             self._places = {place: frozenset(indexes) for place, indexes in found.items()}
         return self._places
 
-    def tell_undiverged(self, hits: Mapping[int, int]) -> None:
+    def report_undiverged(self, hits: Mapping[int, int]) -> None:
         """Report, at the end of a test, which mutants of the program text did not differ in it.
 
         ``hits``: evaluations of each place in this test, and before any. If the test has forked copies of
@@ -251,7 +251,7 @@ class ForkParent:
             try:
                 pids = self._fork_one(mutant, began)
             except OSError as error:
-                self._tell_unforked(mutant, error)
+                self._report_unforked(mutant, error)
                 continue
             if pids is None:
                 return
@@ -290,7 +290,7 @@ class ForkParent:
             os.close(reading)
             namespaces.die_with_parent(pipe=writing)
             random.setstate(state)
-            forkable.go_on_running(loop)
+            forkable.mark_running(loop)
             self._begin_child(mutant, began)
             os.close(writing)
             return None
@@ -302,19 +302,19 @@ class ForkParent:
     def _begin_child(self, mutant: Mutant, began: float) -> None:
         """Release what belongs to the parent, and become the mutant."""
         os.setsid()  # it leads its group and session, as a test process does
-        self.pipe.go_on_apart()
+        self.pipe.continue_separately()
         try:
             folder = self.files.enter(self.pipe.name)
             self.pipe.keep_number()
             namespaces.leave_out(monotonic() - began)
         except OSError as error:
             try:
-                self._tell_unforked(mutant, error)
+                self._report_unforked(mutant, error)
             finally:
                 os._exit(STOPPED)
         self.become(mutant, folder)
 
-    def _tell_unforked(self, mutant: Mutant, error: OSError) -> None:
+    def _report_unforked(self, mutant: Mutant, error: OSError) -> None:
         why = f"a fork cannot be kept apart: {error.strerror or error}"
         self.pipe.send(Unforked(self._test, (mutant.id,), why))
 
@@ -349,7 +349,7 @@ class ForkParent:
                 child.is_unwanted = True
                 os.kill(child.pids.fork, signal.SIGKILL)
             for child in unwanted:
-                self._bury(self._children.pop(child.pids.fork))
+                self._report_end(self._children.pop(child.pids.fork))
         return self._stopped
 
     def _is_to_end(self, child: Child) -> bool:
@@ -432,7 +432,7 @@ class ForkParent:
                 child.overdue = True
                 os.kill(child.pids.fork, signal.SIGKILL)
         for pid in ready[:1]:
-            self._bury(self._children.pop(pid))
+            self._report_end(self._children.pop(pid))
         return bool(ready)
 
     def _note_progress(self, child: Child, now: float) -> None:
@@ -442,7 +442,7 @@ class ForkParent:
         if test != child.test:
             child.test, child.deadline = test, Deadline(self._limit(test))
 
-    def _bury(self, child: Child) -> None:
+    def _report_end(self, child: Child) -> None:
         """Report how a child has ended."""
         _, status = os.waitpid(child.pids.fork, 0)
         namespaces.end_first(child.pids.first)

@@ -81,7 +81,7 @@ class ForkServer:
                     return self._begin(os.fsdecode(message)), descriptors[0]
                 os.close(descriptors[0])
         for pidfd in list(self._copies):
-            self._bury(pidfd)
+            self._end_leftovers(pidfd)
         return None
 
     def _wait(self, jobs: socket.socket) -> bool:
@@ -91,10 +91,10 @@ class ForkServer:
             poll.register(descriptor, select.POLLIN)
         ready = {descriptor for descriptor, _ in poll.poll()}
         for pidfd in ready & self._copies.keys():
-            self._bury(pidfd)
+            self._end_leftovers(pidfd)
         return jobs.fileno() in ready
 
-    def _bury(self, pidfd: int) -> None:
+    def _end_leftovers(self, pidfd: int) -> None:
         """End whatever a copy has left running, before another process can get its number."""
         pid = self._copies.pop(pidfd)
         for end in (os.killpg, os.kill):

@@ -48,7 +48,7 @@ def running_loop() -> Any:
     return events._get_running_loop() if events is not None else None
 
 
-def go_on_running(loop: Any) -> None:
+def mark_running(loop: Any) -> None:
     """Mark this event loop as running, in a process that was forked while it ran."""
     if loop is not None:
         events: Any = sys.modules["asyncio.events"]

@@ -188,11 +188,11 @@ def die_with_parent(parent: int | None = None, pipe: int | None = None) -> None:
     """
     _libc().prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
     # it may have died before the kernel was asked
-    if (parent is not None and os.getppid() != parent) or (pipe is not None and _nobody_listens(pipe)):
+    if (parent is not None and os.getppid() != parent) or (pipe is not None and _is_unread(pipe)):
         os._exit(ALONE)
 
 
-def _nobody_listens(descriptor: int) -> bool:
+def _is_unread(descriptor: int) -> bool:
     poll = select.poll()
     poll.register(descriptor, select.POLLERR)
     return any(event & select.POLLERR for _, event in poll.poll(0))

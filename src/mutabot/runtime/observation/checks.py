@@ -229,12 +229,12 @@ class Checks:
         self._root = os.path.realpath(root)
         self._wants = wants
         self._looks = looks
-        self._told: list[tuple[str, str]] = []
+        self._descriptions: list[tuple[str, str]] = []
         self._found: dict[_Location, int] = {}
 
     def install(self) -> None:
         """Instrument all test files that pytest rewrites from now on."""
-        looks, told = self._looks, self._told
+        looks, told = self._looks, self._descriptions
         setattr(
             builtins,
             CHECKED,
@@ -253,8 +253,8 @@ class Checks:
         for node in ast.walk(tree):
             for part in _deciding(_decides(node)):
                 words = " ".join(_segment(lines, part).decode("utf-8", "replace").split())
-                self._found[_position(part)] = len(self._told)
-                self._told.append((f"{name}:{part.lineno}", words))
+                self._found[_position(part)] = len(self._descriptions)
+                self._descriptions.append((f"{name}:{part.lineno}", words))
 
     def _insert(self, tree: ast.Module, source: bytes, path: str) -> None:
         if self._found:

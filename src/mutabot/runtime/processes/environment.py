@@ -26,24 +26,24 @@ from mutabot.model.event_file import ANYBODY, NOW, TESTS, VARIABLE, WAKE
 from mutabot.model.files import open_file, read_file
 
 #: told an event's name and its arguments
-Hear = Callable[[str, tuple[Any, ...]], None]
+AuditHandler = Callable[[str, tuple[Any, ...]], None]
 #: lists: a listener may add another one, which hears the same event
-_listeners: dict[str, list[Hear]] = {}
+_listeners: dict[str, list[AuditHandler]] = {}
 #: from the frame of a listener to that of what caused the event
 FRAMES = 2
 
 
-def listen(events: Iterable[str], hear: Hear) -> None:
-    """Call ``hear`` for each of these audit events from now on."""
+def listen(events: Iterable[str], handle: AuditHandler) -> None:
+    """Call ``handle`` for each of these audit events from now on."""
     if not _listeners:
-        sys.addaudithook(_hear)
+        sys.addaudithook(_on_audit_event)
     for event in events:
-        _listeners.setdefault(event, []).append(hear)
+        _listeners.setdefault(event, []).append(handle)
 
 
-def _hear(event: str, arguments: tuple[Any, ...]) -> None:
-    for hear in _listeners.get(event, ()):
-        hear(event, arguments)
+def _on_audit_event(event: str, arguments: tuple[Any, ...]) -> None:
+    for handle in _listeners.get(event, ()):
+        handle(event, arguments)
 
 
 #: the folder of the start-up module
@@ -313,7 +313,7 @@ class ProcessWatch:
         self.codes: dict[int, int] = {}
         self.signalled: set[int] = set()
         self._tell_unseen = tell_unseen
-        listen(("os.kill", "os.killpg", *STARTS), self._hear)
+        listen(("os.kill", "os.killpg", *STARTS), self._on_audit_event)
         import subprocess  # noqa: PLC0415  # of no use to most processes below the tests
 
         kind: Any = subprocess.Popen
@@ -332,7 +332,7 @@ class ProcessWatch:
 
         os.waitpid, kind._handle_exitstatus = waitpid, handled
 
-    def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
+    def _on_audit_event(self, event: str, arguments: tuple[Any, ...]) -> None:
         if event == "os.kill":
             self.signalled.add(arguments[0])
         elif event == "os.killpg":

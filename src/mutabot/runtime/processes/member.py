@@ -144,7 +144,7 @@ class Member:
         self.file.send(events.Began(os.getpid(), os.getpgrp(), command, now, self._test, forked=is_forked))
         self.session = session or _session(job, self)
         self._targets: set[str] = set()
-        self._told = Evidence()
+        self._reported = Evidence()
         self._places: set[int] = set()
         self._exceeded = False
         self._is_over = False
@@ -163,9 +163,9 @@ class Member:
         session = self.session
         for site in () if isinstance(session, TextOnly) else session.recorder.sites:
             self.file.send(site)
-        self._told = session.evidence.copy()
+        self._reported = session.evidence.copy()
         if session.meter is not None:
-            session.meter.go_on_in_copy()
+            session.meter.continue_in_copy()
         self._attend()
         session.pipe, session.is_fork = self, False  # it tells its own sites, also below a fork
         if session.text is not None:
@@ -209,7 +209,7 @@ class Member:
             self.poll()
             self._use()
             self._test = self._now.number
-            self._told, self._exceeded = Evidence(), False
+            self._reported, self._exceeded = Evidence(), False
             self._places.clear()
             self.session.start_test(self._now.name_of(self._test))
 
@@ -232,19 +232,19 @@ class Member:
     def poll(self) -> None:
         """Report what the mutant did, and which targets were found, since the last report."""
         session = self.session
-        now, before = session.evidence, self._told
+        now, before = session.evidence, self._reported
         if now.hits != before.hits or now != before:
-            self._told = now.copy()
+            self._reported = now.copy()
             self.file.send(self._did(before, now))
         if not isinstance(session, TextOnly):
-            self._tell_found(session)
+            self._report_found(session)
         meter = session.meter
         is_ended = meter is not None and (meter.exceeded is not None or meter.guarded is not None)
         if is_ended and not self._exceeded:
             self._exceeded = True
             self._use()
 
-    def _tell_found(self, session: Session) -> None:
+    def _report_found(self, session: Session) -> None:
         """Report targets that were found since the last report."""
         targets = {name for kind in session.targets for name in kind.here()} - self._targets
         if not targets:
@@ -281,7 +281,7 @@ class Member:
         if text is None:
             return
         if text.sightings is not None:
-            text.sightings.tell_first(lambda place: self._reached((place,)))
+            text.sightings.report_first(lambda place: self._reached((place,)))
         else:
             text.alternatives.on_first = lambda place: self.poll()
 
@@ -306,7 +306,7 @@ class Member:
         if self.session.text is not None:
             self.session.text.finish()
         if not isinstance(self.session, TextOnly) and self.session.job.record:
-            self.file.send(self.session.calls_asked())
+            self.file.send(self.session.intercepted_calls())
         self.file.send(events.Found(modules=tuple(sorted(self._modules_of_vocabulary()))))
         self.file.send(events.SessionEnd())
 
@@ -336,9 +336,9 @@ class Member:
 
         sys.excepthook, threading.excepthook = in_main, in_thread
         os._exit = leave_at_once  # type: ignore[assignment]
-        listen(("os.kill", "os.killpg", *STARTS), self._hear)
+        listen(("os.kill", "os.killpg", *STARTS), self._on_audit_event)
 
-    def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
+    def _on_audit_event(self, event: str, arguments: tuple[Any, ...]) -> None:
         if event in ("os.kill", "os.killpg") and _member is self:
             self.file.send(events.Signalled(-arguments[0] if event == "os.killpg" else arguments[0]))
         elif event == "os.exec" and _member is self:

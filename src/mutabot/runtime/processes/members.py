@@ -11,7 +11,7 @@ from mutabot.extensions import brought
 from mutabot.model import events
 from mutabot.model.activation import Activation
 from mutabot.model.event_file import FOLDER
-from mutabot.model.fold import ChildRecord, Children, Known, calls_of, fold, is_alive
+from mutabot.model.fold import ChildRecord, Children, TestFacts, calls_of, fold, is_alive
 from mutabot.runtime.processes.environment import Announced, ProcessWatch, carry, write_wake
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ class Members:
         self._unseen: set[str] = set()
         self._acted = has_acted
         carry(self.folder)
-        self._watch = ProcessWatch(self._say_unseen)
+        self._watch = ProcessWatch(self._report_unseen)
 
     def start_test(self, test: str) -> None:
         """Begin a test, during which earlier processes may still run."""
@@ -59,8 +59,8 @@ class Members:
         self._take_all()
         here = sorted(self._here(), key=lambda one: (one.name, one.began.time))
         job, watch, index_of = self._session.job, self._watch, self._session.recorder.index_of
-        known = Known(job, index_of, self._acted, watch.codes, watch.signalled)
-        end = self._with_recorded(fold(end, here, known), here, known)
+        facts = TestFacts(job, index_of, self._acted, watch.codes, watch.signalled)
+        end = self._with_recorded(fold(end, here, facts), here, facts)
         self._acted = self._acted or end.acted > 0
         for origin in (events.STARTED, events.FORKED):
             if places := {place for one in here if one.origin == origin for place in one.places}:
@@ -93,7 +93,7 @@ class Members:
         for event in self.children.read():
             match event:
                 case events.Began(unable=why) if why is not None:
-                    self._say_unseen(" ".join(event.command[:3]), why)
+                    self._report_unseen(" ".join(event.command[:3]), why)
                 case events.TextsSeen():
                     self._texts.append(event)
                 case events.Signalled():
@@ -105,18 +105,20 @@ class Members:
                 case events.CallsAsked() | events.NotInstrumented() | events.Problem() | events.Remark():
                     self._session.pipe.send(event)
 
-    def _with_recorded(self, end: events.TestEnd, here: list[ChildRecord], known: Known) -> events.TestEnd:
+    def _with_recorded(
+        self, end: events.TestEnd, here: list[ChildRecord], facts: TestFacts
+    ) -> events.TestEnd:
         """Return the end of a test whose recording has the calls of all processes by their times."""
         recorder, recording = self._session.recorder, self._session.recording
         if end.recording is None:
             return end
         found = [
-            recorder.told_of(site, call.written, call.read, recording.since(call.time))
-            for site, call in calls_of(here, known)
+            recorder.recorded_call(site, call.written, call.read, recording.since(call.time))
+            for site, call in calls_of(here, facts)
         ]
-        return replace(end, recording=recording.text([*recorder.told(), *found])) if found else end
+        return replace(end, recording=recording.text([*recorder.recorded_calls(), *found])) if found else end
 
-    def _say_unseen(self, name: str, why: str) -> None:
+    def _report_unseen(self, name: str, why: str) -> None:
         if name in self._unseen or not self._session.job.inspect:
             return
         self._unseen.add(name)

@@ -39,7 +39,7 @@ from mutabot.runtime.targets.target import CallPlace
 _PLACE = "handed_to"
 
 
-def is_handed_on(node: ast.expr) -> bool:
+def is_passed_on(node: ast.expr) -> bool:
     """Return whether the value of an expression is passed on."""
     return isinstance(getattr(node, "ctx", None), ast.Load) and hasattr(node, _PLACE)
 
@@ -248,14 +248,14 @@ class CallSites(SourceStep):
 
     _handed_name = _name
 
-    def _handed_attribute(self, site: CallSite) -> Callable[[Any], Any]:
+    def _passed_attribute(self, site: CallSite) -> Callable[[Any], Any]:
         def read(receiver: Any) -> Any:
             __tracebackhide__ = True
             return self._decide(site, getattr(receiver, site.name), receiver, sys._getframe(1))
 
         return read
 
-    def _handed_by_name(self, site: CallSite) -> Callable[[Any], Any]:
+    def _passed_by_name(self, site: CallSite) -> Callable[[Any], Any]:
         sites: dict[str, CallSite] = {}
 
         def read(function: Any) -> Any:
@@ -386,14 +386,14 @@ class _Writer(ast.NodeTransformer):
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:  # as above
         self.generic_visit(node)
-        is_asked = is_handed_on(node) or (self.are_read and isinstance(node.ctx, ast.Load))
+        is_asked = is_passed_on(node) or (self.are_read and isinstance(node.ctx, ast.Load))
         if is_asked and node.attr in self.names and not is_ours(node):
             number = self.number(node, node.attr, "handed_attribute")
             return self._question(number, node, [node.value])
         return node
 
     def visit_Name(self, node: ast.Name) -> ast.AST:  # as above
-        if is_handed_on(node) and node.id in self.names:
+        if is_passed_on(node) and node.id in self.names:
             return self._question(self.number(node, node.id, "handed_name"), node, [node])
         return node
 

@@ -127,7 +127,7 @@ def _compile(
         path = None if is_parsed else getattr(source, _PARSED, None) or _wanted(filename)
     if path is None or (is_tree and hasattr(source, DONE)):
         return plainly()
-    is_met = is_tree and _has_ours(source)
+    is_met = is_tree and _is_instrumented(source)
 
     def is_due(step: SourceStep) -> bool:
         is_last = hasattr(step, "is_last")
@@ -234,7 +234,7 @@ def _bytes_of(source: Any) -> bytes:
     return source.encode("utf-8", "surrogatepass") if isinstance(source, str) else bytes(source)
 
 
-def _has_ours(tree: ast.AST) -> bool:
+def _is_instrumented(tree: ast.AST) -> bool:
     """Return whether a tree has been changed before."""
     return hasattr(tree, _CHANGED) or any(
         isinstance(node, ast.Name) and node.id.startswith(_OURS) for node in ast.walk(tree)

@@ -352,7 +352,7 @@ class SessionText:
                 self._refuse(text, "it was imported before mutabot could look at it")
         loading.add(self)
         loading.hook_pytest_first(self)
-        listen(("exec",), self._hear)
+        listen(("exec",), self._on_audit_event)
 
     def wants(self, path: str) -> bool:
         """Return whether there are alternatives for a file."""
@@ -377,7 +377,7 @@ class SessionText:
         is_known = isinstance(error, _ChangedError)
         self._refuse(text, str(error) if is_known else f"it cannot be instrumented: {error}")
 
-    def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
+    def _on_audit_event(self, event: str, arguments: tuple[Any, ...]) -> None:
         """Note that a module is executed, whose text may have been compiled elsewhere."""
         code = arguments[0]
         if not isinstance(code, CodeType) or code.co_name != "<module>":
@@ -412,7 +412,7 @@ class SessionText:
         """Begin a test."""
         if self._test is None:  # what happened before any test
             if self.sightings is not None:
-                self._tell_reached()
+                self._report_reached()
             self.alternatives.keep()
         self._test, self._refusals, self._unknown = test, (), False
         (self.sightings or self.alternatives).start()
@@ -427,7 +427,7 @@ class SessionText:
     def end_test(self) -> None:
         """End the test."""
         if self.sightings is not None:
-            self._tell_reached()
+            self._report_reached()
         elif self.alternatives.on_place is not None and not self.is_mutant:
             self.alternatives.watch({})  # what is reached between tests belongs to none
 
@@ -469,7 +469,7 @@ class SessionText:
             is_unknown=self._unknown,
         )
 
-    def _tell_reached(self) -> None:
+    def _report_reached(self) -> None:
         assert self.sightings is not None
         self.pipe.send(PlacesReached(self._test or "", tuple(sorted(self.sightings.entered))))
 

@@ -43,7 +43,7 @@ def _get_code(self: Any, fullname: str) -> CodeType | None:
         found: CodeType | None = _original(self, fullname)
         return found
     request = LoaderRequest(path, self.get_data(path))
-    code, why = _asked(self, request)
+    code, why = _loaded_code(self, request)
     if why is not None:
         for step in compiling.steps:
             if step.wants(path):
@@ -51,7 +51,7 @@ def _get_code(self: Any, fullname: str) -> CodeType | None:
     return code
 
 
-def _asked(loader: Any, request: LoaderRequest) -> tuple[CodeType, str | None]:
+def _loaded_code(loader: Any, request: LoaderRequest) -> tuple[CodeType, str | None]:
     """Return the code that a loader makes of its file, and why it does not contain the change, if so."""
     compiling.requests.open.append(request)
     why = None

@@ -171,7 +171,7 @@ class Standing:
             operation = one.operation if one is not None else None
             self.noted.note(site, operation, found, receiver)
         if one is None:
-            if _is_told_by_type(found, receiver):
+            if _is_decided_by_type(found, receiver):
                 kind = type(found)
                 own = found.__func__ if kind is MethodType else found if kind is FunctionType else kind
                 site.left_alone[type(receiver), own] = self._guards(site, frame)
@@ -362,7 +362,7 @@ def _handlers(found: Any) -> Iterator[Any]:
             return
 
 
-def _is_told_by_type(found: Any, receiver: Any) -> bool:
+def _is_decided_by_type(found: Any, receiver: Any) -> bool:
     """Return whether the types of callable and receiver suffice to leave such calls alone."""
     if type(found) is FunctionType:  # one that is always the same
         return receiver is NOTHING and "<locals>" not in found.__qualname__

@@ -346,7 +346,7 @@ class Sightings:
         self._on_first: Callable[[int], None] | None = None
         self.switches: list[Callable[[Any], Any]] = [self.entered.add, *self._witnesses]
 
-    def tell_first(self, on_first: Callable[[int], None]) -> None:
+    def report_first(self, on_first: Callable[[int], None]) -> None:
         """Report each place when it is first reached in a test."""
         self._on_first = on_first
         self.switches[0] = self._enter
@@ -363,7 +363,7 @@ class Sightings:
         asked, self.asked = self.asked, []
         for witness in asked:
             witness.start()
-            if not witness.has_told_all:
+            if not witness.is_exhausted:
                 self.switches[witness.place] = witness
 
     def seen(self) -> tuple[Sighting, ...]:
@@ -407,13 +407,13 @@ class _Witness:
             self._note_kind(kind, value)
         if self._is_around and self.looks_around < LOOKS_AROUND:
             self.looks_around += 1
-            self._look_around(value, sys._getframe(1))
-        if self.looks >= LOOKS or self.has_told_all:
+            self._keep_variables(value, sys._getframe(1))
+        if self.looks >= LOOKS or self.is_exhausted:
             self._owner.switches[self.place] = hand_through
         return value
 
     @property
-    def has_told_all(self) -> bool:
+    def is_exhausted(self) -> bool:
         """Whether further observations would add nothing."""
         return not (self._lacking or self._is_around)
 
@@ -423,7 +423,7 @@ class _Witness:
         self._lacking -= {one for one in self._lacking if fits_kinds(one, self._kinds)}
         self.looks_around = 0
 
-    def _look_around(self, value: Any, frame: types.FrameType) -> None:
+    def _keep_variables(self, value: Any, frame: types.FrameType) -> None:
         """Keep the variables that have the value's type at every observation."""
         among = self._variables if self._has_looked_around else None
         names = set(_alike(value, frame, among)) - {self._variable} if is_variable(value) else set()

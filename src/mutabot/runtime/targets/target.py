@@ -495,7 +495,7 @@ class Messages:
 
     def unheard(self, operation: Operation) -> Iterator[Finding]:
         """Yield topics and actions of an operation to which no process of the tests listens."""
-        return unheard(operation.told_as_refused, self.used)
+        return unheard(operation.all_refused, self.used)
 
     def here(self) -> Iterable[str]:
         """Return the targets of the names that were used."""

@@ -49,7 +49,7 @@ class _Finder:
         return any(real == file or real.startswith(file.rstrip("/") + "/") for file in self.files)
 
 
-class _Ours:
+class _MutabotFinder:
     """Finds mutabot's packages for an interpreter in which they are not installed."""
 
     def __init__(self, folders: "list[str]", names: "list[str]") -> None:
@@ -69,15 +69,15 @@ def _wake(finder: _Finder) -> None:
     if finder in sys.meta_path:
         sys.meta_path.remove(finder)
     if sys.version_info[:2] <= _NEWEST_TOO_OLD:
-        _tell_unable(finder, "Python %d.%d is older than 3.11" % sys.version_info[:2])
+        _report_unable(finder, "Python %d.%d is older than 3.11" % sys.version_info[:2])
         return
     try:
         __import__(finder.join, fromlist=["join"]).join(finder.folder)
     except Exception as error:
-        _tell_unable(finder, "mutabot cannot be loaded: %r" % (error,))
+        _report_unable(finder, "mutabot cannot be loaded: %r" % (error,))
 
 
-def _tell_unable(finder: _Finder, why: str) -> None:
+def _report_unable(finder: _Finder, why: str) -> None:
     def quoted(text: str) -> str:
         return '"%s"' % "".join(one if one.isalnum() or one in " ._-/:()'," else "?" for one in text)
 
@@ -115,7 +115,7 @@ def enter(command: "str | None" = None) -> None:
     for key, _, value in lines:
         told[key].append(value)
     finder = _Finder(folder, told)
-    sys.meta_path.append(_Ours(told["path"], told["own"]))
+    sys.meta_path.append(_MutabotFinder(told["path"], told["own"]))
     sys.meta_path.insert(0, finder)
     script = command if command is not None else getattr(sys, "argv", [""])[0]
     if script and script[0] != "-" and finder.is_of_interest(script):
