@@ -213,5 +213,5 @@ def test_where_another_text_runs_it_is_not_said_that_no_test_reaches_a_call(tmp_
     assert score(results) == 1.0
     assert results.untested.unreached_calls == ()
     assert {one.doubt for one in results.untested.doubtful_calls} == {
-        "what runs of this file is not the text that stands there"
+        "the code that runs is not compiled from this file's text"
     }

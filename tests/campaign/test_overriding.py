@@ -72,7 +72,7 @@ VOCABULARY = """
 def test_check_names_the_overriding_method_that_is_called(tmp_path: Path) -> None:
     write_project(tmp_path, MISSION, TESTS, robot=ROBOT, vocabulary=VOCABULARY)
     (line,) = [line for line in check(request_for(tmp_path), Quiet()).lines if line.startswith("note")]
-    assert "robot:Env.step · call: in its place stands robot:TimeLimit in 2 tests" in line
+    assert "robot:Env.step · call: it is replaced by robot:TimeLimit in 2 tests" in line
     assert "Double in 1 test" in line
     assert "robot:Cell" not in line
     assert "robot:Other" not in line

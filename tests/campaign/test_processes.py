@@ -280,7 +280,7 @@ def test_what_keeps_apart_from_the_campaign_is_told(tmp_path: Path) -> None:
     run_campaign(request_for(write_project(tmp_path, mission, tests)), progress)
     notes = [line for line in progress.lines if "nothing in this process is seen or mutated" in line]
     assert len(notes) == 3
-    assert "the option -I keeps it apart" in notes[0]
+    assert "the option -I isolates it" in notes[0]
     for name, note in zip(("spawned", "executed"), notes[1:], strict=True):
         assert name in note
         assert "its environment lacks PYTHONPATH and MUTABOT_PROCESSES" in note

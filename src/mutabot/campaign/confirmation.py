@@ -95,9 +95,7 @@ def confirm(
 
     wrong = run([*again, *due], due)
     if wrong and len(due) < len(left):
-        campaign.progress.note(
-            f"{wrong} of them ended otherwise with the whole suite, so all are run with it"
-        )
+        campaign.progress.note(f"{wrong} of them changed with the whole suite, so all are run with it")
         run(left[len(due) :], left)
 
 

@@ -166,7 +166,7 @@ def recorded(request: Request, progress: Progress) -> Iterator[CampaignEvidence 
         evidence = CampaignEvidence(recordings)
         if recordings.removed:
             progress.note(
-                f"{recordings.path} was {recordings.removed}: it is made anew, and what was recorded is gone"
+                f"{recordings.path} was {recordings.removed}; it is made again, without earlier recordings"
             )
         try:
             yield evidence

@@ -268,7 +268,7 @@ def _checked(
     lists = {f"{name}.{key}" for name, model in models.items() for key in model.lists()}
     raw = overridden(given, overrides, lists | Settings.lists())
     if place.document.file == _OWN and isinstance(raw.get("tool"), dict) and "mutabot" in raw["tool"]:
-        (place / "tool" / "mutabot").error(f"in {_OWN} the keys stand at the top, without [tool.mutabot]")
+        (place / "tool" / "mutabot").error(f"in {_OWN} the keys are at the top level, without [tool.mutabot]")
         raise_errors(place.errors)
     own = _without(raw, models, place)
     known = brought("tables", Settings.model_fields) if own.keys() - Settings.model_fields.keys() else ()

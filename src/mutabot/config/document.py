@@ -133,7 +133,7 @@ def _syntax(message: str, text: str) -> tuple[str, int]:
     line, column = int(match[1]), int(match[2])
     hint = ""
     if message.startswith("Invalid initial character for a key") and column > len(text.split("\n")[line - 1]):
-        hint = "; a table in braces { … } must stand on one line"
+        hint = "; a table in braces { … } must be on one line"
     return f"is not valid TOML: {message[: match.start()]} at column {column}{hint}", line
 
 

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field
 _IN_PROJECT = "paths or patterns of files in the project"
 
 ProjectFiles = Annotated[tuple[str, ...], Field(strict=False), _IN_PROJECT]
-"""Paths or patterns of files in the project. Each must fit something, else that is told like any mistake."""
+"""Paths or patterns of files in the project. One that matches nothing is reported as a mistake."""
 
 
 class Table(BaseModel):

@@ -168,7 +168,7 @@ class Workers:
         self.pool.close()
         remove_folder(self._folder)
         if self._folder.exists():
-            self._tell(f"{self._folder} cannot be removed, whatever a test made there; no outcome is touched")
+            self._tell(f"{self._folder} cannot be removed, due to files of a test; no outcome is affected")
 
     @staticmethod
     def versions() -> dict[str, str]:

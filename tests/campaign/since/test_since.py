@@ -200,7 +200,7 @@ def test_a_renamed_file_is_a_new_one(project: Project) -> None:
 
 
 @pytest.mark.parametrize(
-    ("ref", "said"), [("nowhere", "git knows no such revision"), ("--all", "not the name of a revision")]
+    ("ref", "said"), [("nowhere", "git does not know this revision"), ("--all", "not the name of a revision")]
 )
 def test_an_unknown_revision_is_an_error_before_anything_runs(project: Project, ref: str, said: str) -> None:
     with pytest.raises(UsageError, match=said):

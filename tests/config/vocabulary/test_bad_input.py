@@ -336,7 +336,7 @@ QUANTITIES: dict[str, tuple[str, list[str]]] = {
     "label_with_one_value": ("result = { kind = 'label', values = ['red'] }", ["at least two"]),
     "label_with_equal_values": (
         "result = { kind = 'label', values = ['a', 'a'] }",
-        ["'a' stands there twice"],
+        ["'a' occurs twice"],
     ),
     "label_with_list_values": ("result = { kind = 'label', values = [['a'], ['b']] }", ["not a list"]),
     "output_without_values": ("arguments.on = { kind = 'output' }", ["an output needs values", "range"]),

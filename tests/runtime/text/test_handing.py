@@ -232,4 +232,4 @@ def test_check_says_what_cannot_be_placed(stage: Stage) -> None:
     told = [line.text for line in stage.pipe.lines if isinstance(line, Remark)]
     assert session.recorder.trace == []
     several = "handed on in several places and called in a thread or by an operation in 1 test"
-    assert told == [f"in its place stands a mock in 1 test; {several}: such calls are not mutated"]
+    assert told == [f"it is replaced by a mock in 1 test; {several}: such calls are not mutated"]

@@ -201,7 +201,7 @@ def test_check_says_what_stood_in_and_what_was_left_alone(stage: Stage) -> None:
         session.end_test()
     session.finish()
     told = {line.key: line.text for line in stage.pipe.lines if isinstance(line, Remark)}
-    assert told["call"] == "in its place stands a mock in 2 tests"
+    assert told["call"] == "it is replaced by a mock in 2 tests"
     assert "1 call of this name left alone" in told["method"]
     assert told["method"].endswith('if it is, write method = "move_by"')
 

@@ -33,7 +33,7 @@ _End = tuple[str, int, int]
 #: what a process that cannot be seen is told by
 UNSEEN = "processes"
 _DOUBT = "a process that cannot be seen may reach it"
-_OTHER_TEXT = "what runs of this file is not the text that stands there"
+_OTHER_TEXT = "the code that runs is not compiled from this file's text"
 
 
 @frozen

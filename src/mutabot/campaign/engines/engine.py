@@ -63,7 +63,7 @@ def run_trials(
             mutant = mutants[one.mutant]
             if not _counts(campaign, mutant, one):
                 campaign.again.append(one)
-                campaign.progress.advance(f"{_name(mutant, one)}, which the whole suite has yet to say")
+                campaign.progress.advance(f"{_name(mutant, one)}, to be confirmed by the whole suite")
                 continue
             is_confirmed = (one.mutant, one.round) in let_through
             outcome = replace(one, confirmed=True) if is_confirmed else one

@@ -42,7 +42,7 @@ def run_alone(campaign: Campaign, hindered: Sequence[tuple[Mutant, Outcome]]) ->
     count = len(hindered)
     campaign.progress.note(
         f"{count} {'run' if count == 1 else 'runs'} that ended by the wall clock while the machine was busy "
-        f"{'was' if count == 1 else 'were'} run once more alone; {changed} of {count} ended otherwise"
+        f"{'was' if count == 1 else 'were'} re-run alone; {changed} of {count} changed"
     )
 
 

@@ -291,7 +291,7 @@ def _commit(project: Path, ref: str) -> str:
                 "`GIT_DEPTH: 0`"
             ) from error
         hint = f"; `git fetch origin {ref}` and origin/{ref}?" if "/" not in ref else ""
-        raise UsageError(f"{_OPTION} {ref}: git knows no such revision{hint}") from error
+        raise UsageError(f"{_OPTION} {ref}: git does not know this revision{hint}") from error
 
 
 class _FailedError(UsageError):

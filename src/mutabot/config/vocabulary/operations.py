@@ -284,7 +284,7 @@ def _read_refused(place: DocumentPlace, raw: Any, named: Named | None) -> tuple[
         if table is not None and path is not None:
             found.append(Refused(str(path), tuple(table.values), table.topic or action))
             if table.topic is None and named is not None and named.form is Form.PUBLISH:
-                at.error('what is published has no answer; name where it is said: topic = "/…"')
+                at.error('a published message has no answer; name the topic of the refusal: topic = "/…"')
     return tuple(found)
 
 

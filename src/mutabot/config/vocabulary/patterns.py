@@ -243,7 +243,7 @@ def read_when(place: DocumentPlace, raw: Any) -> tuple[Case, ...]:
     for at, item in place.each(raw):
         table = at.table(CaseTable, item)
         if table is not None and table.argument in cases:
-            at.error(f"{table.argument} has one value in a call, so it cannot stand here twice")
+            at.error(f"{table.argument} has one value in a call, so it cannot be named twice")
         elif table is not None:
             cases[table.argument] = Case(table.argument, _text(table.value), "when")
     return tuple(cases.values())

@@ -281,7 +281,7 @@ def _of_meaning(table: QuantityTable, is_written: bool, is_vector: bool) -> list
     several = "give the axes of the slice, or indices: each has a place of its own"
     in_front = 'only a target position (kind = "translation", mode = "to") has a tool in front of it'
     modes = f'{a} needs mode = "by" (relative) or "to" (absolute target)'
-    scalar = f'{a} needs order = "wxyz" or "xyzw": where its real part w stands'
+    scalar = f'{a} needs order = "wxyz" or "xyzw": the position of its real part w'
     angles = (
         f"{kind} angles need order = three axes in the order of the angles, "
         'such as "xyz" for axes that stay, or "ZYX" for axes that turn along'
@@ -325,7 +325,7 @@ def _of_values(table: QuantityTable, is_written: bool, is_vector: bool) -> list[
         ("values", needs_values, f"{a} needs values (all that can be sent), a range or a clip"),
         ("values", wrong, f"values must be {wanted}, not {shown(next(iter(wrong), None))}"),
         ("values", is_given and len(values) < 2, f"needs at least two different values, got {len(values)}"),
-        ("values", twice, f"{next(iter(twice), None)!r} stands there twice"),
+        ("values", twice, f"{next(iter(twice), None)!r} occurs twice"),
         ("values", kind is Kind.FLAG and is_given and len(values) != 2, two),
         ("values", outside, f"{next(iter(outside), None)} lies outside the range {limits}"),
         ("range", limits and not limits[0] < limits[1], f"{rises} {limits}"),

@@ -315,7 +315,7 @@ class ForkParent:
         self.become(mutant, folder)
 
     def _report_unforked(self, mutant: Mutant, error: OSError) -> None:
-        why = f"a fork cannot be kept apart: {error.strerror or error}"
+        why = f"a fork cannot be isolated: {error.strerror or error}"
         self.pipe.send(Unforked(self._test, (mutant.id,), why))
 
     def _note_copy(self) -> None:

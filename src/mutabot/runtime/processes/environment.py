@@ -352,7 +352,7 @@ def _why_unseen(event: str, arguments: tuple[Any, ...]) -> str | None:
     options = takewhile(lambda word: word.startswith("-"), words[1:])
     apart = next((option for option in options if option in _APART), None)
     if apart is not None:
-        return f"the option {apart} keeps it apart"
+        return f"the option {apart} isolates it"
     environment = None if event == "subprocess.Popen" else arguments[2]
     if environment is None:
         return None

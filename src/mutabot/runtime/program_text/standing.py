@@ -96,7 +96,7 @@ class StandIns:
             stood = self._standing.get(target, {})
             if stood and not target.startswith(ANY):
                 shown = (f"{what} in {_count(len(tests), 'test')}" for what, tests in stood.items())
-                said.append(f"in its place stands {', '.join(shown)}")
+                said.append(f"it is replaced by {', '.join(shown)}")
             if target in self._elsewhere:
                 which = _count(len(self._elsewhere[target]), "test")
                 where = "handed on in several places and called in a thread or by an operation"

@@ -549,7 +549,7 @@ def unheard(refused: Collection[Refused], used: Collection[Named]) -> Iterator[F
         if any(one.fits(other.form, other.name, other.node) for one in wanted for other in used):
             continue
         instead = _instead(Named(Form.RECEIVE, name), used)
-        sentence = f"no node listens to {name}, so that no refusal told there is seen; {instead}"
+        sentence = f"no node listens to {name}, so refusals published there are not seen; {instead}"
         yield Finding("refused", sentence, is_remark=True)
 
 
