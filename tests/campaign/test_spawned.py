@@ -9,7 +9,7 @@ import pytest
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.model import Mutant, Role, Site, Span, Verdict, events
 from mutabot.model.events import FORKED, STARTED, TestEnd
-from mutabot.model.fold import ChildRecord, TestFacts, fold
+from mutabot.model.fold import ChildRecord, FactsOfTest, fold
 from mutabot.model.job import Job
 from mutabot.model.mutant import Place
 from mutabot.model.operation import Vocabulary
@@ -129,6 +129,6 @@ def test_it_is_told_in_processes_of_which_origin_calls_were_made_and_mutants_hit
             record.add(event)
         records.append(record)
     job = Job("/", ("m.py",), (), Vocabulary(), 1, 0, record=True)
-    end = fold(TestEnd("a::one", "passed"), records, TestFacts(job, lambda seen: 7))
+    end = fold(TestEnd("a::one", "passed"), records, FactsOfTest(job, lambda seen: 7))
     assert end.below == {STARTED: (7,), FORKED: (7,)}
     assert end.hit_below == (STARTED,)

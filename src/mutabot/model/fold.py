@@ -218,7 +218,7 @@ def fold_fork(
 
 
 @frozen
-class TestFacts:
+class FactsOfTest:
     """Facts about a test and the processes below it that only the test process knows.
 
     Attributes:
@@ -236,7 +236,7 @@ class TestFacts:
     signalled: Collection[int] = ()
 
 
-def fold(end: events.TestEnd, records: Sequence[ChildRecord], facts: TestFacts) -> events.TestEnd:
+def fold(end: events.TestEnd, records: Sequence[ChildRecord], facts: FactsOfTest) -> events.TestEnd:
     """Return the end of a test, combined with the events of the processes below it."""
     if not records:
         return end
@@ -245,13 +245,13 @@ def fold(end: events.TestEnd, records: Sequence[ChildRecord], facts: TestFacts) 
     return _with_ends(end, records, facts)
 
 
-def calls_of(records: Sequence[ChildRecord], facts: TestFacts) -> Iterator[tuple[int, events.Called]]:
+def calls_of(records: Sequence[ChildRecord], facts: FactsOfTest) -> Iterator[tuple[int, events.Called]]:
     """Yield the calls of each process in order, one process after the other, each with its site."""
     for one in records:
         yield from ((facts.index_of(one.sites[call.site]), call) for call in one.called)
 
 
-def _with_calls(end: events.TestEnd, records: Sequence[ChildRecord], facts: TestFacts) -> events.TestEnd:
+def _with_calls(end: events.TestEnd, records: Sequence[ChildRecord], facts: FactsOfTest) -> events.TestEnd:
     called = list(calls_of(records, facts))
     trace = [*end.trace, *((site, call.written, call.read, call.answer) for site, call in called)]
     used = [one.used for one in records if one.used is not None]
@@ -298,7 +298,7 @@ def _with_deeds(end: events.TestEnd, records: Sequence[ChildRecord]) -> events.T
     return end
 
 
-def _with_ends(end: events.TestEnd, records: Sequence[ChildRecord], facts: TestFacts) -> events.TestEnd:
+def _with_ends(end: events.TestEnd, records: Sequence[ChildRecord], facts: FactsOfTest) -> events.TestEnd:
     """Return the end of a test, adjusted for how the processes below it ended."""
     raised = [one.raised for one in records if one.raised is not None]
     failure = end.failure or next((one.failure for one in raised if one.failure is not None), None)
@@ -322,7 +322,7 @@ def _with_ends(end: events.TestEnd, records: Sequence[ChildRecord], facts: TestF
     return end
 
 
-def _lost(end: events.TestEnd, records: Sequence[ChildRecord], facts: TestFacts) -> str | None:
+def _lost(end: events.TestEnd, records: Sequence[ChildRecord], facts: FactsOfTest) -> str | None:
     """Return why a failed test shows nothing about the mutant; None if it does."""
     for one in records:
         code = facts.codes.get(one.began.pid)
@@ -337,7 +337,7 @@ def _lost(end: events.TestEnd, records: Sequence[ChildRecord], facts: TestFacts)
     return None
 
 
-def _was_signalled(record: ChildRecord, facts: TestFacts) -> bool:
+def _was_signalled(record: ChildRecord, facts: FactsOfTest) -> bool:
     """Return whether the tests, or a process below them, sent the process a signal."""
     pid, group = record.began.pid, record.began.group
     return not {pid, -pid, -group, ANYBODY}.isdisjoint(facts.signalled)

@@ -11,7 +11,7 @@ from mutabot.extensions import brought
 from mutabot.model import events
 from mutabot.model.activation import Activation
 from mutabot.model.event_file import FOLDER
-from mutabot.model.fold import ChildRecord, Children, TestFacts, calls_of, fold, is_alive
+from mutabot.model.fold import ChildRecord, Children, FactsOfTest, calls_of, fold, is_alive
 from mutabot.runtime.processes.environment import Announced, ProcessWatch, carry, write_wake
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ class Members:
         self._take_all()
         here = sorted(self._here(), key=lambda one: (one.name, one.began.time))
         job, watch, index_of = self._session.job, self._watch, self._session.recorder.index_of
-        facts = TestFacts(job, index_of, self._acted, watch.codes, watch.signalled)
+        facts = FactsOfTest(job, index_of, self._acted, watch.codes, watch.signalled)
         end = self._with_recorded(fold(end, here, facts), here, facts)
         self._acted = self._acted or end.acted > 0
         for origin in (events.STARTED, events.FORKED):
@@ -106,7 +106,7 @@ class Members:
                     self._session.pipe.send(event)
 
     def _with_recorded(
-        self, end: events.TestEnd, here: list[ChildRecord], facts: TestFacts
+        self, end: events.TestEnd, here: list[ChildRecord], facts: FactsOfTest
     ) -> events.TestEnd:
         """Return the end of a test whose recording has the calls of all processes by their times."""
         recorder, recording = self._session.recorder, self._session.recording
