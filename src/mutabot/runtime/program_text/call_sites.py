@@ -248,14 +248,14 @@ class CallSites(SourceStep):
 
     _handed_name = _name
 
-    def _passed_attribute(self, site: CallSite) -> Callable[[Any], Any]:
+    def _handed_attribute(self, site: CallSite) -> Callable[[Any], Any]:
         def read(receiver: Any) -> Any:
             __tracebackhide__ = True
             return self._decide(site, getattr(receiver, site.name), receiver, sys._getframe(1))
 
         return read
 
-    def _passed_by_name(self, site: CallSite) -> Callable[[Any], Any]:
+    def _handed_by_name(self, site: CallSite) -> Callable[[Any], Any]:
         sites: dict[str, CallSite] = {}
 
         def read(function: Any) -> Any:
