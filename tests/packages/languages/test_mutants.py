@@ -142,6 +142,24 @@ def test_they_have_verdicts(engine: str, tmp_path: Path) -> None:
     assert verdicts["WAIT FOR $IN[25]==TRUE → WAIT SEC 0"] == "survived"
 
 
+@pytest.mark.parametrize("engine", ["fork", pytest.param("replay", marks=pytest.mark.whole)])
+def test_what_the_program_does_not_come_to_has_no_effect(engine: str, tmp_path: Path) -> None:
+    (tmp_path / "a.script").write_text("x = 1\nif x > 1:\n  x = x + 5\nend\nsleep(0.1)\n")
+    (tmp_path / "conftest.py").write_text("from mutabot_cell.fixtures import *\n")
+    (tmp_path / "test_a.py").write_text(
+        "from pathlib import Path\nfrom mutabot_languages import load\n\n\ndef test_a(new_cell):\n"
+        '    done = load(Path(__file__).parent / "a.script").run(new_cell(1))\n'
+        '    assert done.variables["x"] == 1\n'
+    )
+    settings = 'program = ["a.script"]\nvocabulary = ["cell"]\ntests = ["test_a.py"]\n'
+    (tmp_path / "mutabot.toml").write_text(f'{settings}families = ["program-conventional"]\n')
+    command = [sys.executable, "-m", "mutabot", "run", "--json", "--engine", engine, "-o", "repeats=false"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    verdicts = {one["description"]: one["rounds"][0]["verdict"] for one in json.loads(done.stdout)["mutants"]}
+    assert verdicts["x + 5 → x - 5"] == "no effect"
+    assert verdicts["x > 1 → x >= 1"] == "killed"
+
+
 def test_diff_and_export_show_and_write_them(tmp_path: Path) -> None:
     written(tmp_path, "krl")
     (tmp_path / "pyproject.toml").write_text(
