@@ -187,6 +187,8 @@ class FaultProvider(ABC):
         in_program: whether all its mutants stand in files of the program or the oracle: words of ``--only``
             that name no such file are then refused before the baseline is taken.
         numbered_with: name of the provider with whose mutants its own are put in one order; empty for none.
+        knows_reach: whether ``plan`` says which tests reach a mutant. If not, it says all of them, and a
+            mutant of which no test reports a hit is not covered.
     """
 
     name: ClassVar[str]
@@ -195,6 +197,7 @@ class FaultProvider(ABC):
     needs_vocabulary: ClassVar[bool] = False
     in_program: ClassVar[bool] = False
     numbered_with: ClassVar[str] = ""
+    knows_reach: ClassVar[bool] = True
 
     def is_asked_for(self, project: Project) -> bool:
         """Return whether any of its mutants are asked for."""

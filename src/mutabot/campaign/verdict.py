@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from mutabot.campaign.baseline.baseline import Baseline, Sources, observation
 from mutabot.campaign.comparison import Difference, Observation, compare, farthest
+from mutabot.campaign.faults.providers import provider
 from mutabot.errors import MutabotError, in_short
 from mutabot.model import By, Kill, Looked, Mutant, Outcome, Verdict
 from mutabot.model.codec import shallow
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 _MOST_LOOKED = 20
 #: tests of which it is kept how they differ from the original's
 _MOST_DIVERGED = 5
+_NOT_REACHED = "no test reaches the site in this round"
 _RECORDED = frozenset({Verdict.SURVIVED, Verdict.KILLED, Verdict.TIMEOUT, Verdict.REFUSED, Verdict.GUARDED})
 
 #: exit codes of pytest's that say nothing about the mutant: the mistake may be ours
@@ -163,8 +165,7 @@ def without_tests(baseline: Baseline, mutant: Mutant, round: int) -> Outcome:
     if aside:
         text = f"all tests that reach the site are excluded in this round, such as {aside[0]}"
         return Outcome(mutant.id, round, Verdict.UNSTABLE, message=text)
-    text = "no test reaches the site in this round"
-    return Outcome(mutant.id, round, Verdict.NOT_COVERED, message=text, executed={})
+    return Outcome(mutant.id, round, Verdict.NOT_COVERED, message=_NOT_REACHED, executed={})
 
 
 def judged(campaign: Campaign, run: Run) -> Outcome:
@@ -322,6 +323,8 @@ def _ruling_on_end(run: Run, refused: TestEnd | None, usual: int, *, acted: bool
         return Verdict.SURVIVED, None, None
     if any(end.hits for end in run.ends):
         return Verdict.NO_EFFECT, None, "the site was reached, but no value changed"
+    if not provider(run.mutant.provider).knows_reach:
+        return Verdict.NOT_COVERED, None, _NOT_REACHED
     return Verdict.UNSTABLE, None, "the site was reached in the baseline, but not now"
 
 

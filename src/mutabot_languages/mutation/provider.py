@@ -39,6 +39,7 @@ class LanguageFaults(FaultProvider):
     families = _ORDER
     location = "part of a program"
     in_program = True
+    knows_reach = False  # which tests run a program, or look at a run, shows itself
 
     def __init__(self) -> None:
         self._root = Path()
@@ -72,9 +73,7 @@ class LanguageFaults(FaultProvider):
                 sites.add(one.site)
         for site in sorted(sites):
             for round, tests in enumerate(original.tests):
-                planned.reach(
-                    round, site, tests
-                )  # which ones run the program, or look at a run, is not known
+                planned.reach(round, site, tests)
         return planned
 
     def at_magnitude(self, planned: PlannedMutant, magnitude: float) -> PlannedMutant:

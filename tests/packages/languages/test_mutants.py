@@ -143,7 +143,7 @@ def test_they_have_verdicts(engine: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("engine", ["fork", pytest.param("replay", marks=pytest.mark.whole)])
-def test_what_the_program_does_not_come_to_has_no_effect(engine: str, tmp_path: Path) -> None:
+def test_what_the_program_does_not_come_to_is_not_covered(engine: str, tmp_path: Path) -> None:
     (tmp_path / "a.script").write_text("x = 1\nif x > 1:\n  x = x + 5\nend\nsleep(0.1)\n")
     (tmp_path / "conftest.py").write_text("from mutabot_cell.fixtures import *\n")
     (tmp_path / "test_a.py").write_text(
@@ -156,7 +156,7 @@ def test_what_the_program_does_not_come_to_has_no_effect(engine: str, tmp_path: 
     command = [sys.executable, "-m", "mutabot", "run", "--json", "--engine", engine, "-o", "repeats=false"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     verdicts = {one["description"]: one["rounds"][0]["verdict"] for one in json.loads(done.stdout)["mutants"]}
-    assert verdicts["x + 5 → x - 5"] == "no effect"
+    assert verdicts["x + 5 → x - 5"] == "not covered"
     assert verdicts["x > 1 → x >= 1"] == "killed"
 
 
