@@ -17,7 +17,6 @@ from mutabot.api.faults import (
     Rule,
     Site,
 )  # fmt: skip
-from mutabot.api.reports import UsageError
 
 from .extension import FAMILY, PROVIDER
 from .files import NO_PARAMETER, parameters_of
@@ -53,11 +52,13 @@ class WorldFaults(FaultProvider):
         return [Disturb()]
 
     def texts(self, project: Project, first: int, tell: Callable[[str], None]) -> Sequence[ProgramText]:
-        """None, but what shows how disturbances end is told. Raises UsageError for wrong parameters."""
+        """None, but say what shows how disturbances end. Raises UsageError for wrong parameters."""
         if parameters_of(project.tables.get("world") or WorldTable(), project.root):
             tell("`mutabot world` shows which disturbances the tests notice, and which are suffered unseen")
         elif {*project.families} == {FAMILY}:
-            raise UsageError(f"the table `world` has no parameter; {NO_PARAMETER}")
+            tell(
+                f"the table `world` has no parameter; {NO_PARAMETER}"
+            )  # others may have faults of this family
         return ()
 
     def is_monotone(self, operator: str) -> bool:
