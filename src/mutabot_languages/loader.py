@@ -101,9 +101,10 @@ class RobotProgram:
         text, _ = decode(content)
         note_read(file.resolve())
         found = [one for one in active() if one.concern(file.resolve(), content)]
+        assigned = _assigned(self.language.read(file.name, text).tree) if found else frozenset()
         text = applied(text, [edit for one in found for edit in one.edits])
         parsed = self.language.read(file.name, text)
-        unit = ProgramUnit(str(file.resolve()), parsed.source, parsed.tree)
+        unit = ProgramUnit(str(file.resolve()), parsed.source, parsed.tree, assigned=assigned)
         unit.watched = {start: one.reached for one in found for start in _watched(parsed.tree, one)}
         return unit
 
@@ -139,6 +140,12 @@ def load(
     beside = files[0].parent / "cell_map.toml"
     chosen = Path(cell_map) if cell_map is not None else beside if beside.is_file() else None
     return RobotProgram(tuple(files), found, CellMap.read(chosen) if chosen is not None else CellMap())
+
+
+def _assigned(tree: ProgramNode) -> frozenset[str]:
+    """The variables that a program gives a value."""
+    targets = (node.parts[0] for node in tree.walk() if node.kind == "assign")
+    return frozenset(one.name for one in targets if one.kind == "name")
 
 
 def _watched(tree: ProgramNode, edits: ActiveEdits) -> list[int]:

@@ -239,6 +239,8 @@ class Evaluation:
             raise type(why)(f"{self.place(node, scope)}: {node.name}: {why} (in {scope.routine})")
         if node.name in self.dialect.constants:
             return copy.deepcopy(self.dialect.constants[node.name])
+        if node.name in scope.unit.assigned:
+            raise self.error(node, scope, f"{node.name} has no value")
         return self.dialect.name(self, node, scope)
 
     def _binary(self, node: ProgramNode, scope: RoutineScope) -> Steps:

@@ -69,6 +69,7 @@ class ProgramUnit:
         tree: what stands in it.
         names: its own variables.
         watched: nodes by their starts of whose execution somebody is told.
+        assigned: of a mutant, the variables that the original gives a value somewhere.
     """
 
     path: str
@@ -76,6 +77,7 @@ class ProgramUnit:
     tree: ProgramNode
     names: dict[str, Variable] = field(default_factory=dict)
     watched: Mapping[int, Callable[[], None]] = field(default_factory=dict)
+    assigned: frozenset[str] = frozenset()
 
 
 @dataclass(slots=True)

@@ -2,10 +2,9 @@
 
 Expressions have the kinds ``number``, ``text``, ``constant``, ``name``, ``call``, ``method``, ``index``,
 ``field``, ``unary``, ``binary``, ``group``, ``list``, ``pose``, ``aggregate`` (of ``pair``), ``enum``,
-    ``option``
-(of a call) and ``omitted``. Statements are ``assign``, ``if``, ``while``, ``for``, ``repeat``, ``loop``,
-``switch``, ``return``, ``break``, ``continue``, ``goto``, ``label``, ``declare``, ``routine``, ``exit``,
-``empty``, ``opaque`` (what could not be read) and calls.
+``option`` (of a call) and ``omitted``. Statements are ``assign``, ``if``, ``while``, ``for``, ``repeat``,
+``loop``, ``switch``, ``return``, ``break``, ``continue``, ``goto``, ``label``, ``declare``, ``routine``,
+``exit``, ``empty``, ``opaque`` (what could not be read) and calls.
 """
 
 from __future__ import annotations

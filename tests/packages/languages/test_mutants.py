@@ -160,6 +160,24 @@ def test_what_the_program_does_not_come_to_is_not_covered(engine: str, tmp_path:
     assert verdicts["x > 1 → x >= 1"] == "killed"
 
 
+@pytest.mark.parametrize("engine", ["fork", pytest.param("replay", marks=pytest.mark.whole)])
+def test_a_variable_that_has_lost_its_value_is_an_error_of_the_program(engine: str, tmp_path: Path) -> None:
+    (tmp_path / "a.script").write_text("x = 1\ny = x + 1\nx = y\n")
+    (tmp_path / "conftest.py").write_text("from mutabot_cell.fixtures import *\n")
+    (tmp_path / "test_a.py").write_text(
+        "from pathlib import Path\nfrom mutabot_languages import load\n\n\ndef test_a(new_cell):\n"
+        '    assert load(Path(__file__).parent / "a.script").run(new_cell(1)).variables["y"] == 2\n'
+    )
+    settings = 'program = ["a.script"]\nvocabulary = ["cell"]\ntests = ["test_a.py"]\n'
+    (tmp_path / "mutabot.toml").write_text(f'{settings}families = ["program-conventional"]\n')
+    command = [sys.executable, "-m", "mutabot", "run", "--json", "--engine", engine, "-o", "repeats=false"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    ends = {one["description"]: one["rounds"][0] for one in json.loads(done.stdout)["mutants"]}
+    assert ends["x = 1 deleted"]["verdict"] == "killed"
+    assert "a.script:2: x has no value" in ends["x = 1 deleted"]["message"]
+    assert ends["x = y deleted"]["verdict"] == "survived"
+
+
 def test_diff_and_export_show_and_write_them(tmp_path: Path) -> None:
     written(tmp_path, "krl")
     (tmp_path / "pyproject.toml").write_text(
