@@ -132,19 +132,22 @@ class Stage:
         operator: str,
         quantity: str | None = None,
         *,
-        index: int = 0,
+        index: int | str = 0,
         idle: Any = None,
         variant: str = "",
     ) -> tuple[Any, ActiveMutant]:
         """Run the program once as the original to find sites, then as a mutant at the site ``index``.
 
+        ``index`` counts the sites in the order in which the run came to them, or is the operation of a site:
+        messages that come on several ways have no order.
         Returns the program's result and the activation with its evidence.
         """
         recording = self.session()
         self.run(recording)
         take_away(recording)
         sys.modules.pop(self.program_name)  # its text asks the session that was there when it was loaded
-        seen = self.sites()[index]
+        sites = self.sites()
+        seen = next(s for s in sites if s.operation == index) if isinstance(index, str) else sites[index]
         mutant = Mutant(
             1, "robot", operator, _site(seen.span), seen.operation, seen.pattern, quantity, variant, "", idle
         )

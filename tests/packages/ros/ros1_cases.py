@@ -369,7 +369,7 @@ def test_a_goal_is_reversed(make: Making, turning: list[int]) -> None:
 
 
 def test_feedback_is_misread(make: Making, turning: list[int]) -> None:
-    (read, result, _), _ = make(TURN, ACTION).mutated("negate", "feedback", index=2)
+    (read, result, _), _ = make(TURN, ACTION).mutated("negate", "feedback", index="feedback /cell/turn")
     assert (read, result) == ([-30, 30], 30)
 
 
