@@ -33,11 +33,11 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from mutabot.campaign.beginning import begin, open_executor, selected
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.engine import run_trials
 from mutabot.campaign.evidence import CampaignEvidence, recorded
 from mutabot.campaign.plan import make_plan
+from mutabot.campaign.preparation import begin, open_executor, selected
 from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.reuse.keys import Dependencies, OutcomeWriter
 from mutabot.campaign.reuse.original import OriginalRuns

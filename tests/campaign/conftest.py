@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from mutabot.campaign import beginning
+from mutabot.campaign import preparation
 from tests.campaign.scripted import Script
 
 
@@ -12,5 +12,5 @@ from tests.campaign.scripted import Script
 def script(monkeypatch: pytest.MonkeyPatch) -> Script:
     """Campaigns start no process; how tests end is what this says."""
     script = Script()
-    monkeypatch.setattr(beginning, "open_executor", script.opened)
+    monkeypatch.setattr(preparation, "open_executor", script.opened)
     return script

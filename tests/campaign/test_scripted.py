@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.campaign import beginning
+from mutabot.campaign import preparation
 from mutabot.campaign.run import run_campaign
 from mutabot.journal.journal import Journal
 from tests.campaign.project import REPLAY, Quiet, request_for, write_project
@@ -56,5 +56,5 @@ def test_a_scripted_campaign_is_a_real_one(
     real = campaign(tmp_path / "real", engine)
     script = Script()
     script.kill(":go:arm.move_by")
-    monkeypatch.setattr(beginning, "open_executor", script.opened)
+    monkeypatch.setattr(preparation, "open_executor", script.opened)
     assert campaign(tmp_path / "scripted", engine) == real

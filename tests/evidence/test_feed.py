@@ -9,15 +9,15 @@ from math import isnan
 import pytest
 
 from mutabot.evidence import Feed
-from mutabot.evidence import tape as tapes
+from mutabot.evidence import recorder as recorders
+from mutabot.evidence.recorder import WorldRecorder
 from mutabot.evidence.recording import Recording
-from mutabot.evidence.tape import Tape
 
 
 @pytest.fixture
-def tape() -> Iterator[Tape]:
-    yield tapes.begin()
-    tapes.stop()
+def recorder() -> Iterator[WorldRecorder]:
+    yield recorders.begin()
+    recorders.stop()
 
 
 class World:
@@ -55,57 +55,57 @@ def test_nothing_is_read_while_nothing_is_recorded() -> None:
     assert world.reads == 0
 
 
-def test_moments_come_at_the_rate_of_simulated_time(tape: Tape) -> None:
+def test_moments_come_at_the_rate_of_simulated_time(recorder: WorldRecorder) -> None:
     world = World()
     world.run(fed(world, rate=5.0), 2.0)
-    times = tape.recording.times
+    times = recorder.recording.times
     assert len(times) == 11
     steps = [after - before for before, after in pairwise(times[1:])]
     assert steps == pytest.approx([0.2] * 9)
 
 
-def test_a_world_that_is_there_already_begins_at_zero(tape: Tape) -> None:
+def test_a_world_that_is_there_already_begins_at_zero(recorder: WorldRecorder) -> None:
     world = World(start=100.0)
     world.run(fed(world), 1.0)
-    assert tape.recording.times[0] == 0.0
-    assert tape.recording.times[-1] == pytest.approx(1.0, abs=0.02)
+    assert recorder.recording.times[0] == 0.0
+    assert recorder.recording.times[-1] == pytest.approx(1.0, abs=0.02)
 
 
-def test_a_clock_that_begins_anew_is_counted_on(tape: Tape) -> None:
+def test_a_clock_that_begins_anew_is_counted_on(recorder: WorldRecorder) -> None:
     world = World()
     feed = fed(world)
     world.run(feed, 1.0)
     world.time = 0.0
     world.run(feed, 1.0)
-    times = list(tape.recording.times)
+    times = list(recorder.recording.times)
     assert times == sorted(times)
     assert times[-1] == pytest.approx(2.0, abs=0.05)
 
 
-def test_a_second_world_of_a_test_comes_after_the_first(tape: Tape) -> None:
+def test_a_second_world_of_a_test_comes_after_the_first(recorder: WorldRecorder) -> None:
     first, second = World(), World()
     first.run(fed(first), 1.0)
     second.run(fed(second), 1.0)
-    assert list(tape.recording.times) == sorted(tape.recording.times)
-    assert len(heights(tape.recording)) == len(tape.recording.times)
+    assert list(recorder.recording.times) == sorted(recorder.recording.times)
+    assert len(heights(recorder.recording)) == len(recorder.recording.times)
 
 
-def test_what_comes_later_was_not_there_before(tape: Tape) -> None:
+def test_what_comes_later_was_not_there_before(recorder: WorldRecorder) -> None:
     world = World()
     feed = fed(world)
     world.run(feed, 0.5)
     feed.value("opening", lambda: 0.25, unit="m")
     world.run(feed, 0.5)
-    opening = tape.recording.tracks["opening"].values
-    assert len(opening) == len(tape.recording.times)
+    opening = recorder.recording.tracks["opening"].values
+    assert len(opening) == len(recorder.recording.times)
     assert isnan(opening[0])
     assert opening[-1] == 0.25
 
 
-def test_long_tests_are_thinned_evenly(tape: Tape) -> None:
+def test_long_tests_are_thinned_evenly(recorder: WorldRecorder) -> None:
     world = World()
     world.run(fed(world), 1000.0, step=0.1)
-    times = tape.recording.times
+    times = recorder.recording.times
     assert 2000 <= len(times) < 4000
     steps = {round(after - before, 6) for before, after in pairwise(times[5:-5])}
     assert max(steps) <= 2 * min(steps) + 1e-6
@@ -119,50 +119,54 @@ def test_long_tests_are_thinned_evenly(tape: Tape) -> None:
         (lambda: "far", "TypeError"),
     ],
 )
-def test_what_cannot_be_read_is_said_and_the_test_goes_on(tape: Tape, read: object, why: str) -> None:
+def test_what_cannot_be_read_is_said_and_the_test_goes_on(
+    recorder: WorldRecorder, read: object, why: str
+) -> None:
     world = World()
     feed = fed(world)
     feed.point("box", read)  # type: ignore[arg-type]  # what users may do
     world.run(feed, 1.0)
-    (problem,) = tape.recording.problems
+    (problem,) = recorder.recording.problems
     assert problem.startswith("box cannot be recorded: ")
     assert why in problem
-    assert len(heights(tape.recording)) == len(tape.recording.times)
-    assert all(map(isnan, tape.recording.tracks["box"].values))
+    assert len(heights(recorder.recording)) == len(recorder.recording.times)
+    assert all(map(isnan, recorder.recording.tracks["box"].values))
 
 
-def test_contacts_are_told_when_they_begin_and_end(tape: Tape) -> None:
+def test_contacts_are_told_when_they_begin_and_end(recorder: WorldRecorder) -> None:
     world = World()
     feed = fed(world)
     feed.contacts(lambda: [("box", "arm"), ("arm", "box")] if 0.3 < world.time < 0.6 else [])
     world.run(feed, 1.0)
-    assert [(one.what, one.text) for one in tape.recording.moments] == [
+    assert [(one.what, one.text) for one in recorder.recording.moments] == [
         ("touch", "arm, box"),
         ("part", "arm, box"),
     ]
 
 
-def test_where_everything_ended_is_told_whenever_that_was(tape: Tape) -> None:
+def test_where_everything_ended_is_told_whenever_that_was(recorder: WorldRecorder) -> None:
     world = World()
     feed = fed(world, rate=1.0)
     world.run(feed, 2.5)
-    tape.finish()
-    assert heights(tape.recording)[-1] == pytest.approx(2.5)
-    assert tape.recording.times[-1] == pytest.approx(2.49)
+    recorder.finish()
+    assert heights(recorder.recording)[-1] == pytest.approx(2.5)
+    assert recorder.recording.times[-1] == pytest.approx(2.49)
 
 
 @pytest.mark.parametrize("time", [lambda: 1 / 0, lambda: float("nan"), lambda: None])
-def test_a_time_that_cannot_be_read_is_said_and_the_test_goes_on(tape: Tape, time: object) -> None:
+def test_a_time_that_cannot_be_read_is_said_and_the_test_goes_on(
+    recorder: WorldRecorder, time: object
+) -> None:
     feed = Feed(time)  # type: ignore[arg-type]  # what users may do
     feed.point("tool", lambda: (0.0, 0.0, 0.0))
     feed.tick()
     feed.note("here")
-    (problem,) = tape.recording.problems
+    (problem,) = recorder.recording.problems
     assert problem.startswith("the simulated time cannot be read: ")
-    assert not tape.recording.times
+    assert not recorder.recording.times
 
 
-def test_a_simulator_that_is_closed_leaves_the_time_as_it_was(tape: Tape) -> None:
+def test_a_simulator_that_is_closed_leaves_the_time_as_it_was(recorder: WorldRecorder) -> None:
     world = World()
     is_open = [True]
 
@@ -175,17 +179,17 @@ def test_a_simulator_that_is_closed_leaves_the_time_as_it_was(tape: Tape) -> Non
     feed.point("tool", world.read)
     world.run(feed, 1.0)
     is_open[0] = False
-    assert tape.now == tape.now == pytest.approx(0.99)
-    tape.finish()
-    assert tape.recording.problems == ["the simulated time cannot be read: RuntimeError: it is closed"]
+    assert recorder.now == recorder.now == pytest.approx(0.99)
+    recorder.finish()
+    assert recorder.recording.problems == ["the simulated time cannot be read: RuntimeError: it is closed"]
 
 
-def test_bodies_may_be_numbers(tape: Tape) -> None:
+def test_bodies_may_be_numbers(recorder: WorldRecorder) -> None:
     world = World()
     feed = fed(world)
     feed.contacts(lambda: [(7, 3)])  # type: ignore[list-item]  # what users may do
     world.run(feed, 0.2)
-    assert [one.text for one in tape.recording.moments] == ["3, 7"]
+    assert [one.text for one in recorder.recording.moments] == ["3, 7"]
 
 
 def test_a_rate_of_nothing_is_refused() -> None:
@@ -193,25 +197,25 @@ def test_a_rate_of_nothing_is_refused() -> None:
         Feed(lambda: 0.0, rate=0.0)
 
 
-def test_a_line_has_three_numbers_per_radius_and_others_are_a_problem(tape: Tape) -> None:
+def test_a_line_has_three_numbers_per_radius_and_others_are_a_problem(recorder: WorldRecorder) -> None:
     world = World()
     feed = Feed(lambda: world.time)
     feed.line("arm", lambda: [0.0, 0.0, world.height, 1.0, 0.0, 0.0], radii=[0.05, 0.04])
     feed.line("wrong", lambda: [0.0, 0.0, 0.0], radii=[0.05, 0.04])
     world.run(feed, 1.0)
-    arm, wrong = tape.recording.tracks["arm"], tape.recording.tracks["wrong"]
+    arm, wrong = recorder.recording.tracks["arm"], recorder.recording.tracks["wrong"]
     assert arm.radii == (0.05, 0.04)
-    assert len(arm.values) == len(wrong.values) == 6 * len(tape.recording.times)
+    assert len(arm.values) == len(wrong.values) == 6 * len(recorder.recording.times)
     assert all(map(isnan, wrong.values))
-    assert tape.recording.problems == ["wrong cannot be recorded: 3 numbers instead of 6"]
+    assert recorder.recording.problems == ["wrong cannot be recorded: 3 numbers instead of 6"]
 
 
-def test_a_line_is_kept_to_a_millimetre_and_what_is_compared_as_it_is(tape: Tape) -> None:
+def test_a_line_is_kept_to_a_millimetre_and_what_is_compared_as_it_is(recorder: WorldRecorder) -> None:
     feed = Feed(lambda: 0.0)
     feed.line("arm", lambda: [0.12345, -0.6789, 1.0], radii=[0.05])
     feed.point("tool", lambda: (0.12345, -0.6789, 1.0))
     feed.tick()
-    arm, tool = (list(tape.recording.tracks[name].values) for name in ("arm", "tool"))
+    arm, tool = (list(recorder.recording.tracks[name].values) for name in ("arm", "tool"))
     assert arm == pytest.approx(tool, abs=0.0005)
     assert arm != tool
     assert tool == pytest.approx([0.12345, -0.6789, 1.0], abs=1e-6)

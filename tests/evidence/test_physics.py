@@ -6,7 +6,7 @@ from math import sqrt
 
 import pytest
 
-from mutabot.evidence import tape as tapes
+from mutabot.evidence import recorder as recorders
 from mutabot.evidence.feed import Feed
 from mutabot.evidence.paths import RecordedPaths
 from mutabot.evidence.physics import COLLISION, DRAG, DURATION, IMPACT, RELEASE, SLIP, SPEED, Fact, facts_of
@@ -123,16 +123,16 @@ def test_a_second_world_in_a_test_is_no_leap() -> None:
 
 def with_margin(*margins: float) -> Recording:
     """A tool that stands still, beside a limit."""
-    tape = tapes.begin()
+    recorder = recorders.begin()
     now = [0]
     feed = Feed(lambda: now[0] / 10)
     feed.point("tool", lambda: (0.0, 0.0, 1.0))
     feed.value("joint limit margin", lambda: margins[now[0]], unit="deg")
     for now[0] in range(len(margins)):
         feed.tick()
-    tapes.stop()
-    tape.recording.is_simulated = True
-    return tape.recording
+    recorders.stop()
+    recorder.recording.is_simulated = True
+    return recorder.recording
 
 
 @pytest.mark.parametrize(

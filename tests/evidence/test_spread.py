@@ -6,7 +6,7 @@ from math import cos, radians, sin
 
 import pytest
 
-from mutabot.evidence import tape as tapes
+from mutabot.evidence import recorder as recorders
 from mutabot.evidence.feed import Feed
 from mutabot.evidence.paths import RecordedPaths, turned_aside
 from mutabot.evidence.recording import Recording
@@ -108,16 +108,16 @@ def test_of_one_run_there_is_no_spread() -> None:
 
 def turning(*angles: float) -> Recording:
     """A tool that stands still and turns about the vertical, deg."""
-    tape = tapes.begin()
+    recorder = recorders.begin()
     now = [0]
     feed = Feed(lambda: now[0] / 10)
     half = [radians(angle) / 2 for angle in angles]
     feed.pose("tool", lambda: (0.0, 0.0, 1.0, cos(half[now[0]]), 0.0, 0.0, sin(half[now[0]])))
     for now[0] in range(len(angles)):
         feed.tick()
-    tapes.stop()
-    tape.recording.is_simulated = True
-    return tape.recording
+    recorders.stop()
+    recorder.recording.is_simulated = True
+    return recorder.recording
 
 
 def test_a_tool_that_is_turned_on_its_way_is_told_by_the_angle_from_all_that_the_original_has() -> None:

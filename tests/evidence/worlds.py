@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 
-from mutabot.evidence import tape as tapes
+from mutabot.evidence import recorder as recorders
 from mutabot.evidence.feed import Feed
 from mutabot.evidence.paths import RecordedPaths
 from mutabot.evidence.recording import RecordedCall, Recording
@@ -32,7 +32,7 @@ def recorded(
     calls: Sequence[RecordedCall] = (),
 ) -> Recording:
     """What a simulator tells whose tool and box are at these places, ten a second."""
-    tape = tapes.begin()
+    recorder = recorders.begin()
     now = [0]
     feed = Feed(lambda: now[0] / 10)
     feed.pose("tool", lambda: (*tool[now[0]], *UPRIGHT))
@@ -44,10 +44,10 @@ def recorded(
     for number in range(len(tool)):
         now[0] = number
         feed.tick()
-    tapes.stop()
-    tape.recording.calls = list(calls)
-    tape.recording.is_simulated = True
-    return tape.recording
+    recorders.stop()
+    recorder.recording.calls = list(calls)
+    recorder.recording.is_simulated = True
+    return recorder.recording
 
 
 def apart(original: Recording, mutant: Recording, *, is_cut: bool = False) -> Diverged | None:

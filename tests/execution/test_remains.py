@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from mutabot.campaign.run import run_campaign
-from mutabot.execution.remains import end_abandoned, end_left_over
+from mutabot.execution.cleanup import end_abandoned, end_left_over
 from mutabot.model import Verdict
 from mutabot.model.event_file import VARIABLE
 from tests.campaign.project import Quiet, outcomes, request_for, write_project

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.execution.remains import remove_folder
+from mutabot.execution.cleanup import remove_folder
 
 
 @pytest.fixture

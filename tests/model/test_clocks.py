@@ -16,7 +16,7 @@ from mutabot.model import clocks
 EVERYWHERE = """
 import sys, time
 from mutabot.model import clocks, process_time
-from mutabot.evidence import tape
+from mutabot.evidence import recorder
 import mutabot.runtime.test_hooks, mutabot.runtime.observation.probes
 names = ("time", "monotonic", "perf_counter", "process_time", "thread_time", "sleep", "clock_gettime")
 real = {id(getattr(time, name)): name for name in names}
@@ -27,7 +27,8 @@ for module in list(sys.modules.values()):
         if id(value) in real:
             setattr(module, name, fake)
 assert time.monotonic() == -1.5e9
-for module in (clocks, process_time, tape, mutabot.runtime.test_hooks, mutabot.runtime.observation.probes):
+runtime = mutabot.runtime.test_hooks, mutabot.runtime.observation.probes
+for module in (clocks, process_time, recorder, *runtime):
     assert 0.0 <= module.monotonic() - before[0] < 600.0, module
 assert 0.0 <= mutabot.runtime.test_hooks.process_time() - before[1] < 600.0
 clocks.sleep(0.0)

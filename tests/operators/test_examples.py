@@ -14,7 +14,7 @@ from mutabot.model import Call, Reply
 from mutabot.model.quantity import changes
 from mutabot.operators import Example, Subject, names, operator
 from mutabot.operators.command import CONTROLS
-from mutabot.operators.passage import CallRecord, rehearse
+from mutabot.operators.middleware import CallRecord, rehearse
 
 CASES = [(name, index) for name in [*names(), *CONTROLS] for index in range(len(operator(name).examples))]
 SEED = 1

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from mutabot.campaign.beginning import begin, locked_executor
 from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.preparation import begin, locked_executor
 from mutabot.execution.task import Result
 from mutabot.model.source_units import ALL_FILES, ExecutedByTests, File
 from tests.campaign.project import Quiet, request_for, write_project

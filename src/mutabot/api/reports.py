@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from mutabot.lazy import lazily
 
 if TYPE_CHECKING:
-    from mutabot.campaign.again import CampaignRun as CampaignRun
+    from mutabot.campaign.partial_runs import CampaignRun as CampaignRun
     from mutabot.campaign.request import Progress as Progress
     from mutabot.cli.context import CommandContext as CommandContext
     from mutabot.errors import MutabotError as MutabotError
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from mutabot.results.results import Results as Results
 
 _HOMES = {
-    "mutabot.campaign.again": ("CampaignRun",),
+    "mutabot.campaign.partial_runs": ("CampaignRun",),
     "mutabot.campaign.request": ("Progress",),
     "mutabot.cli.context": ("CommandContext",),
     "mutabot.errors": ("MutabotError", "UsageError"),

@@ -12,12 +12,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mutabot import __version__, extensions
-from mutabot.campaign.beginning import begin, locked_executor, selected, whole_plan
 from mutabot.campaign.confirmation import decide, earlier_decision
 from mutabot.campaign.engines.rerun import refuse_flaky, rerun
 from mutabot.campaign.evidence import CampaignEvidence, recorded
 from mutabot.campaign.faults.providers import family_of
 from mutabot.campaign.plan import Plan, carry, drawing, reaching, summaries
+from mutabot.campaign.preparation import begin, locked_executor, selected, whole_plan
 from mutabot.campaign.reuse.keys import Dependencies, OutcomeWriter
 from mutabot.campaign.reuse.original import OriginalRuns
 from mutabot.campaign.reuse.snapshot import Snapshot, State

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from math import floor, inf, isfinite
 from typing import TYPE_CHECKING, Any
 
-from . import tape as tapes
+from . import recorder as recorders
 from .recording import Block, TrackKind
 
 if TYPE_CHECKING:
-    from .tape import Tape
+    from .recorder import WorldRecorder
 
 Triple = tuple[float, float, float]
 #: seconds that a new simulation in the same test comes after the one before
@@ -51,7 +51,7 @@ class Feed:
         self._robots: tuple[str, ...] = ()
         self._camera: Callable[[], Any] | None = None
         self._shutter = self._next_picture = 0.0
-        self._tape: Tape | None = None
+        self._recorder: WorldRecorder | None = None
         self._before: frozenset[tuple[str, str]] = frozenset()
         self._offset = self._last = self._due = 0.0
 
@@ -113,12 +113,12 @@ class Feed:
 
     def note(self, text: str) -> None:
         """Record an event that happens now."""
-        tape = tapes.running()
-        now = self._now(tape) if tape is not None else None
-        if tape is not None and now is not None:
-            if tape is not self._tape:
-                self._begin(tape, now)
-            tape.note(self._offset + now, "note", text)
+        recorder = recorders.running()
+        now = self._now(recorder) if recorder is not None else None
+        if recorder is not None and now is not None:
+            if recorder is not self._recorder:
+                self._begin(recorder, now)
+            recorder.note(self._offset + now, "note", text)
 
     @property
     def due(self) -> float:
@@ -126,102 +126,104 @@ class Feed:
 
         For a simulator that takes many steps at once: calls of ``tick`` before it may be left out.
         """
-        tape = tapes.running()
-        if tape is None:
+        recorder = recorders.running()
+        if recorder is None:
             return inf
-        if tape is not self._tape:
+        if recorder is not self._recorder:
             return -inf
-        return self._due if tape.film is None else min(self._due, self._next_picture)
+        return self._due if recorder.film is None else min(self._due, self._next_picture)
 
     def tick(self) -> None:
         """Record the current moment, if one is due. Call it after each step, or for each message."""
-        tape = tapes.running()
-        if tape is not None:
-            with tape.aside():
-                self._tick(tape)
+        recorder = recorders.running()
+        if recorder is not None:
+            with recorder.aside():
+                self._tick(recorder)
 
-    def _now(self, tape: Tape) -> float | None:
+    def _now(self, recorder: WorldRecorder) -> float | None:
         """Return the simulator's own time (s); None if it has none, which is noted."""
-        with tape.reading("the simulated time cannot be read"):
+        with recorder.reading("the simulated time cannot be read"):
             now = float(self._time())
             if isfinite(now):
                 return now
-            tape.problem(f"the simulated time cannot be read: {now} is not a time")
+            recorder.problem(f"the simulated time cannot be read: {now} is not a time")
         return None
 
-    def _tick(self, tape: Tape) -> None:
-        now = self._now(tape)
+    def _tick(self, recorder: WorldRecorder) -> None:
+        now = self._now(recorder)
         if now is None:
             return
-        if tape is not self._tape:
-            self._begin(tape, now)
+        if recorder is not self._recorder:
+            self._begin(recorder, now)
         elif now < self._last:
-            self._go_on(tape, now)
+            self._go_on(recorder, now)
         self._last = now
-        tape.end = self._offset + now
+        recorder.end = self._offset + now
         if now >= self._due - _HAIR:
-            step = self._interval * tape.coarseness
+            step = self._interval * recorder.coarseness
             self._due = (floor(now / step + _HAIR) + 1) * step
-            self._sample(tape, self._offset + now)
-        if tape.film is not None and self._camera is not None and now >= self._next_picture - _HAIR:
-            self._take_picture(tape, now, self._camera)
+            self._sample(recorder, self._offset + now)
+        if recorder.film is not None and self._camera is not None and now >= self._next_picture - _HAIR:
+            self._take_picture(recorder, now, self._camera)
 
-    def _take_picture(self, tape: Tape, now: float, read: Callable[[], Any]) -> None:
+    def _take_picture(self, recorder: WorldRecorder, now: float, read: Callable[[], Any]) -> None:
         self._next_picture = (floor(now / self._shutter + _HAIR) + 1) * self._shutter
-        if tape.filmed_by is self:
-            tape.picture(self._offset + now, read)
+        if recorder.filmed_by is self:
+            recorder.picture(self._offset + now, read)
 
-    def _begin(self, tape: Tape, now: float) -> None:
+    def _begin(self, recorder: WorldRecorder, now: float) -> None:
         """Begin to record a test, at time 0 even if the simulation already ran."""
-        self._tape = tape
-        is_first = not tape.recording.times
-        self._offset = -now if is_first else tape.end + _GAP - now
+        self._recorder = recorder
+        is_first = not recorder.recording.times
+        self._offset = -now if is_first else recorder.end + _GAP - now
         self._last = self._due = self._next_picture = now
         if self._camera is not None:
-            tape.filmed_by = self
+            recorder.filmed_by = self
         self._before = frozenset()
         for block in self._blocks:
-            tape.block(block)
-        tape.recording.robots = tuple(dict.fromkeys((*tape.recording.robots, *self._robots)))
-        tape.use_clock(lambda: self._offset + self._time())
-        tape.at_end.append(lambda: self._finish(tape))
+            recorder.block(block)
+        recorder.recording.robots = tuple(dict.fromkeys((*recorder.recording.robots, *self._robots)))
+        recorder.use_clock(lambda: self._offset + self._time())
+        recorder.at_end.append(lambda: self._finish(recorder))
 
-    def _finish(self, tape: Tape) -> None:
+    def _finish(self, recorder: WorldRecorder) -> None:
         """Record the last moment of a test."""
-        with tape.aside():
-            now, times = self._offset + self._time(), tape.recording.times
-            if tape is self._tape and times and now > times[-1] + _HAIR:
-                self._sample(tape, now)
+        with recorder.aside():
+            now, times = self._offset + self._time(), recorder.recording.times
+            if recorder is self._recorder and times and now > times[-1] + _HAIR:
+                self._sample(recorder, now)
 
-    def _go_on(self, tape: Tape, now: float) -> None:
+    def _go_on(self, recorder: WorldRecorder, now: float) -> None:
         """Continue after simulated time was reset: later moments follow all earlier ones."""
-        self._offset = tape.end + _GAP - now
+        self._offset = recorder.end + _GAP - now
         self._due = self._next_picture = now
         self._before = frozenset()
 
-    def _sample(self, tape: Tape, now: float) -> None:
+    def _sample(self, recorder: WorldRecorder, now: float) -> None:
         for source in self._sources:
-            track = tape.track(source.name, source.kind, source.unit, source.size, source.radii)
+            track = recorder.track(source.name, source.kind, source.unit, source.size, source.radii)
             length = len(track.values)
-            with tape.reading(f"{source.name} cannot be recorded"):
+            with recorder.reading(f"{source.name} cannot be recorded"):
                 found = [source.read()] if source.kind is TrackKind.VALUE else list(source.read())
                 if len(found) == track.width:
                     track.values.extend(map(_coarse, found) if track.radii else found)
                     continue
                 why = f"{len(found)} numbers instead of {track.width}"
-                tape.problem(f"{source.name} cannot be recorded: {why}")
+                recorder.problem(f"{source.name} cannot be recorded: {why}")
             del track.values[length:]
-        tape.close_moment(now)
+        recorder.close_moment(now)
         if self._touching is not None:
-            self._note_contacts(tape, now, self._touching)
+            self._note_contacts(recorder, now, self._touching)
 
-    def _note_contacts(self, tape: Tape, now: float, read: Callable[[], Iterable[tuple[str, str]]]) -> None:
+    def _note_contacts(
+        self, recorder: WorldRecorder, now: float, read: Callable[[], Iterable[tuple[str, str]]]
+    ) -> None:
         touching = self._before
-        with tape.reading("contacts cannot be recorded"):
+        with recorder.reading("contacts cannot be recorded"):
             touching = frozenset((min(pair), max(pair)) for pair in ((str(a), str(b)) for a, b in read()))
         for what, changed in (("part", self._before - touching), ("touch", touching - self._before)):
             for pair in sorted(changed):
-                tape.note(now, what, ", ".join(pair))
+                recorder.note(now, what, ", ".join(pair))
         self._before = touching
 
 

@@ -61,14 +61,14 @@ class _InterruptionGuard:
         self.is_late = True
 
 
-_keeper: _InterruptionGuard | None = None
+_guard: _InterruptionGuard | None = None
 
 
 def interrupt(number: int = signal.SIGINT, frame: FrameType | None = None) -> None:
     """Interrupt the campaign like Ctrl-C; a signal handler of the main thread."""
-    if _keeper is None:
+    if _guard is None:
         raise KeyboardInterrupt
-    _keeper.interrupt()
+    _guard.interrupt()
 
 
 @contextmanager
@@ -78,13 +78,13 @@ def interruptions_kept() -> Iterator[None]:
     Does nothing in other threads than the main one, which Python tells nothing of signals, and where
     somebody else handles them already. Where Ctrl-C is ignored it stays so.
     """
-    global _keeper  # noqa: PLW0603  # a process has one handler of each signal
+    global _guard  # noqa: PLW0603  # a process has one handler of each signal
     is_main = threading.current_thread() is threading.main_thread()
     before = signal.getsignal(signal.SIGINT)
-    if _keeper is not None or not is_main or before not in (signal.default_int_handler, signal.SIG_IGN):
+    if _guard is not None or not is_main or before not in (signal.default_int_handler, signal.SIG_IGN):
         yield
         return
-    keeper = _keeper = _InterruptionGuard()
+    guard = _guard = _InterruptionGuard()
     if before is signal.default_int_handler:
         signal.signal(signal.SIGINT, interrupt)
     try:
@@ -92,8 +92,8 @@ def interruptions_kept() -> Iterator[None]:
     finally:
         if before is signal.default_int_handler:
             signal.signal(signal.SIGINT, before)
-        _keeper = None
-    keeper.let_go()
+        _guard = None
+    guard.let_go()
 
 
 @contextmanager
@@ -106,8 +106,8 @@ def limited(until: float, clock: Callable[[], float]) -> Iterator[None]:
         until: when that is, by the clock.
         clock: the seconds by which ``until`` is meant.
     """
-    keeper = _keeper
-    if keeper is None:
+    guard = _guard
+    if guard is None:
         yield
         return
 
@@ -116,7 +116,7 @@ def limited(until: float, clock: Callable[[], float]) -> Iterator[None]:
         if left > 0:
             signal.setitimer(signal.ITIMER_REAL, left)
         else:
-            keeper.set_time_up()
+            guard.set_time_up()
 
     before = signal.signal(signal.SIGALRM, look)
     signal.setitimer(signal.ITIMER_REAL, max(until - clock(), 1e-3))
@@ -125,19 +125,19 @@ def limited(until: float, clock: Callable[[], float]) -> Iterator[None]:
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, before)
-        keeper.is_late = False
+        guard.is_late = False
 
 
 @contextmanager
 def interruptible() -> Iterator[None]:
     """Let Ctrl-C take effect at once inside the context, including one that was delayed."""
-    keeper = _keeper
-    if keeper is None:
+    guard = _guard
+    if guard is None:
         yield
         return
-    keeper.may_raise = True
+    guard.may_raise = True
     try:
-        keeper.let_go()
+        guard.let_go()
         yield
     finally:
-        keeper.may_raise = False
+        guard.may_raise = False

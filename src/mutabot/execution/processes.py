@@ -25,20 +25,20 @@ from pathlib import Path
 from shutil import disk_usage
 
 from mutabot.errors import UsageError
+from mutabot.execution.cleanup import remove_folder
 from mutabot.execution.interruption import interruptible
-from mutabot.execution.remains import remove_folder
 from mutabot.frozen import frozen
 from mutabot.model.event_file import FOLDER, FORKS, SESSION, SUFFIX, EventReader
 from mutabot.model.events import Event, ForkEnded, Serving
 from mutabot.model.files import open_file, read_file
 from mutabot.model.fold import Children, acted_in, fold_fork
 from mutabot.model.job import JOB_VARIABLE, PIPE_VARIABLE, STOP, Job, job_file, write_job
-from mutabot.model.keeper import FILE as KEEPER
-from mutabot.model.keeper import LEFT
+from mutabot.model.supervisor import FILE as SUPERVISOR
+from mutabot.model.supervisor import LEFT
 
 #: bytes that are read of what a process printed, and of the list of what it left running
 _LOG_BYTES, _LEFT_BYTES = 4000, 1 << 20
-#: seconds that a keeper may take to end all it looks after
+#: seconds that a supervisor may take to end all it looks after
 _PATIENCE = 15.0
 #: bytes that must be free on the disk for a process to print what it prints
 _ROOM = 1 << 14
@@ -129,7 +129,7 @@ class Spawned:
     """A fresh process, with a supervisor above it that ends everything it starts.
 
     Attributes:
-        pid: the keeper's number.
+        pid: the supervisor's number.
         pidfd: becomes readable when it ends.
         startup: seconds spent on it before it began; none.
     """
@@ -145,10 +145,10 @@ class Spawned:
         descriptors: tuple[int, ...] = (),
     ) -> None:
         self._left = home.folder / LEFT
-        keeper = [sys.executable, "-I", "-S", KEEPER, str(os.getpid())]
+        supervisor = [sys.executable, "-I", "-S", SUPERVISOR, str(os.getpid())]
         with home.log_file.open("wb") as log:
             self._process = subprocess.Popen(
-                [*keeper, *command(arguments, home.folder)],
+                [*supervisor, *command(arguments, home.folder)],
                 cwd=root,
                 env=environment(home.job_file, writing),
                 stdin=subprocess.DEVNULL,
@@ -182,7 +182,7 @@ class Spawned:
         self.kill()
         try:
             return self._process.wait(_PATIENCE)
-        except subprocess.TimeoutExpired:  # the keeper was stopped
+        except subprocess.TimeoutExpired:  # the supervisor was stopped
             self._process.kill()
             return self._process.wait()
 
@@ -270,7 +270,7 @@ class Copy:
     """A copy of a fork server, running a job. Like ``Spawned``, but the server waits for it."""
 
     pidfd = None
-    #: nobody but the server's keeper looks after what it leaves
+    #: nobody but the server's supervisor looks after what it leaves
     left: list[str] | None = None
 
     def __init__(self, pid: int, server: ForkServerProcess) -> None:

@@ -20,6 +20,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from mutabot.errors import JournalError
+from mutabot.execution.cleanup import claim, end_abandoned, end_left_over, remove_folder
 from mutabot.execution.interruption import interruptible
 from mutabot.execution.processes import (
     LOOKS,
@@ -31,7 +32,6 @@ from mutabot.execution.processes import (
     compile_own_modules,
     refuse_full_disk,
 )
-from mutabot.execution.remains import claim, end_abandoned, end_left_over, remove_folder
 from mutabot.execution.task import Result, Task
 from mutabot.execution.versions import versions
 from mutabot.model.deadline import Deadline

@@ -75,7 +75,8 @@ class Pictures:
     Attributes:
         test: its node id.
         file: absolute path of the film.
-        writer: reference to what makes an ``evidence.tape.PictureWriter`` of the path, ``module:attribute``.
+        writer: reference to what makes an ``evidence.recorder.PictureWriter`` of the path,
+            ``module:attribute``.
     """
 
     test: str

@@ -10,7 +10,7 @@ from functools import partial
 from random import Random
 from typing import TYPE_CHECKING, Any
 
-from mutabot.evidence import tape
+from mutabot.evidence import recorder
 from mutabot.model.activation import CALL_FAULT, at_text
 from mutabot.model.events import Acted, Called, CallsAsked, Event, KnownLater, Noted, SiteSeen, TextsSeen
 from mutabot.model.job import Idle
@@ -26,8 +26,8 @@ from mutabot.runtime.interception.trace import Answers, Locator, Recorder, seen_
 from mutabot.runtime.observation.clock import ClockReader, Instances, ProgramTime
 from mutabot.runtime.observation.probes import Along, Reading, TestRecording, rehearse, take
 from mutabot.runtime.program_text.call_sites import CallSites
+from mutabot.runtime.program_text.call_targets import CallFindings, CallTargets, PassedCallables
 from mutabot.runtime.program_text.instrument import SessionText
-from mutabot.runtime.program_text.standing import Handing, Standing, StandIns
 from mutabot.runtime.reached_keys import ReachedKeys
 from mutabot.runtime.seeds import derive
 from mutabot.runtime.targets.callables import Callables
@@ -62,7 +62,7 @@ class Session:
         is_fork: whether this process was forked to be its mutant.
         text: the program text, if it is instrumented.
         call_sites: calls that are seen where they are written.
-        standing: what stands there.
+        call_targets: what stands there.
         returns: what the program returns to its tests; None if that is not noted.
         recording: what the world does while the test runs.
         test: node id of the running test.
@@ -75,7 +75,7 @@ class Session:
     """
 
     call_sites: CallSites
-    standing: Standing
+    call_targets: CallTargets
 
     def __init__(self, job: Job, pipe: EventWriter, locator: Locator) -> None:
         self.job, self.pipe, self.locator = job, pipe, locator
@@ -159,19 +159,19 @@ class Session:
     def _see_calls(self) -> None:
         """Intercept calls at their sites, whatever replaces an operation there."""
         called = [one for one in self._adapters if one.operation.kind in (None, "methods")]
-        self.standing = Standing(called, self.callables, self.locator, self._sees_itself)
+        self.call_targets = CallTargets(called, self.callables, self.locator, self._sees_itself)
         self._report_replacements()
         names = {one.operation.last_name for one in called}
-        handing = Handing(self.standing, self.passing.given)
-        self.call_sites = CallSites(names, self.locator.role, self.standing, self._sees_itself, handing)
+        handing = PassedCallables(self.call_targets, self.passing.given)
+        self.call_sites = CallSites(names, self.locator.role, self.call_targets, self._sees_itself, handing)
         self.call_sites.install()
 
     def _report_replacements(self) -> None:
         """Report what the baseline observed at the sites of the job's mutants."""
         mutants = self._mutants_of_job()
-        self.standing.known = dict(self.job.known) | {one.site.span: one.operation for one in mutants}
+        self.call_targets.known = dict(self.job.known) | {one.site.span: one.operation for one in mutants}
         if self.job.inspect:
-            self.standing.noted = StandIns(lambda: self.test, self.locator.relative)
+            self.call_targets.noted = CallFindings(lambda: self.test, self.locator.relative)
 
     def _listen(self) -> None:
         """Receive messages that may show refusals, or the robot's position."""
@@ -305,12 +305,12 @@ class Session:
             for call in self.recorder.trace:
                 self.pipe.send(Called(*call))
         self.test = test
-        self.standing.note_modules(self.call_sites.loaded)
+        self.call_targets.note_modules(self.call_sites.loaded)
         self.passing.meter = Meter(self.job.simulated.get(test), self.job.spare)
         is_baseline = self.job.record and self.job.mutant is None and self.job.forking is None
         self.recorder.answers = Answers(handles_of(self.job.vocabulary)) if is_baseline else None
         self.recorder.start()
-        self.recorder.clock = tape.now if self.job.evidence else None
+        self.recorder.clock = recorder.now if self.job.evidence else None
         self.instances.start(fixtures)
         self.passing.calls.clear()
         self.noted.clear()
@@ -424,20 +424,20 @@ class Session:
             self.text.finish(texts)
         if self.job.record and self.job.mutant is None:
             # of sites at which an operation stood in some tests and something unknown in others
-            stood = self.standing.stood | {seen.span: seen.operation for seen in self.recorder.sites}
-            for span in sorted(self.standing.alone & stood.keys()):
+            stood = self.call_targets.stood | {seen.span: seen.operation for seen in self.recorder.sites}
+            for span in sorted(self.call_targets.alone & stood.keys()):
                 self._send(KnownLater(span, stood[span]))
             self._send(self.intercepted_calls())
         if self.job.inspect:
             self.inspect_targets()
-            if self.standing.noted is not None:
-                for operation, finding in self.standing.noted.findings(self.job.vocabulary.operations):
+            if self.call_targets.noted is not None:
+                for operation, finding in self.call_targets.noted.findings(self.job.vocabulary.operations):
                     self.inspection.tell(operation.source, finding)
 
     def intercepted_calls(self) -> CallsAsked:
         """Return which calls were intercepted until now, and which replacements were called."""
         files = sorted(map(self.locator.relative, self.call_sites.asked))
-        return CallsAsked(tuple(files), tuple(sorted(self.standing.alone)))
+        return CallsAsked(tuple(files), tuple(sorted(self.call_targets.alone)))
 
     def inspect_targets(self) -> None:
         """Check every target of the vocabulary, including those that no test has reached."""
@@ -478,7 +478,7 @@ class Session:
 
     def acted(self) -> None:
         """Report that the fault changed something in the running test."""
-        self._report_acted(tape.now())
+        self._report_acted(recorder.now())
 
     def acted_in_call(self) -> None:
         """Note that the mutant acted in a call, at the time when the call began."""

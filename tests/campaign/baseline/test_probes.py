@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.beginning import begin, check, locked_executor
+from mutabot.campaign.preparation import begin, check, locked_executor
 from mutabot.campaign.run import run_campaign
 from mutabot.errors import ConfigurationError
 from mutabot.model import Outcome, Verdict

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.baseline.unfit import refuse_unfit
+from mutabot.campaign.baseline.vocabulary_fit import refuse_unfit
 from mutabot.campaign.comparison import OTHER_WORLD, Difference, Observation, TraceCall, compare
 from mutabot.errors import ConfigurationError
 from mutabot.model import Kind, Mode, Operation, Path, Probe, Quantity, Role, Site, Span, Vocabulary

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.baseline.unfit import refuse_unfit
+from mutabot.campaign.baseline.vocabulary_fit import refuse_unfit
 from mutabot.campaign.comparison import Difference, Observation, ProbeSpread, TraceCall, compare
 from mutabot.campaign.verdict import stable_first
 from mutabot.errors import ConfigurationError

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.campaign import beginning
+from mutabot.campaign import preparation
 from mutabot.campaign.run import run_campaign
 from mutabot.journal.journal import Journal
 from mutabot.model import Outcome, Verdict
@@ -48,7 +48,7 @@ def script(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Script:
     """All survive; tests that do not reach them take a minute each."""
     write_project(tmp_path, MISSION, TESTS)
     script = Script(original=lambda run: {"wall": 0.01 if "goes" in run.test else 60.0})
-    monkeypatch.setattr(beginning, "open_executor", script.opened)
+    monkeypatch.setattr(preparation, "open_executor", script.opened)
     return script
 
 

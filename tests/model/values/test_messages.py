@@ -18,8 +18,8 @@ import mutabot
 from mutabot.errors import PathError
 from mutabot.model import Call, Kind, Operation, Path, Quantity, Reply
 from mutabot.model.quantity import same
+from mutabot.operators.middleware import rehearse
 from mutabot.operators.operator import Subject
-from mutabot.operators.passage import rehearse
 from mutabot.operators.registry import operator
 
 

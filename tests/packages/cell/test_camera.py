@@ -9,19 +9,19 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.evidence import tape
+from mutabot.evidence import recorder
 from mutabot_cell import Cell
 from mutabot_motion.pictures.film import Film
 
 CODE = """
 import sys
 from mutabot_cell import Cell
-from mutabot.evidence import tape
+from mutabot.evidence import recorder
 from mutabot_motion.pictures.film import FilmWriter
 
 cell = Cell(1)
 before = cell.simulation.model.vis.quality.shadowsize, cell.simulation.model.vis.quality.offsamples
-found = tape.begin(FilmWriter(sys.argv[1]))
+found = recorder.begin(FilmWriter(sys.argv[1]))
 cell.wait(0.2)
 print(found.recording.problems)
 assert before == (cell.simulation.model.vis.quality.shadowsize, cell.simulation.model.vis.quality.offsamples)
@@ -49,10 +49,10 @@ def test_in_an_ordinary_recording_the_cell_draws_nothing(monkeypatch: pytest.Mon
 
     monkeypatch.setattr(mujoco, "Renderer", lambda *_: pytest.fail("a picture was taken"))
     cell = Cell(1)
-    found = tape.begin()
+    found = recorder.begin()
     try:
         cell.wait(0.3)
     finally:
-        tape.stop()
+        recorder.stop()
     assert len(found.recording.times) > 1
     assert found.recording.problems == []

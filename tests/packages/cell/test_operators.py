@@ -12,7 +12,7 @@ import pytest
 from mutabot.model import Call, Kind, Mode, Operation, Path, Quantity
 from mutabot.model.quantity import Value
 from mutabot.operators import Subject, operator
-from mutabot.operators.passage import rehearse
+from mutabot.operators.middleware import rehearse
 from mutabot_cell.geometry import rotation_from_euler
 
 AXES = "xyz"

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from mutabot.evidence import tape
+from mutabot.evidence import recorder
 from mutabot.evidence.measurements import LEAST
 from mutabot.evidence.paths import RecordedPaths
 from mutabot.evidence.physics import IMPACT, MARGIN, RELEASE, SLIP, Fact, facts_of
@@ -17,12 +17,14 @@ from .conftest import _grip
 
 
 @pytest.fixture
-def running() -> Iterator[tape.Tape]:
-    yield tape.begin()
-    tape.stop()
+def running() -> Iterator[recorder.WorldRecorder]:
+    yield recorder.begin()
+    recorder.stop()
 
 
-def dropped(cell: Cell, height: float, running: tape.Tape) -> tuple[dict[tuple[str, str], Fact], list[float]]:
+def dropped(
+    cell: Cell, height: float, running: recorder.WorldRecorder
+) -> tuple[dict[tuple[str, str], Fact], list[float]]:
     """What is measured of a box that is lifted and let go, and how fast it was at each tick, m/s."""
     _grip(cell)
     cell.arm.move_by(z=height)
@@ -42,7 +44,7 @@ def dropped(cell: Cell, height: float, running: tape.Tape) -> tuple[dict[tuple[s
 
 @pytest.mark.parametrize("height", [0.1, 0.15, 0.3])
 def test_a_box_hits_the_conveyor_as_fast_as_the_recording_says(
-    cell: Cell, height: float, running: tape.Tape
+    cell: Cell, height: float, running: recorder.WorldRecorder
 ) -> None:
     found, speeds = dropped(cell, height, running)
     assert found[RELEASE, "box"].value == pytest.approx(height, abs=0.01)
@@ -53,7 +55,7 @@ def test_a_box_hits_the_conveyor_as_fast_as_the_recording_says(
 
 
 def test_a_recording_knows_the_bodies_of_the_robot_and_how_near_its_joints_are_to_their_limits(
-    cell: Cell, running: tape.Tape
+    cell: Cell, running: recorder.WorldRecorder
 ) -> None:
     cell.arm.move_by(z=-0.05)
     running.finish()

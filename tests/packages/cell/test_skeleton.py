@@ -8,7 +8,7 @@ from math import dist
 import numpy as np
 import pytest
 
-from mutabot.evidence import tape
+from mutabot.evidence import recorder
 from mutabot.evidence.paths import RecordedPaths
 from mutabot_cell import Cell, robots
 from mutabot_cell.models.robot import RobotModel
@@ -16,9 +16,9 @@ from mutabot_cell.shown.skeleton import skeleton_of
 
 
 @pytest.fixture
-def running() -> Iterator[tape.Tape]:
-    yield tape.begin()
-    tape.stop()
+def running() -> Iterator[recorder.WorldRecorder]:
+    yield recorder.begin()
+    recorder.stop()
 
 
 def points(numbers: list[float]) -> list[list[float]]:
@@ -52,7 +52,7 @@ def test_fingers_that_close_are_drawn_closer(cell: Cell) -> None:
 
 
 def test_a_recording_of_a_cell_has_the_arm_as_lines_that_are_not_compared(
-    cell: Cell, running: tape.Tape
+    cell: Cell, running: recorder.WorldRecorder
 ) -> None:
     cell.arm.move_by(z=-0.05)
     running.finish()

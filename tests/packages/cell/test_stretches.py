@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mutabot.evidence import tape
+from mutabot.evidence import recorder
 from mutabot.evidence.recording import Recording
 from mutabot_cell import (
     BadModel,
@@ -417,8 +417,8 @@ def test_physics_that_diverge_are_found_at_the_same_tick(torque: float) -> None:
 def test_a_recording_of_a_test_is_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
 
     def recorded(*, singly: bool) -> Recording:
-        running = tape.Tape()
-        monkeypatch.setattr(tape, "running", lambda: running)
+        running = recorder.WorldRecorder()
+        monkeypatch.setattr(recorder, "running", lambda: running)
         told(paper, lambda: Cell(1), singly=singly)
         running.finish()
         return running.recording
@@ -443,8 +443,8 @@ def test_a_collision_of_one_of_two_robots_in_a_recorded_test_is_the_same(
         left.wait()
 
     def make() -> Cell:
-        running = tape.Tape()
-        monkeypatch.setattr(tape, "running", lambda: running)
+        running = recorder.WorldRecorder()
+        monkeypatch.setattr(recorder, "running", lambda: running)
         beside = gen3().at(Pose(0.0, 1.6, 0.9, 0.0, 0.0, 0.0))
         plate = Fixture("plate", size=(0.4, 0.4, 0.02), centre=(0.5, 1.6, 0.89))
         scene = Scene(fixtures=(plate,))

@@ -110,7 +110,7 @@ def test_a_mutant_that_takes_its_worker_along_each_time_is_an_error_with_the_rea
         arm = Arm()
         run(arm)
         if arm.x != 0.5 and "OF_TEST_CLUSTER" in os.environ:
-            with open(f"/proc/{os.getppid()}/stat") as file:  # of the keeper, whose parent is the worker
+            with open(f"/proc/{os.getppid()}/stat") as file:  # of the supervisor, whose parent is the worker
                 os.kill(int(file.read().rpartition(")")[2].split()[1]), signal.SIGKILL)
     """
     project = write(tmp_path / "project", mission="def run(arm):\n    arm.move_by(0.5)\n", tests=tests)

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mutabot.evidence import Feed, tape
+from mutabot.evidence import Feed, recorder
 from mutabot_motion.pictures.film import Film, FilmWriter
 
 
@@ -86,20 +86,20 @@ class World:
 @pytest.fixture(autouse=True)
 def _no_tape() -> Iterator[None]:
     yield
-    tape.stop()
+    recorder.stop()
 
 
 def test_no_picture_is_taken_outside_of_a_campaign_nor_in_an_ordinary_one() -> None:
     world = World()
     world.run(5)
-    tape.begin()
+    recorder.begin()
     world.run(5)
     assert world.taken == []
 
 
 def test_pictures_come_at_their_own_rate_of_simulated_time(tmp_path: Path) -> None:
     world = World(rate=2.5)
-    tape.begin(FilmWriter(str(tmp_path / "a")))
+    recorder.begin(FilmWriter(str(tmp_path / "a")))
     world.run(13)
     assert Film(tmp_path / "a").times == pytest.approx([0.0, 0.3, 0.7, 1.1], abs=0.1)
     assert len(world.taken) == 4
@@ -109,7 +109,7 @@ def test_a_camera_that_fails_is_asked_once_and_the_test_goes_on(tmp_path: Path) 
     world = World()
     asked = []
     world.feed.camera(lambda: asked.append(1) or 1 / 0)
-    found = tape.begin(FilmWriter(str(tmp_path / "a")))
+    found = recorder.begin(FilmWriter(str(tmp_path / "a")))
     world.run(5)
     assert len(asked) == 1
     assert found.recording.problems == ["pictures cannot be taken: ZeroDivisionError: division by zero"]
@@ -121,7 +121,7 @@ def test_a_camera_that_fails_is_asked_once_and_the_test_goes_on(tmp_path: Path) 
 def test_what_is_no_picture_is_told_with_what_one_is(wrong: Any, tmp_path: Path) -> None:
     world = World()
     world.feed.camera(lambda: wrong)
-    found = tape.begin(FilmWriter(str(tmp_path / "a")))
+    found = recorder.begin(FilmWriter(str(tmp_path / "a")))
     world.run(1)
     assert "a picture has the shape (height, width, 3)" in found.recording.problems[0]
 
@@ -130,14 +130,14 @@ def test_a_camera_that_has_no_picture_yet_is_asked_again(tmp_path: Path) -> None
     world = World(rate=10)
     found: list[Any] = [None, None, picture(bytes(3), 1, 1)]
     world.feed.camera(lambda: found.pop(0) if found else None)
-    tape.begin(FilmWriter(str(tmp_path / "a")))
+    recorder.begin(FilmWriter(str(tmp_path / "a")))
     world.run(6)
     assert len(Film(tmp_path / "a").times) == 1
 
 
 def test_of_two_simulations_the_later_one_is_filmed(tmp_path: Path) -> None:
     first, second = World(), World()
-    tape.begin(FilmWriter(str(tmp_path / "a")))
+    recorder.begin(FilmWriter(str(tmp_path / "a")))
     first.run(2)
     second.run(2)
     before = len(first.taken)
@@ -149,7 +149,7 @@ def test_of_two_simulations_the_later_one_is_filmed(tmp_path: Path) -> None:
 
 def test_a_simulation_that_begins_anew_goes_on_in_the_same_film(tmp_path: Path) -> None:
     world = World(rate=10)
-    tape.begin(FilmWriter(str(tmp_path / "a")))
+    recorder.begin(FilmWriter(str(tmp_path / "a")))
     world.run(3)
     world.time = 0.0
     world.run(3)

@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from campaign.project import CONFIGURATION, Quiet, outcomes, request_for, write_project
-from mutabot.campaign.again import replay_one
+from mutabot.campaign.partial_runs import replay_one
 from mutabot.campaign.run import run_campaign
 from mutabot.cli.request import request_again
 from mutabot.config.configuration import load_configuration

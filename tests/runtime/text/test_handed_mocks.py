@@ -7,7 +7,7 @@ from unittest.mock import MagicMock, create_autospec
 
 import wrapt
 
-from mutabot.runtime.program_text.standing import Handing
+from mutabot.runtime.program_text.call_targets import PassedCallables
 from tests.runtime.stage import mocks_as_ever
 
 
@@ -17,9 +17,9 @@ def move(metres: float) -> None:
 
 def handed_on(found: Any) -> Any:
     """What the program gets instead, which looks like it."""
-    handing = Handing(cast("Any", None), {})
+    passed = PassedCallables(cast("Any", None), {})
     try:
-        return handing._wrapped(cast("Any", None), cast("Any", None), None, found, found)
+        return passed._wrapped(cast("Any", None), cast("Any", None), None, found, found)
     finally:
         mocks_as_ever()
 

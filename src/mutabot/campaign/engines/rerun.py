@@ -22,7 +22,7 @@ from dataclasses import dataclass, field, replace
 from itertools import accumulate, takewhile
 
 from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.baseline.taking import FAILS
+from mutabot.campaign.baseline.suite_runs import FAILS
 from mutabot.campaign.campaign import Campaign, RunId
 from mutabot.campaign.faults.providers import provider
 from mutabot.campaign.request import VERIFIED, Request

@@ -36,8 +36,8 @@ from mutabot.model import (
 from mutabot.model.activation import Activation
 from mutabot.model.quantity import holds_number, is_number, is_reading_of
 from mutabot.operators import Need, Operator, Subject, load_all
+from mutabot.operators.middleware import CallRecord, rehearse
 from mutabot.operators.operator import Rule, with_operation
-from mutabot.operators.passage import CallRecord, rehearse
 from mutabot.operators.registry import names as operators_on_calls
 from mutabot.operators.registry import operator as operator_named
 from mutabot.original import Hit, NoAnswerError, Original, RecordedAnswers, idle_of
@@ -125,13 +125,13 @@ def _at_places(
         is_shared, active = operations_at[place.site] > 1, Activation.of_call(place)
         for subject, rule in _subjects(operators, operation, place):
             with _named(rule, operation):
-                seen, foreseen = _foresee(rule, subject, hits)
+                seen, predicted = _predict(rule, subject, hits)
                 needs, only_reads = rule.needs_of(subject), rule.only_reads(subject)
                 text = _description(rule, subject, place, seen, is_shared=is_shared)
             mutant = replace(_distinct(_mutant(rule, subject, place, provider), taken), description=text)
             unmet = {need: _why_unmet(need, subject, place, original, vocabulary) for need in needs}
             later = (unmet.get(need) for need in (Need.CLOCK, Need.WAIT, Need.SIGN))
-            reasons = (unmet.get(Need.ERROR), unmet.get(Need.PLACE), foreseen, *later)
+            reasons = (unmet.get(Need.ERROR), unmet.get(Need.PLACE), predicted, *later)
             reason = next(filter(None, reasons), None)
             if reason is None and original.unread.get(place, False) and only_reads:
                 reason = "the result of the call is not used: it is a statement by itself"
@@ -244,17 +244,17 @@ def _distinct(mutant: Mutant, taken: set[str]) -> Mutant:
 
 
 #: a recorded value of the subject, and what it would become; None where nobody knows beforehand
-_Foreseen = tuple[Any, Any]
+_Predicted = tuple[Any, Any]
 
 
-def _foresee(rule: Operator, subject: Subject, hits: list[Hit]) -> tuple[_Foreseen, str | None]:
+def _predict(rule: Operator, subject: Subject, hits: list[Hit]) -> tuple[_Predicted, str | None]:
     """Return what the mutant would do to the recorded calls, and why it is left out, if it is."""
     least, most = rule.least_calls(subject), max(Counter(hit.where for hit in hits).values(), default=0)
     if most < least:
         return (None, None), f"takes {least} calls in a test, and no test makes more than {most}"
     if rule.is_chance(subject):
         return (_value(subject, hits[0]), None), None
-    last: _Foreseen = (None, None)
+    last: _Predicted = (None, None)
     middleware = rule.middleware(subject, Random(1))
     away = ""
     where = None
@@ -364,7 +364,7 @@ def _calls(hits: int) -> str:
 
 
 def _description(
-    rule: Operator, subject: Subject, place: Place, seen: _Foreseen | None, *, is_shared: bool
+    rule: Operator, subject: Subject, place: Place, seen: _Predicted | None, *, is_shared: bool
 ) -> str:
     """Return what the mutant does, in one line.
 

@@ -28,7 +28,7 @@ from .keys import Parts, _digest, everything_of, installed
 from .snapshot import OpenedFiles, Snapshot, State
 
 if TYPE_CHECKING:
-    from mutabot.campaign.baseline.taking import Runs
+    from mutabot.campaign.baseline.suite_runs import Runs
     from mutabot.campaign.request import Progress, Request
     from mutabot.model.events import Event
 

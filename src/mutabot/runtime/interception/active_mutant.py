@@ -20,8 +20,8 @@ from mutabot.model.job import Idle, RefusedAt
 from mutabot.model.operation import Form, Refused
 from mutabot.operators import Need, Subject, operator
 from mutabot.operators.command import FatalFault
+from mutabot.operators.middleware import CallRecord, Carried, run_middleware
 from mutabot.operators.operator import subject_of
-from mutabot.operators.passage import CallRecord, Carried, run_middleware
 from mutabot.runtime.evidence import REFUSALS, Evidence, KnownError, Refusal, leaves
 from mutabot.runtime.interception import call_faults
 from mutabot.runtime.interception.adapter import Adapter, SiteCall, call_context, snapshot

@@ -25,7 +25,7 @@ from mutabot.model import Call, Reply, Role, Span
 from mutabot.model.activation import Activation, Key
 from mutabot.model.operation import Form
 from mutabot.model.quantity import Value
-from mutabot.operators.passage import Carried, run
+from mutabot.operators.middleware import Carried, run
 from mutabot.runtime.evidence import Meter
 from mutabot.runtime.interception.active_mutant import ActiveMutant, RefusedCalls
 from mutabot.runtime.interception.adapter import Adapter, Caller, Invocation, SiteCall, is_mock

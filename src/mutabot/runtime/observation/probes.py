@@ -24,7 +24,7 @@ from types import FunctionType
 from typing import TYPE_CHECKING, Any
 
 from mutabot.errors import in_words, nearest_name, text_of
-from mutabot.evidence import tape as tapes
+from mutabot.evidence import recorder as recorders
 from mutabot.evidence.recording import RecordedCall, to_text
 from mutabot.model.clocks import monotonic, thread_time
 from mutabot.model.data import data_of, fields_of, is_of_numpy, is_textual, items_of
@@ -32,7 +32,7 @@ from mutabot.model.path import class_name
 from mutabot.runtime.targets.target import resolve
 
 if TYPE_CHECKING:
-    from mutabot.evidence.tape import PictureWriter, Tape
+    from mutabot.evidence.recorder import PictureWriter, WorldRecorder
     from mutabot.model import Probe
     from mutabot.model.job import Pictures
     from mutabot.runtime.observation.clock import Instances
@@ -383,7 +383,7 @@ class TestRecording:
         self, clock: Callable[[], float | None], aside: Callable[[], Any], is_simulated: bool
     ) -> None:
         self._clock, self._aside, self._is_simulated = clock, aside, is_simulated
-        self._tape: Tape | None = None
+        self._recorder: WorldRecorder | None = None
         self._film: PictureWriter | None = None
         self._filmed: str | None = None
 
@@ -395,42 +395,45 @@ class TestRecording:
 
     def start(self, test: str, *, is_wanted: bool) -> None:
         """Begin to record a test."""
-        tapes.stop()
+        recorders.stop()
         film = self._film if test == self._filmed else None
-        self._tape = tapes.begin(film) if is_wanted else None
-        if self._tape is not None:
-            self._tape.clock, self._tape.aside = self._clock, self._aside
-            self._tape.is_simulated = self._is_simulated
+        self._recorder = recorders.begin(film) if is_wanted else None
+        if self._recorder is not None:
+            self._recorder.clock, self._recorder.aside = self._clock, self._aside
+            self._recorder.is_simulated = self._is_simulated
 
     def stop(self) -> None:
         """End the recording of a test, before its teardown."""
-        tape = tapes.running()
-        if tape is not None:
-            tape.finish()
-        tapes.stop()
+        recorder = recorders.running()
+        if recorder is not None:
+            recorder.finish()
+        recorders.stop()
 
     def since(self, moment: float) -> float | None:
         """Convert a value of ``time.monotonic`` to a time of the recording; None without one."""
-        return self._tape.at_wall(moment) if self._tape is not None else None
+        return self._recorder.at_wall(moment) if self._recorder is not None else None
 
     def note_fault(self, calls: int, time: float | None) -> None:
         """Note that the mutant has changed something, first or again, after ``calls`` calls."""
-        if self._tape is not None and self._tape.recording.faulty_call is None:
-            self._tape.recording.faulty_call = calls
-            self._tape.recording.fault = time
+        if self._recorder is not None and self._recorder.recording.faulty_call is None:
+            self._recorder.recording.faulty_call = calls
+            self._recorder.recording.fault = time
 
     def text(self, calls: Sequence[RecordedCall]) -> str | None:
         """Return the recording and the calls as a text for ``TestEnd.recording``; None without one."""
-        if self._tape is None:
+        if self._recorder is None:
             return None
-        tape, recording = self._tape, self._tape.recording
-        recording.is_simulated = tape.is_simulated
-        recording.fault = tape.seconds(recording.fault)
-        timed = (one._replace(began=tape.seconds(one.began), ended=tape.seconds(one.ended)) for one in calls)
+        recorder, recording = self._recorder, self._recorder.recording
+        recording.is_simulated = recorder.is_simulated
+        recording.fault = recorder.seconds(recording.fault)
+        timed = (
+            one._replace(began=recorder.seconds(one.began), ended=recorder.seconds(one.ended))
+            for one in calls
+        )
         recording.calls = sorted(timed, key=lambda one: one.began or 0.0)
         try:
             return to_text(recording)
         except (TypeError, ValueError, RecursionError) as error:  # values of the user's may be anything
-            tape.problem(f"the calls of a test cannot be recorded: {in_words(error)}")
+            recorder.problem(f"the calls of a test cannot be recorded: {in_words(error)}")
             recording.calls = []
             return to_text(recording)

@@ -31,7 +31,7 @@ from mutabot.runtime.evidence import Evidence, Refusal
 from mutabot.runtime.processes.environment import listen
 from mutabot.runtime.program_text import compiling, loading
 from mutabot.runtime.program_text.compiling import text_of
-from mutabot.runtime.program_text.foresee import ForeseenForm, Forms
+from mutabot.runtime.program_text.prediction import Forms, PredictedForm
 from mutabot.runtime.program_text.switches import Alternatives, Sightings
 
 if TYPE_CHECKING:
@@ -397,7 +397,7 @@ class SessionText:
             return None
         place = self._places[number]
         others = [_filled(_expression(one), place, original, observed=False) for one in place.alternatives]
-        return Forms(ForeseenForm(original), tuple(map(ForeseenForm, others)))
+        return Forms(PredictedForm(original), tuple(map(PredictedForm, others)))
 
     def _refuse(self, text: ProgramText, reason: str) -> None:
         self.problems[text.file] = reason

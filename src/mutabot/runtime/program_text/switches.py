@@ -24,7 +24,7 @@ from typing import Any, NoReturn
 from mutabot.model.data import is_of_numpy
 from mutabot.model.mutant import FATAL, IDENTITY, Sighting, TextPlace, fits_kinds
 from mutabot.model.path import class_name
-from mutabot.runtime.program_text.foresee import Forms, locals_of
+from mutabot.runtime.program_text.prediction import Forms, locals_of
 
 
 @cache
@@ -66,7 +66,7 @@ class Switch:
         before, self._before = self._before, _UNKNOWN
         if before is _UNKNOWN:
             frame = sys._getframe(1)
-            before = self._value_of(original, frame) if original else self._owner.foreseen(self.place, frame)
+            before = self._value_of(original, frame) if original else self._owner.predicted(self.place, frame)
         self._owner.note(self.place, before, value)
         return value
 
@@ -205,7 +205,7 @@ class Alternatives:
         if switch.watched and place != self.place:
             self.idle[place] = self.idle.get(place, 0) + 1
 
-    def foreseen(self, place: int, frame: types.FrameType) -> Any:
+    def predicted(self, place: int, frame: types.FrameType) -> Any:
         """Return the original's value if it can be predicted without side effects."""
         forms = self.forms(place)
         try:
@@ -218,8 +218,8 @@ class Alternatives:
         forms = self.forms(switch.place)
         if forms is None or self.hits[switch.place] > _LOOKS or threading.active_count() > 1:
             return switch.watched  # another thread may change what an evaluation depends on
-        unforeseeable = frozenset(index for index in switch.watched if index < 0)
-        return unforeseeable | forms.differing(switch.watched - unforeseeable, frame)
+        unpredictable = frozenset(index for index in switch.watched if index < 0)
+        return unpredictable | forms.differing(switch.watched - unpredictable, frame)
 
     def _control(self, place: int, index: int) -> None:
         """Act as a control, which every place has: do nothing, or raise."""

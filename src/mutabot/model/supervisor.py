@@ -36,23 +36,23 @@ _SIGNALS = {signal.SIGCHLD, signal.SIGTERM, signal.SIGHUP}
 def main() -> NoReturn:
     """Run a worker; the arguments are the controller's number and the worker's command line."""
     controller, command = int(sys.argv[1]), sys.argv[2:]
-    guard(os.path.dirname(os.path.dirname(os.environ[_JOB])), controller)
+    supervise(os.path.dirname(os.path.dirname(os.environ[_JOB])), controller)
     os.setsid()
     for number in (signal.SIGPIPE, signal.SIGXFSZ):  # Python ignores them, and so would what is executed
         signal.signal(number, signal.SIG_DFL)
     os.execv(command[0], command)
 
 
-def guard(folder: str, controller: int) -> None:
+def supervise(folder: str, controller: int) -> None:
     """Fork the worker, in which this function returns; this process supervises it and never returns."""
     libc = ctypes.CDLL(None)
     libc.prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
     mask = signal.pthread_sigmask(signal.SIG_BLOCK, _SIGNALS)
-    keeper = os.getpid()
+    supervisor = os.getpid()
     worker = os.fork()
     if worker == 0:
         libc.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
-        if os.getppid() != keeper:
+        if os.getppid() != supervisor:
             os._exit(1)
         signal.pthread_sigmask(signal.SIG_SETMASK, mask)
         return
@@ -63,10 +63,10 @@ def guard(folder: str, controller: int) -> None:
             with suppress(OSError):  # that of the listing
                 os.close(int(name))
     libc.prctl(_PR_SET_PDEATHSIG, signal.SIGHUP, 0, 0, 0)
-    _keep(worker, folder, controller)
+    _watch(worker, folder, controller)
 
 
-def _keep(worker: int, folder: str, controller: int) -> NoReturn:
+def _watch(worker: int, folder: str, controller: int) -> NoReturn:
     while (status := _reap(worker)) is None:
         number = signal.sigwait(_SIGNALS)
         if number == signal.SIGTERM or (number == signal.SIGHUP and os.getppid() != controller):

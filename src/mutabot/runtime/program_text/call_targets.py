@@ -59,7 +59,7 @@ _MOST = 5
 
 
 @dataclass(slots=True)
-class StandIns:
+class CallFindings:
     """What was called at sites, for the check of a vocabulary.
 
     Args:
@@ -69,7 +69,7 @@ class StandIns:
 
     test: Callable[[], str]
     relative: Callable[[str], str]
-    _standing: dict[str, dict[str, set[str]]] = field(default_factory=dict)
+    _replaced: dict[str, dict[str, set[str]]] = field(default_factory=dict)
     _alone: dict[str, dict[str, str]] = field(default_factory=dict)
     _sites: set[CallSite] = field(default_factory=set)
     _elsewhere: dict[str, set[str]] = field(default_factory=dict)
@@ -79,7 +79,7 @@ class StandIns:
         what = _shown(found, receiver)
         if operation is not None:
             self._sites.add(site)
-            self._standing.setdefault(operation.target, {}).setdefault(what, set()).add(self.test())
+            self._replaced.setdefault(operation.target, {}).setdefault(what, set()).add(self.test())
         elif site.role is Role.PROGRAM and site not in self._sites:
             place = f"{self.relative(site.path)}:{site.extent[0]}"
             self._alone.setdefault(site.name, {})[place] = what
@@ -93,9 +93,9 @@ class StandIns:
         """Yield findings about replaced operations, calls without a place, and calls that were left alone."""
         for operation in operations:
             target, name, said = operation.target, operation.last_name, []
-            stood = self._standing.get(target, {})
-            if stood and not target.startswith(ANY):
-                shown = (f"{what} in {_count(len(tests), 'test')}" for what, tests in stood.items())
+            replaced = self._replaced.get(target, {})
+            if replaced and not target.startswith(ANY):
+                shown = (f"{what} in {_count(len(tests), 'test')}" for what, tests in replaced.items())
                 said.append(f"it is replaced by {', '.join(shown)}")
             if target in self._elsewhere:
                 which = _count(len(self._elsewhere[target]), "test")
@@ -131,7 +131,7 @@ def _count(number: int, what: str) -> str:
 
 
 @dataclass(slots=True)
-class Standing:
+class CallTargets:
     """Decides what is called at the sites of one process.
 
     Args:
@@ -153,7 +153,7 @@ class Standing:
     locator: Locator
     sees_itself: Collection[Handler]
     known: Mapping[Span, str] = field(default_factory=dict)
-    noted: StandIns | None = None
+    noted: CallFindings | None = None
     stood: dict[Span, str] = field(default_factory=dict)
     alone: set[Span] = field(default_factory=set)
     by_name: dict[str, list[Adapter]] = field(default_factory=dict)
@@ -392,7 +392,7 @@ def _is_a(value: Any, kind: Any) -> bool:
 _MARK = "_mutabot_handed"
 
 
-class Handed(wrapt.FunctionWrapper):  # type: ignore[type-arg]
+class PassedCallable(wrapt.FunctionWrapper):  # type: ignore[type-arg]
     """A callable that was passed on; if it is a partial, its calls count."""
 
     def __new__(cls, wrapped: Any, handed: Any) -> Any:
@@ -405,7 +405,7 @@ class Handed(wrapt.FunctionWrapper):  # type: ignore[type-arg]
         return self
 
     def __deepcopy__(self, known: dict[int, Any]) -> Any:
-        return Handed(copy.deepcopy(self.__wrapped__, known), self._self_wrapper)
+        return PassedCallable(copy.deepcopy(self.__wrapped__, known), self._self_wrapper)
 
     def __reduce_ex__(self, protocol: Any) -> Any:
         function = self.__wrapped__
@@ -415,41 +415,41 @@ class Handed(wrapt.FunctionWrapper):  # type: ignore[type-arg]
         return getattr, (owner, function.__name__)
 
 
-class Handing:
-    """Decides which callables are passed on as operations, and watches the calls of mocks.
+class PassedCallables:
+    """Decide which callables are passed on as operations, and watches the calls of mocks.
 
     Args:
-        standing: decides what stands for an operation.
+        call_targets: decides what stands for an operation.
         given: takes where functions of the robot were handed on; None if nobody knows any more.
     """
 
-    def __init__(self, standing: Standing, given: dict[Adapter, CallPlace | None]) -> None:
-        self._standing = standing
+    def __init__(self, call_targets: CallTargets, given: dict[Adapter, CallPlace | None]) -> None:
+        self._call_targets = call_targets
         self._given = given
         wrapt.register_post_import_hook(self._watch, "unittest.mock")
 
     def __call__(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
         """Return what is passed on at a site: ``found``, or an equal callable."""
-        if not callable(found) or isinstance(found, type) or type(found) is Handed:
+        if not callable(found) or isinstance(found, type) or type(found) is PassedCallable:
             return found
-        place = self._standing.place(site, frame)
+        place = self._call_targets.place(site, frame)
         if type(found) in WRAPPERS:
-            adapters, handler = self._standing.adapters, found._self_wrapper
+            adapters, handler = self._call_targets.adapters, found._self_wrapper
             own = next((one for one in adapters if one.handler is handler), None)
             if own is None:
                 return found
-            self._standing.stood[place[0]] = own.operation.target
+            self._call_targets.stood[place[0]] = own.operation.target
             if type(found) is wrapt.FunctionWrapper:  # all names of a function mean this very object
                 known = self._given.setdefault(own, place)
                 if known == place or not site.is_given:
                     self._given[own] = place if known == place else None
                     return found
             return self._wrapped(own, place, receiver, found, found.__wrapped__)
-        one = self._standing.candidate(site, found, receiver, frame)
+        one = self._call_targets.candidate(site, found, receiver, frame)
         if one is None:
             return found
-        if self._standing.noted is not None:
-            self._standing.noted.note(site, one.operation, found, receiver)
+        if self._call_targets.noted is not None:
+            self._call_targets.noted.note(site, one.operation, found, receiver)
         mock = mock_of(found)
         if mock is not None:
             known = vars(mock).get(_MARK, (one, _weakly(receiver), place))
@@ -458,13 +458,15 @@ class Handing:
                 return found
         return self._wrapped(one, place, receiver, found, found)
 
-    def _wrapped(self, one: Adapter, place: CallPlace, receiver: Any, looks: Any, found: Any) -> Handed:
+    def _wrapped(
+        self, one: Adapter, place: CallPlace, receiver: Any, looks: Any, found: Any
+    ) -> PassedCallable:
         """Return a wrapper that looks like ``looks`` and calls ``found`` as an operation."""
         calls = partial(self._call, one, place, receiver, found)
         says_it_is_one = mock_of(looks) is looks and isinstance(looks, WRAPPERS)
         # such a mock was made after a wrapped function. wrapt would ask it how it binds, which it refuses to
         # say, and then no wrapper can be made on Python 3.13: so wrapt first sees another callable
-        made: Handed = Handed(calls if says_it_is_one else looks, calls)
+        made: PassedCallable = PassedCallable(calls if says_it_is_one else looks, calls)
         if says_it_is_one:
             made.__wrapped__ = looks
         return made
@@ -483,8 +485,8 @@ class Handing:
         args, kwargs = given
         if receiver is NOTHING and instance is not None:  # it was made a method, or is one
             receiver, found = instance, wrapped
-        where = {"handed": place, "frame": sys._getframe(1), "stands_in": self._standing.stands_in(found)}
-        return self._standing.call(one, where, found, receiver, *args, **kwargs)
+        where = {"handed": place, "frame": sys._getframe(1), "stands_in": self._call_targets.stands_in(found)}
+        return self._call_targets.call(one, where, found, receiver, *args, **kwargs)
 
     def _watch(self, mock: ModuleType) -> None:
         """Watch the calls of all mocks."""
@@ -506,7 +508,7 @@ class Handing:
         own = vars(mock)
         mark = own.get(_MARK)
         name = own.get("_mock_new_name") or own.get("_mock_name")
-        if mark is None and name not in self._standing.by_name:
+        if mark is None and name not in self._call_targets.by_name:
             return original(mock, *args, **kwargs)
         caller = _caller(frame)
         if is_untracked() or (caller is not None and is_border(caller.f_code)):  # the operation itself
@@ -516,16 +518,16 @@ class Handing:
         else:
             parent = own.get("_mock_new_parent")
             one, receiver, place = None, NOTHING if parent is None else parent, None
-            if caller is not None and self._standing.locator.role(caller.f_code.co_filename) is not None:
-                one = self._standing.named(name, mock, receiver, caller)
+            if caller is not None and self._call_targets.locator.role(caller.f_code.co_filename) is not None:
+                one = self._call_targets.named(name, mock, receiver, caller)
         is_property = is_mock(mock, "PropertyMock")
         if one is None or (is_property and bool(args) is not bool(one.operation.described)):
             return original(mock, *args, **kwargs)
-        if place is None and mark is not None and self._standing.noted is not None:
-            self._standing.noted.note_elsewhere(one.operation, self._standing.locator.locate(caller))
+        if place is None and mark is not None and self._call_targets.noted is not None:
+            self._call_targets.noted.note_elsewhere(one.operation, self._call_targets.locator.locate(caller))
         is_awaited = is_coroutine_function(mock)
         where = {"handed": place, "frame": caller, "is_awaited": is_awaited, "stands_in": True}
-        return self._standing.call(one, where, partial(original, mock), receiver, *args, **kwargs)
+        return self._call_targets.call(one, where, partial(original, mock), receiver, *args, **kwargs)
 
 
 def _weakly(receiver: Any) -> Callable[[], Any]:

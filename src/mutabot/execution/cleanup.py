@@ -18,7 +18,7 @@ from pathlib import Path
 
 from mutabot.model.event_file import VARIABLE
 from mutabot.model.files import read_file
-from mutabot.model.keeper import name_of
+from mutabot.model.supervisor import name_of
 
 #: looks, each after the last one's finds were killed, until nothing is found
 _LOOKS = 20

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.again import CampaignRun
+from mutabot.campaign.partial_runs import CampaignRun
 from mutabot.errors import SelectionError
 from tests.campaign.project import Quiet, request_for, write_project
 

@@ -12,16 +12,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mutabot.runtime.program_text.foresee import ForeseenForm, Forms, UnforeseenError, is_identical
+from mutabot.runtime.program_text.prediction import Forms, PredictedForm, UnpredictableError, is_identical
 
 
-def foresee(text: str, **variables: Any) -> Any:
+def predict(text: str, **variables: Any) -> Any:
     """The value of a text in a frame where these are the globals."""
     return form(text).value(frame_of(**variables))
 
 
-def form(text: str) -> ForeseenForm:
-    return ForeseenForm(ast.parse(text, mode="eval").body)
+def form(text: str) -> PredictedForm:
+    return PredictedForm(ast.parse(text, mode="eval").body)
 
 
 def frame_of(**variables: Any) -> Any:
@@ -50,11 +50,11 @@ def nested(inner: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
 
 @pytest.mark.filterwarnings("ignore::SyntaxWarning")
 @given(st.recursive(leaves, nested, max_leaves=8), st.tuples(numbers, numbers, numbers))
-def test_what_is_foreseen_is_what_an_evaluation_gives(text: str, values: tuple[Any, ...]) -> None:
+def test_what_is_predicted_is_what_an_evaluation_gives(text: str, values: tuple[Any, ...]) -> None:
     variables = dict(zip("xyz", values, strict=True))
     try:
-        found = foresee(text, **variables)
-    except UnforeseenError:
+        found = predict(text, **variables)
+    except UnpredictableError:
         return
     except Exception as error:
         with pytest.raises(type(error)):
@@ -81,15 +81,15 @@ class Plain:
 
 @pytest.mark.parametrize("owner", [Stored(2.0), Slots(2.0), Plain(2.0)])
 def test_stored_attributes_are_known(owner: Any) -> None:
-    assert foresee("owner.x + 1", owner=owner) == 3.0
+    assert predict("owner.x + 1", owner=owner) == 3.0
 
 
 def test_names_of_modules_and_classes_are_known() -> None:
-    assert foresee("math.pi", math=math) is math.pi
-    assert foresee("math.hypot(3, 4)", math=math) == 5.0
-    assert foresee("math.dist((0, x), (4, 0)) <= 5", math=math, x=3) is True
-    assert foresee("owner.common", owner=Plain(1.0)) == 7
-    assert foresee("table['a'][1]", table={"a": [1, 2]}) == 2
+    assert predict("math.pi", math=math) is math.pi
+    assert predict("math.hypot(3, 4)", math=math) == 5.0
+    assert predict("math.dist((0, x), (4, 0)) <= 5", math=math, x=3) is True
+    assert predict("owner.common", owner=Plain(1.0)) == 7
+    assert predict("table['a'][1]", table={"a": [1, 2]}) == 2
 
 
 class Robot:
@@ -169,38 +169,38 @@ class Robot:
 )
 def test_whatever_may_ask_the_robot_is_left_to_a_real_evaluation(text: str) -> None:
     robot = Robot()
-    with pytest.raises(UnforeseenError):
-        foresee(text, robot=robot, table=[robot])
+    with pytest.raises(UnpredictableError):
+        predict(text, robot=robot, table=[robot])
     assert robot.asked == []
 
 
 def test_what_templates_call_is_known() -> None:
-    assert foresee("-__mutabot__[0].absolute(x)", x=-2) == -2
-    assert foresee("__mutabot__[0].fail_if(x, 0, 'Name', 'text')", x=1) == 1
+    assert predict("-__mutabot__[0].absolute(x)", x=-2) == -2
+    assert predict("__mutabot__[0].fail_if(x, 0, 'Name', 'text')", x=1) == 1
     with pytest.raises(ZeroDivisionError):
-        foresee("__mutabot__[0].fail_if(x, 0, 'Name', 'text')", x=0)
-    with pytest.raises(UnforeseenError):
-        foresee("__mutabot__[0].fail('Name', 'text')")
+        predict("__mutabot__[0].fail_if(x, 0, 'Name', 'text')", x=0)
+    with pytest.raises(UnpredictableError):
+        predict("__mutabot__[0].fail('Name', 'text')")
 
 
 def test_a_function_of_the_program_is_not_called_whatever_its_name() -> None:
-    with pytest.raises(UnforeseenError):
-        foresee("abs(1)", abs=lambda value: pytest.fail("it was called"))
+    with pytest.raises(UnpredictableError):
+        predict("abs(1)", abs=lambda value: pytest.fail("it was called"))
 
 
 @pytest.mark.parametrize(
     "text",
     ["9 ** 9 ** 9", "1 << 10 ** 9", "'x' * 9999999", "'%9999999d' % 1", "big * big", "~True", "word[9]"],
 )
-def test_what_would_take_long_or_warn_or_raise_is_not_foreseen(text: str) -> None:
-    with pytest.raises((UnforeseenError, IndexError)):
-        foresee(text, big=1 << 300, word="text")
+def test_what_would_take_long_or_warn_or_raise_is_not_predicted(text: str) -> None:
+    with pytest.raises((UnpredictableError, IndexError)):
+        predict(text, big=1 << 300, word="text")
 
 
 @pytest.mark.parametrize("text", ["(1, 2)", "max((0, 1), (0, 2))", "(1, 2) == (1, 2)", "abs([1, 2])"])
 def test_tuples_are_arguments_alone(text: str) -> None:
-    with pytest.raises(UnforeseenError):
-        foresee(text)
+    with pytest.raises(UnpredictableError):
+        predict(text)
 
 
 def test_a_variable_without_a_value_yet_is_no_global_of_that_name() -> None:
@@ -223,7 +223,7 @@ def elsewhere():
     x = form("x")
     assert x.value(space["elsewhere"]()) == "global"
     assert x.value(space["after"]()) == "local"
-    with pytest.raises(UnforeseenError):
+    with pytest.raises(UnpredictableError):
         x.value(space["before"]())
 
 
@@ -231,7 +231,7 @@ def test_what_a_function_keeps_of_its_local_names_is_not_brought_up_to_date() ->
     x = 1
     kept = locals()
     x = 2
-    with pytest.raises(UnforeseenError):
+    with pytest.raises(UnpredictableError):
         form("x").value(sys._getframe(0))
     assert kept["x"] == 1
     assert x == 2
@@ -258,7 +258,7 @@ def test_values_are_identical_only_if_no_program_can_tell_them_apart(
 def test_only_alternatives_with_another_value_differ() -> None:
     texts = ("abs(x)", "-x", "x / 0", "robot.angle", "x", "robot[0:1]")
     trees = [ast.parse(text, mode="eval").body for text in texts]
-    forms, everything = Forms(form("x"), tuple(map(ForeseenForm, trees))), frozenset(range(6))
+    forms, everything = Forms(form("x"), tuple(map(PredictedForm, trees))), frozenset(range(6))
     assert forms.differing(everything, frame_of(x=2, robot=Robot())) == {1, 2, 3, 5}
     assert forms.differing(frozenset({0, 1}), frame_of(robot=Robot())) == {0, 1}
     assert Forms(form("robot.f()"), forms.alternatives).differing(everything, frame_of(x=2)) == everything

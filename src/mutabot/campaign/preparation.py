@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mutabot.campaign import simulation
-from mutabot.campaign.baseline.taking import take_baseline
-from mutabot.campaign.baseline.unfit import note_fit, refuse_unfit, refuse_unhooked
+from mutabot.campaign.baseline.suite_runs import take_baseline
+from mutabot.campaign.baseline.vocabulary_fit import note_fit, refuse_unfit, refuse_unhooked
 from mutabot.campaign.baseline.wrappers import shared_sites
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.duration import Duration, duration_of

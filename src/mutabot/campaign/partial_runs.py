@@ -7,8 +7,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Self
 
-from mutabot.campaign import beginning
-from mutabot.campaign.baseline.taking import take_baseline
+from mutabot.campaign import preparation
+from mutabot.campaign.baseline.suite_runs import take_baseline
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.controls import run_controls
 from mutabot.campaign.engines.replay import replay
@@ -57,7 +57,7 @@ class CampaignRun(Campaign):
         Raises ConfigurationError for a vocabulary that does not fit the program, NothingToDoError without
         tests, BaselineError when tests fail.
         """
-        with beginning.open_executor(request, progress) as opened:
+        with preparation.open_executor(request, progress) as opened:
             texts = texts_of(request.project, progress.note)
             baseline, results = take_baseline(request, opened, progress, texts=texts, repetitions=1)
             planned = {one.id: one for one in make_plan(baseline, request.project).mutants}
@@ -77,7 +77,7 @@ class CampaignRun(Campaign):
 
         Gives the results as they come; ``task.key`` is the round. Leaving the context ends all processes.
         """
-        with beginning.open_executor(request, progress) as opened:
+        with preparation.open_executor(request, progress) as opened:
             startup, may_share = Limit(_STARTUP), request.forks
             yield opened.run(
                 Task(round, request.job(round), startup=startup, may_share=may_share) for round in rounds

@@ -1,6 +1,6 @@
 """The recorder of the running test, which feeds write to and the session reads, and its film.
 
-There is one tape per process. Outside a campaign, and between tests, there is none and feeds do nothing.
+There is one recorder per process. Outside a campaign, and between tests, there is none and feeds do nothing.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ _NAN = float("nan")
 _WALL = 1.0
 
 
-class Tape:
+class WorldRecorder:
     """The recorder of one test.
 
     Attributes:
@@ -82,7 +82,7 @@ class Tape:
         return self.at_wall(monotonic()) if told is None else told
 
     def at_wall(self, moment: float) -> float:
-        """Return a moment of ``time.monotonic`` as a time of the tape."""
+        """Return a moment of ``time.monotonic`` as a time of the recorder."""
         return self._began - moment - _WALL
 
     def seconds(self, time: float | None) -> float | None:
@@ -194,28 +194,28 @@ class Tape:
             )
 
 
-_tape: Tape | None = None
+_recorder: WorldRecorder | None = None
 
 
-def running() -> Tape | None:
-    """Return the tape of the running test; None if nothing is recorded."""
-    return _tape
+def running() -> WorldRecorder | None:
+    """Return the recorder of the running test; None if nothing is recorded."""
+    return _recorder
 
 
 def now() -> float | None:
-    """Return the time of the running test's tape; None if nothing is recorded."""
-    return _tape.now if _tape is not None else None
+    """Return the time of the running test's recorder; None if nothing is recorded."""
+    return _recorder.now if _recorder is not None else None
 
 
-def begin(film: PictureWriter | None = None) -> Tape:
+def begin(film: PictureWriter | None = None) -> WorldRecorder:
     """Begin to record a test, and to film it if asked."""
-    global _tape  # noqa: PLW0603  # simulators know this module, not an object of ours
-    _tape = Tape(film)
-    return _tape
+    global _recorder  # noqa: PLW0603  # simulators know this module, not an object of ours
+    _recorder = WorldRecorder(film)
+    return _recorder
 
 
-def stop() -> Tape | None:
+def stop() -> WorldRecorder | None:
     """Stop recording, and return the recording."""
-    global _tape  # see above
-    found, _tape = _tape, None
+    global _recorder  # see above
+    found, _recorder = _recorder, None
     return found

@@ -41,7 +41,7 @@ _STORED = (types.MemberDescriptorType, type(vars(NamedTuple("_Sample", [("item",
 _PLAIN_LOOK_UPS: list[Any] = [kind.__getattribute__ for kind in (object, tuple, types.ModuleType)]
 
 
-class UnforeseenError(Exception):
+class UnpredictableError(Exception):
     """The value of an expression cannot be known without evaluating it."""
 
 
@@ -56,7 +56,7 @@ _HELPERS = types.SimpleNamespace(absolute=abs, fail_if=_fail_if)
 _HELPER_NAMES = frozenset(f"{RUNTIME}[0].{name}" for name in vars(_HELPERS))
 
 
-class ForeseenForm:
+class PredictedForm:
     """An expression whose value follows from those of its leaves.
 
     The value of one that does more than to calculate and to compare is never known. The tree is changed.
@@ -65,34 +65,34 @@ class ForeseenForm:
     def __init__(self, tree: ast.expr) -> None:
         leaves = _Leaves()
         self._code: types.CodeType | None = None
-        with suppress(UnforeseenError):
+        with suppress(UnpredictableError):
             tree = leaves.visit(tree)
             self._kinds = _NUMBERS if leaves.calculates else _PLAIN_TYPES
             self._check(leaves.constants)
-            self._code = compile(ast.Expression(tree), "<foreseen>", "eval")
+            self._code = compile(ast.Expression(tree), "<predicted>", "eval")
         self._leaves, self._functions = leaves.found, leaves.functions
 
     def value(self, frame: types.FrameType) -> Any:
         """Return the expression's value in a frame.
 
-        Raises UnforeseenError if that cannot be known; and whatever the evaluation itself would raise.
+        Raises UnpredictableError if that cannot be known; and whatever the evaluation itself would raise.
         """
         if self._code is None:
-            raise UnforeseenError
+            raise UnpredictableError
         values = {name: _read(leaf, frame) for name, leaf in self._leaves.items()}
         self._check(values.values())
         functions = {name: _read(leaf, frame) for name, leaf in self._functions.items()}
         if not all(any(function is known for known in _CALLABLE) for function in functions.values()):
-            raise UnforeseenError
+            raise UnpredictableError
         found = eval(self._code, {"__builtins__": {}, RUNTIME: [_HELPERS]}, values | functions)
         if type(found) is tuple:  # as ``max((a, b), (c, d))`` gives
-            raise UnforeseenError
+            raise UnpredictableError
         return found
 
     def _check(self, values: Iterable[Any]) -> None:
         for value in values:
             if type(value) not in self._kinds or (type(value) is int and value.bit_length() > _LARGEST):
-                raise UnforeseenError
+                raise UnpredictableError
 
 
 class _Leaves(ast.NodeTransformer):
@@ -115,7 +115,7 @@ class _Leaves(ast.NodeTransformer):
         if isinstance(node, ast.Name | ast.Attribute | ast.Subscript):
             return self._stand_in(node, self.found)
         if isinstance(node, _LEFT_OUT) or (isinstance(node, ast.expr) and not isinstance(node, _KNOWN)):
-            raise UnforeseenError
+            raise UnpredictableError
         self.calculates |= isinstance(node, _CALCULATING)
         if isinstance(node, ast.Constant):
             self.constants.append(node.value)
@@ -123,7 +123,7 @@ class _Leaves(ast.NodeTransformer):
 
     def visit_Call(self, node: ast.Call) -> ast.expr:  # the name that ast looks for
         if node.keywords:
-            raise UnforeseenError
+            raise UnpredictableError
         told: list[ast.expr] = []
         if ast.unparse(node.func) in _HELPER_NAMES:
             told = [one for one in node.args if isinstance(getattr(one, "value", None), str)]
@@ -149,8 +149,8 @@ class _Leaves(ast.NodeTransformer):
 class Forms:
     """The original at a place as an expression, with its alternatives."""
 
-    original: ForeseenForm
-    alternatives: tuple[ForeseenForm, ...]
+    original: PredictedForm
+    alternatives: tuple[PredictedForm, ...]
 
     def differing(self, indexes: frozenset[int], frame: types.FrameType) -> frozenset[int]:
         """Return the alternatives whose value in a frame may differ from the original's."""
@@ -177,33 +177,33 @@ def is_identical(one: Any, other: Any) -> bool:
 def locals_of(frame: types.FrameType) -> Mapping[str, Any]:
     """Return the local names of a frame.
 
-    Raises UnforeseenError in a function that calls ``locals`` itself: to look would bring up to date what it
-    may have kept.
+    Raises UnpredictableError in a function that calls ``locals`` itself: to look would bring up to date what
+    it may have kept.
     """
     code = frame.f_code
     if code.co_flags & _OPTIMIZED and not _LOOKING.isdisjoint(code.co_names):
-        raise UnforeseenError
+        raise UnpredictableError
     return frame.f_locals
 
 
 def plain_attribute(owner: Any, name: str) -> Any:
     """Return an attribute that is merely stored: on an object, in a slot, named tuple or module.
 
-    Raises UnforeseenError for all others: to read a property may be to read a robot.
+    Raises UnpredictableError for all others: to read a property may be to read a robot.
     """
     kind = type(owner)
     if isinstance(owner, type) or kind.__getattribute__ not in _PLAIN_LOOK_UPS or _is_mangled(name):
-        raise UnforeseenError
+        raise UnpredictableError
     found = next((vars(base)[name] for base in kind.__mro__ if name in vars(base)), None)
     if isinstance(found, _STORED):
         return found.__get__(owner, kind)
     if found is not None and hasattr(type(found), "__get__"):
-        raise UnforeseenError
+        raise UnpredictableError
     stored = getattr(owner, "__dict__", None)
     if type(stored) is dict and name in stored:
         return stored[name]
     if found is None:
-        raise UnforeseenError
+        raise UnpredictableError
     return found
 
 
@@ -218,7 +218,7 @@ def _read(leaf: ast.expr, frame: types.FrameType) -> Any:
             return container[key]
     if isinstance(leaf, ast.Constant):
         return leaf.value
-    raise UnforeseenError
+    raise UnpredictableError
 
 
 def _named(name: str, frame: types.FrameType) -> Any:
@@ -230,7 +230,7 @@ def _named(name: str, frame: types.FrameType) -> Any:
     for names in (frame.f_globals, frame.f_builtins):
         if name in names and not is_own and not _is_mangled(name):
             return names[name]
-    raise UnforeseenError
+    raise UnpredictableError
 
 
 def _is_mangled(name: str) -> bool:
