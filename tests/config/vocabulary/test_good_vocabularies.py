@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from mutabot.campaign.baseline.vocabulary_fit import useless_noise
 from mutabot.config.vocabulary import load_vocabulary
 from mutabot.config.vocabulary.load import shipped_vocabularies
 from mutabot.model import Clock, Kind, Mode, Operation, Probe, Quantity, Vocabulary
@@ -114,6 +115,11 @@ def test_the_documentation_names_every_kind() -> None:
 def test_every_shipped_vocabulary_loads(tmp_path: Path) -> None:
     for name in shipped_vocabularies():
         assert load_vocabulary([name], tmp_path).operations
+
+
+@pytest.mark.parametrize("name", shipped_vocabularies())
+def test_a_shipped_vocabulary_describes_no_noise_that_no_operator_adds(name: str, tmp_path: Path) -> None:
+    assert [*useless_noise(load_vocabulary([name], tmp_path))] == []
 
 
 def test_a_shipped_vocabulary_is_found_by_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -84,7 +84,7 @@ def note_fit(
     remarks = (
         *_out_of_range(baseline, vocabulary),
         *_no_numbers(baseline, vocabulary),
-        *_no_noise(baseline, vocabulary),
+        *useless_noise(vocabulary),
         *shared,
     )
     baseline.add_remarks(remarks)
@@ -174,7 +174,7 @@ def _no_numbers(baseline: Baseline, vocabulary: Vocabulary) -> Iterator[Remark]:
             yield Remark(owner.source, f"{side}.{quantity.name}", text)
 
 
-def _no_noise(baseline: Baseline, vocabulary: Vocabulary) -> Iterator[Remark]:
+def useless_noise(vocabulary: Vocabulary) -> Iterator[Remark]:
     """Remark on noise that is described of quantities to which no operator adds noise."""
     for operation in vocabulary.operations:
         for pattern in (None, *operation.patterns):
