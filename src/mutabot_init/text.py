@@ -159,6 +159,9 @@ def counted(count: int, noun: str) -> str:
 def _arguments(proposal: Proposal) -> Iterator[str]:
     call = proposal.call
     if proposal.message is not None and proposal.message == call.told_by:
+        if call.other_commands:
+            others = counted(call.other_commands, "more call")
+            yield f"# {others} without one name in {call.told_by}, as of a list: mutated as a whole"
         return  # each command says what is beside it
     for name, values in call.arguments.items():
         for part in values.parts.values() if name != proposal.message else ():

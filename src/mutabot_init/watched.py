@@ -92,6 +92,7 @@ class WatchedCallable:
         result: what it answered.
         told_by: path of what tells its commands apart; empty if nothing does.
         commands: these commands by their texts.
+        other_commands: calls that have no such path, as one that writes a list of names has none.
     """
 
     target: str
@@ -118,6 +119,7 @@ class WatchedCallable:
     result: Values = field(default_factory=Values)
     told_by: str = ""
     commands: dict[str, Command] = field(default_factory=dict)
+    other_commands: int = 0
 
     @property
     def name(self) -> str:

@@ -9,10 +9,11 @@ import inspect
 import re
 import sys
 import threading
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
-from dataclasses import dataclass, is_dataclass, replace
+from dataclasses import dataclass, field, is_dataclass, replace
 from fnmatch import fnmatchcase
 from functools import cache, cached_property, partial
 from types import ModuleType
@@ -66,6 +67,9 @@ class _Seen:
 
     callee: Callee
     call: WatchedCallable
+    #: how many calls are told apart by which path, and their commands
+    counts: Counter[str] = field(default_factory=Counter)
+    commands: dict[str, dict[str, Command]] = field(default_factory=dict)
     has_no_commands: bool = False
 
 
@@ -313,12 +317,19 @@ def _command(seen: _Seen, instance: Any, values: Mapping[str, Any]) -> Command |
     if seen.has_no_commands:
         return None
     by, text, beside = _told_by(call, instance, values)
-    if not by or call.told_by not in ("", by) or len(text) > _LONGEST or len(call.commands) > _MOST_COMMANDS:
-        seen.has_no_commands, call.told_by = True, ""
-        call.commands.clear()
+    seen.counts[by] += 1
+    commands = seen.commands.setdefault(by, {})
+    if len(text) > _LONGEST or len(commands) > _MOST_COMMANDS:
+        seen.has_no_commands, call.told_by, call.commands = True, "", {}
         return None
-    call.told_by = by
-    command = call.commands.setdefault(text, Command())
+    # a list of several names, where most calls have one, does not hide what these write
+    most = max(seen.counts, key=seen.counts.__getitem__)
+    is_clear = 2 * seen.counts[most] > seen.counts.total()
+    call.told_by, call.commands = (most, seen.commands[most]) if most and is_clear else ("", {})
+    call.other_commands = seen.counts.total() - seen.counts[most]
+    if not by:
+        return None
+    command = commands.setdefault(text, Command())
     for path, value in beside.items():
         look(command.arguments.setdefault(path, Values()), value, path)
     return command

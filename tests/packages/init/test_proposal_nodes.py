@@ -117,3 +117,43 @@ def test_more_names_than_a_list_of_commands_has_are_given_up() -> None:
         _command(seen, None, {"channel": number, "value": 1})
     assert seen.call.told_by == ""
     assert not seen.call.commands
+
+
+ONE, SEVERAL = {"tag": "Belt.Run", "value": True}, {"tag": [("Belt.Run", False), ("Belt.Speed", 0.0)]}
+
+
+@pytest.mark.parametrize(
+    ("calls", "commands", "others"),
+    [
+        pytest.param([ONE, ONE, SEVERAL], ["Belt.Run"], 1, id="a list at the end"),
+        pytest.param([SEVERAL, ONE, ONE], ["Belt.Run"], 1, id="a list first"),
+        pytest.param([SEVERAL, ONE, {"tag": None}, ONE, ONE], ["Belt.Run"], 2, id="what names nothing"),
+        pytest.param([ONE, SEVERAL], [], 1, id="as many lists as names"),
+    ],
+)
+def test_names_are_commands_if_most_calls_have_one(
+    calls: list[dict[str, Any]], commands: list[str], others: int
+) -> None:
+    seen = _Seen(any_method("write"), WatchedCallable("*:*.write"))
+    for values in calls:
+        _command(seen, None, values)
+    assert [*seen.call.commands] == commands
+    assert seen.call.other_commands == others
+
+
+def test_the_draft_says_which_calls_are_no_commands_of_it(tmp_path: Path) -> None:
+    files = {
+        "plc.py": "class PLC:\n    def Write(self, tag, value=None): self.last = tag\n",
+        "line.py": "from plc import PLC\n\ndef run(plc=PLC()):\n    plc.Write('Valve.Open', True)\n"
+        "    plc.Write('Valve.Open', False)\n    plc.Write([('Belt.Run', False), ('Belt.Speed', 0.0)])\n",
+        "tests/test_line.py": "import line\ndef test_it(): line.run()\n",
+    }
+    for name, text in files.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(text)
+    propose(tmp_path)
+    assert "# 1 more call without one name in tag" in (tmp_path / "robot.toml").read_text()
+    (writing,) = load_vocabulary(["robot.toml"], tmp_path).operations
+    assert {one.text: [part.values for part in one.arguments] for one in writing.patterns} == {
+        "Valve.Open": [(False, True)]
+    }
