@@ -292,9 +292,14 @@ def _swapped(text: str) -> Iterator[str]:
     """The text with each of its words that has an opposite replaced by that."""
     for pair in OPPOSITES:
         for one, other in (pair, pair[::-1]):
-            swapped = re.sub(rf"(?<![a-z]){one}(?![a-z])", other, text)
-            if swapped != text:
-                yield swapped
+            for word, opposite in ((one, other), (one.title(), other.title()), (one.upper(), other.upper())):
+                # a capital begins a word also within one, as in GripperOpen
+                before = "[a-z]" if word == one else "[A-Z]"
+                swapped = re.sub(
+                    rf"(?<!{before}){word}(?![{'A-Z' if word.isupper() else 'a-z'}])", opposite, text
+                )
+                if swapped != text:
+                    yield swapped
 
 
 def _setting(call: WatchedCallable, part: WatchedPart, annotation: str) -> NameContext:

@@ -82,8 +82,9 @@ OUTPUT = _words("output outputs digital signal valve relay lamp coil io do out l
 #: words that undo each other
 OPPOSITES = (
     ("lift", "drop"), ("raise", "lower"), ("up", "down"), ("pick", "release"), ("grip", "release"),
-    ("grasp", "release"), ("open", "close"), ("on", "off"), ("forward", "back"), ("left", "right"),
-    ("start", "stop"), ("attach", "detach"),
+    ("grasp", "release"), ("open", "close"), ("on", "off"), ("forward", "back"), ("forward", "backward"),
+    ("left", "right"), ("start", "stop"), ("attach", "detach"), ("extend", "retract"), ("clamp", "unclamp"),
+    ("lock", "unlock"), ("engage", "disengage"), ("activate", "deactivate"),
 )  # fmt: skip
 
 #: what a value is, by the last noun in its name

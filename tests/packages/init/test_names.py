@@ -11,6 +11,7 @@ from mutabot.config.vocabulary import load_vocabulary
 from mutabot.model.operation import Form
 from mutabot_init.messages import MessagePlace, entries, meaning
 from mutabot_init.observe import merged
+from mutabot_init.operations import _swapped
 from mutabot_init.text import entry_text, vocabulary_text
 from mutabot_init.watched import Use, Values, WatchedCalls, WatchedPart
 from mutabot_init.watching.values import look, type_of
@@ -288,3 +289,20 @@ def test_messages_of_both_generations_are_described_without_their_packages() -> 
     flag = Values()
     look(flag, Flag(), message=True)
     assert flag.parts["data"].within == ((type_of(Flag()), "data"),)
+
+
+@pytest.mark.parametrize(
+    ("name", "opposites"),
+    [
+        ("GripperClose", {"GripperOpen"}),
+        ("closeGripper", {"openGripper"}),
+        ("VALVE_OPEN", {"VALVE_CLOSE"}),
+        ("forward", {"back", "backward"}),
+        ("unclamp", {"clamp"}),
+        ("SetOnline", set()),
+        ("reopen", set()),
+        ("REOPEN", set()),
+    ],
+)
+def test_an_opposite_is_a_whole_word_in_any_way_of_writing(name: str, opposites: set[str]) -> None:
+    assert {*_swapped(name)} == opposites
