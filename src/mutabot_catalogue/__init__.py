@@ -1,1 +1,1 @@
-"""The catalogue of mistakes that robot programs are known for, and faults of messages on a middleware."""
+"""The catalogue of typical mistakes in robot programs, and faults of messages on a middleware."""

@@ -1,4 +1,4 @@
-"""Operations on which the worked examples show several operators."""
+"""Operations that several operators' worked examples share."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MOVE_TO = Operation(
 
 
 def setting_up(form: Form, name: str) -> Operation:
-    """An operation that sets something up."""
+    """Return an operation that sets something up."""
     return Operation.under_name(form, name, form.settings)
 
 

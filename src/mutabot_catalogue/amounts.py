@@ -1,4 +1,4 @@
-"""Numbers that are taken for another unit, and commanded amounts that are too small, too large or limited."""
+"""Operators that mistake units, and that make commanded amounts too small, too large or limited."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Commands that are lost, repeated, taken back, too early, too late or in the wrong order."""
+"""Operators on commands: lost, repeated, taken back, too early, too late or in the wrong order."""
 
 from __future__ import annotations
 
@@ -158,7 +158,7 @@ class EarlyRelease(_Grip):
 
 
 def _undone(subject: Subject, call: Call) -> Call:
-    """The call that takes a gripper command back. Raises Unchanged if its opening has no other end."""
+    """Return the call that takes a gripper command back. Raises Unchanged if its opening has no other end."""
     for quantity in subject.written:
         if quantity.kind is Kind.OPENING:
             value = replace(subject, quantity=quantity).given(call.values, quantity.name)

@@ -1,4 +1,4 @@
-"""What this package brings to mutabot: two families of operators on calls."""
+"""The extension by which mutabot finds this package's two families of operators on calls."""
 
 from __future__ import annotations
 

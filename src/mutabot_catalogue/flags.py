@@ -1,4 +1,4 @@
-"""Flags that no longer say what they should: interlocks that are bridged, switches that stick."""
+"""Operators on flags: interlocks that are bridged, switches that stick."""
 
 from __future__ import annotations
 

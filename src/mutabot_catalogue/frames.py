@@ -1,4 +1,4 @@
-"""Frames, axes, joints, tools and orientations that are mistaken for others."""
+"""Operators that confuse frames, axes, joints, tools and orientations with others."""
 
 from __future__ import annotations
 
@@ -136,7 +136,7 @@ class LeftHanded(ValueOperator):
 
 
 def _turns(quantity: Quantity) -> bool:
-    """Whether it is an orientation, or a part of one, that a mirror changes."""
+    """Return whether a quantity is an orientation, or a part of one, that a mirror changes."""
     is_angle = quantity.kind in (Kind.ROTATION, Kind.ORIENTATION)
     return quantity.is_whole or (is_angle and quantity.axis in ("x", "z"))
 
@@ -204,7 +204,7 @@ class BaseForTool(ValueOperator):
 
 
 def _moved(subject: Subject) -> list[Quantity]:
-    """The relative translation along the three axes, in their order, of one frame."""
+    """Return the relative translation along the three axes of one frame, in order."""
     found = {
         (one.frame, one.axis): one
         for one in subject.written
@@ -295,13 +295,13 @@ _LOOK = Operation.reading("camera:orientation", Kind.QUATERNION, order="xyzw")
 
 
 class _OtherNumbers(ValueOperator):
-    """Puts other numbers in the place of those of an orientation."""
+    """Replaces the numbers of an orientation by others."""
 
     family = CATALOGUE
 
     @abstractmethod
     def numbers(self, numbers: list[float], context: Context) -> list[float]:
-        """The other numbers."""
+        """Return the other numbers."""
 
     def change(self, value: Any, context: Context) -> Any | None:
         quantity = context.quantity

@@ -1,4 +1,4 @@
-"""Faults of messages, requests and goals on their way, and of nodes, services, actions and clocks."""
+"""Faults of messages, requests and goals in transit, and of nodes, services, actions and clocks."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _COMING = frozenset(form for form in Form if form.comes_by_itself)
 
 
 class MessageOperator(CommandOperator):
-    """Acts on whole calls of some forms.
+    """Acts on whole calls of certain forms.
 
     Class attributes:
         forms: the forms.
@@ -122,7 +122,7 @@ class Stale(MessageOperator):
         return self._old(await proceed(call), context)
 
     def _old(self, one: CallOrReply, context: Context) -> CallOrReply:
-        """The earlier one to be taken instead, or the same with the reason why there is none."""
+        """Return the earlier message, or the present one with the reason why there is none."""
         old = context.memory[0] if context.memory else one.as_is(_NONE_BEFORE)
         if not context.memory or context.subject.variant != _FIRST:
             context.memory[:] = [one]

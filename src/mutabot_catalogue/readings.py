@@ -1,4 +1,4 @@
-"""Readings that are old, stuck, limited, lost, late or of something else."""
+"""Operators on readings that are old, stuck, limited, lost, late or of something else."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ class Dropout(CommandOperator):
 
 
 class _ChangedReading(ValueOperator):
-    """Changes a reading by those before it at its place, or by chance.
+    """Changes a reading depending on earlier ones at its place, or at random.
 
     Stands for: A sensor that drops out or is misread: {sensors}.
     """

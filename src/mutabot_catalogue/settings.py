@@ -1,4 +1,4 @@
-"""What headers of messages say wrongly, and what publishers, timers and parameters are set up with."""
+"""Operators on headers of messages, and on the settings of publishers, timers and parameters."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _HEAR = Operation.under_name(Form.RECEIVE, "/scan", result=(calls.HEARD_FRAME,))
 
 
 class _FreeValueOperator(ValueOperator):
-    """Changes a value that a middleware takes whatever it is."""
+    """Changes a value that a middleware accepts whatever it is."""
 
     family = MIDDLEWARE
     takes_any = True
@@ -201,7 +201,7 @@ class FlipLatch(_OtherOfTwo):
 
 
 def _of_two(quantity: str, one: str, other: str, first: Operation, second: Operation) -> tuple[Example, ...]:
-    """Examples of a policy that has two values beside the system's default."""
+    """Return the examples of a policy that has two values besides the system's default."""
     return (
         Example.changed(first, one, other, quantity=quantity),
         Example.changed(second, other, one, quantity=quantity),

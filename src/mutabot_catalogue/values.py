@@ -1,4 +1,4 @@
-"""What several operators share: two values exchanged, the middle of a range, what comes by itself."""
+"""Helpers of several operators: exchanged values, the middle of a range, calls without a request."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Exchange(ValueOperator):
 
     @abstractmethod
     def pairs(self, whole: Subject) -> Iterable[tuple[Quantity, Quantity]]:
-        """The pairs of a call whose values could be exchanged."""
+        """Yield the pairs of a call whose values could be exchanged."""
 
     def subjects(self, whole: Subject) -> Iterator[Subject]:
         for one, other in self.pairs(whole):
@@ -39,18 +39,18 @@ class Exchange(ValueOperator):
 
 
 def _other_of(subject: Subject) -> Quantity:
-    """The second quantity of a pair."""
+    """Return the second quantity of a pair."""
     name = subject.variant.partition("+")[0]
     return next(one for one in subject.side if one.name.lstrip(".") == name)
 
 
 def is_alike(one: Quantity, other: Quantity) -> bool:
-    """Whether the values of two quantities mean the same, but for where they stand."""
+    """Return whether two quantities have the same meaning, apart from their places."""
     return (one.kind, one.unit, one.mode, one.frame) == (other.kind, other.unit, other.mode, other.frame)
 
 
 def middle_of(quantity: Quantity, share: float) -> tuple[float, float]:
-    """The ends of the middle share of what a quantity may be. Raises Unchanged if its range is not known."""
+    """Return the ends of the middle share of a quantity's range. Raises Unchanged if it is unknown."""
     limits = quantity.range or quantity.clip
     if limits is None:
         raise Unchanged("the vocabulary gives no range")
@@ -60,16 +60,16 @@ def middle_of(quantity: Quantity, share: float) -> tuple[float, float]:
 
 
 def like(before: float, after: float) -> float:
-    """A number in the type of the one in whose place it comes, where that loses nothing."""
+    """Return a number, converted to the type of another one if that loses nothing."""
     is_whole = isinstance(before, int) and not isinstance(before, bool) and float(after).is_integer()
     return int(after) if is_whole else after
 
 
 def comes_by_itself(operation: Operation) -> bool:
-    """Whether the program does not ask for it: a message to a callback, a tick."""
+    """Return whether the program does not request it, like a message to a callback or a tick."""
     return operation.form is not None and operation.form.comes_by_itself
 
 
 def within(value: float, limits: tuple[float, float] | None) -> float:
-    """A number, or the end of the limits that is nearest to it."""
+    """Return a number, limited to a range if there is one."""
     return value if limits is None else min(max(value, limits[0]), limits[1])

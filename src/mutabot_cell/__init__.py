@@ -1,4 +1,4 @@
-"""MuJoCo work cells: robot, gripper, sensors, scene.
+"""Work cells simulated in MuJoCo: robot, gripper, sensors, scene.
 
 Importing this package is cheap; MuJoCo is loaded when a name that needs it is first used. `SimulatorMissing`
 says what to install when it is not there.

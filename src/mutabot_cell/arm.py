@@ -1,4 +1,4 @@
-"""The arm as its user knows it: joint moves and straight-line moves, refused or stopped when they must be."""
+"""The arm as robot programs use it: joint moves and straight-line moves, refused or stopped if necessary."""
 
 from __future__ import annotations
 
@@ -84,18 +84,18 @@ class Arm:
         simulation.foresight.checks(self._watch, Glance(self._until, guard.note, guard.quiet, guard.passed))
 
     def commanded_joints(self) -> tuple[float, ...]:
-        """Setpoints of the joints, degrees, not wrapped."""
+        """Return the setpoints of the joints, degrees, not wrapped."""
         return self._setpoint_degrees()
 
     def commanded_pose(self) -> Pose:
-        """Tool pose that the setpoints stand for, in a tracked belt's frame: relative moves start here."""
+        """Return the tool pose of the setpoints, in a tracked belt's frame: relative moves start here."""
         if self._tracking is not None:
             return pose_of(*self._tracking.pose())
         position, rotation = self.kinematics.tool(self._setpoint)
         return pose_of(position, rotation)
 
     def home(self) -> None:
-        """Joint move to the home position; continuous joints turn the shorter way.
+        """Move the joints to the home position; continuous joints turn the shorter way.
 
         Raises:
             ProtectiveStop: something was in the way.
@@ -103,7 +103,7 @@ class Arm:
         self.start_home().wait()
 
     def start_home(self) -> Move:
-        """Like `home`, but returns at once."""
+        """Start the same move as `home`, and return at once."""
         return self._start_joints(np.array(self._model.home), 1.0)
 
     def move_joints(self, angles: Sequence[float], *, speed: float = 1.0) -> None:
@@ -120,7 +120,7 @@ class Arm:
         self._start_angles(angles, speed).wait()
 
     def start_move_joints(self, angles: Sequence[float], *, speed: float = 1.0) -> Move:
-        """Like `move_joints`, but returns at once."""
+        """Start the same move as `move_joints`, and return at once."""
         return self._start_angles(angles, speed)
 
     def _setpoint_degrees(self) -> tuple[float, ...]:
@@ -166,7 +166,7 @@ class Arm:
         self.start_move_to(pose, speed=speed).wait()
 
     def start_move_to(self, pose: Pose, *, speed: float = 1.0) -> Move:
-        """Like `move_to`, but returns at once."""
+        """Start the same move as `move_to`, and return at once."""
         values = (pose.x, pose.y, pose.z, pose.theta_x, pose.theta_y, pose.theta_z)
         _check_numbers("pose", values, 6)
         _check_speed(speed)
@@ -193,7 +193,7 @@ class Arm:
         *,
         speed: float = 1.0,
     ) -> None:
-        """Like `move_to`, relative: m (base frame) and degrees are added to the commanded pose's values."""
+        """Move like `move_to`, but add m (base frame) and degrees to the commanded pose's values."""
         self.start_move_by(x, y, z, theta_x, theta_y, theta_z, speed=speed).wait()
 
     def start_move_by(
@@ -207,7 +207,7 @@ class Arm:
         *,
         speed: float = 1.0,
     ) -> Move:
-        """Like `move_by`, but returns at once."""
+        """Start the same move as `move_by`, and return at once."""
         _check_numbers("amounts", (x, y, z, theta_x, theta_y, theta_z), 6)
         now = self.commanded_pose()
         return self.start_move_to(
@@ -223,7 +223,7 @@ class Arm:
         )
 
     def new_path(self) -> ToolPath:
-        """A path for the tool, to be described point by point and travelled without a stop."""
+        """Return a new path for the tool, to be described point by point and travelled without a stop."""
 
         def where() -> Array:
             return self.kinematics.tool(self._robot.encoders())[0]
@@ -243,7 +243,7 @@ class Arm:
         return self._start(self._planner.along(self._setpoint, path, speed / limit))
 
     def track(self, belt: TrackedBelt, since: float | None = None) -> None:
-        """Let the tool move with a belt; returns when it does, to within 0.2 mm and 5 mm/s.
+        """Let the tool move with a belt; return when it does, to within 0.2 mm and 5 mm/s.
 
         From then on poses are in the belt's frame, in which a thing on the belt stays where it was when the
         encoder read `since`: straight moves go there, wherever it has got to by now. Joint moves are refused.
@@ -282,7 +282,7 @@ class Arm:
             self._simulation.tick()
 
     def stop_tracking(self) -> None:
-        """Bring the tool to rest; returns when it stands. Poses are in the base frame again.
+        """Bring the tool to rest; return when it has stopped. Poses are in the base frame again.
 
         Raises:
             MotionRefused: a motion on the belt is under way.
@@ -297,13 +297,13 @@ class Arm:
         self._settle()
 
     def is_tracking(self) -> bool:
-        """Whether the arm follows a belt."""
+        """Return whether the arm follows a belt."""
         return self._tracking is not None
 
     def move_until_contact(
         self, x: float = 0.0, y: float = 0.0, z: float = 0.0, *, force: float = 5.0, speed: float = 0.02
     ) -> bool:
-        """Move the tool in a straight line by at most this much, until something resists; it stops there.
+        """Move the tool in a straight line by at most this much, and stop it when something resists.
 
         The force is what the wrist's sensor reads: call its `zero` before, away from what will be touched.
 
@@ -368,7 +368,7 @@ class Arm:
         self._carry_out(Push(self._steered(speed), forces, speed, travel, seconds, self._felt, TICK))
 
     def _steered(self, speed: float) -> JointSteps:
-        """The joints, for a motion that the force sensor decides."""
+        """Return the joints' steps, for a motion that the force sensor controls."""
         _check_positive("speed", speed)
         if speed > MOST_FELT_SPEED:
             raise BadArgument(f"Expected 0 < speed <= {MOST_FELT_SPEED} m/s but got speed={speed!r}")
@@ -382,14 +382,14 @@ class Arm:
         self._move.wait()
 
     def _felt(self) -> Array:
-        """What the surroundings exert on the tool by the zeroed sensor: base frame, N, shape (3,)."""
+        """Return the force on the tool by the zeroed sensor: base frame, N, shape (3,)."""
         wrench = self._force_sensor.wrench()
         _, rotation = self.kinematics.tool(self._setpoint)
         felt: Array = rotation @ self._flange @ (wrench.fx, wrench.fy, wrench.fz)
         return felt
 
     def set_payload(self, mass: float, centre: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> None:
-        """Tell the controller what the gripper holds, so that it carries the weight and expects the forces.
+        """Declare what the gripper holds, so that the controller carries its weight and expects its forces.
 
         Without it a part is carried by the servos' stiffness alone, and a heavy one looks like a collision.
 
@@ -411,7 +411,7 @@ class Arm:
             self._feed_forward.set_payload(mass, centre)
 
     def acknowledge_stop(self) -> None:
-        """Allow motions again after a protective stop; takes a moment in which the joints stop pressing."""
+        """Allow motions again after a protective stop; takes a moment until the joints stop pressing."""
         if self._stop is None:
             return
         for _ in range(_RELAXING_TICKS):
@@ -434,11 +434,11 @@ class Arm:
             raise MotionRefused("motion refused: the arm tracks a belt", limit="tracking")
 
     def is_under_way(self, move: Move) -> bool:
-        """Whether this motion has not ended; see `Move.done`."""
+        """Return whether a motion has not ended; see `Move.done`."""
         return self._move is move
 
     def finish(self, move: Move) -> None:
-        """See `Move.wait`."""
+        """Wait until a motion has ended; see `Move.wait`."""
         if self._move is not move:
             return
         while self._move is move:
@@ -446,7 +446,7 @@ class Arm:
         self._settle()
 
     def brake(self, move: Move) -> None:
-        """See `Move.stop`."""
+        """Begin to brake a motion; see `Move.brake`."""
         if self._tracking is not None:
             self._tracking.stop_move()
         elif self._move is move and self._streamed:
@@ -480,7 +480,7 @@ class Arm:
             self._simulation.tick()
 
     def _ask(self, online: OnlineMotion) -> None:
-        """Load what an online motion wants in the coming tick."""
+        """Load the setpoints of an online motion for the coming tick."""
         try:
             motion = online.tick()
         except PathLost as lost:
@@ -516,7 +516,7 @@ class Arm:
                 self._move = None
 
     def _write(self, inputs: Array) -> int:
-        """`_drive`, for the coming ticks."""
+        """Write the setpoints of the coming ticks, as `_drive` does for one."""
         if self._online is not None:
             return 1
         error, wanted = self._robot.encoder_error, inputs[:, :, self._robot.servos]
@@ -543,11 +543,11 @@ class Arm:
 
     @property
     def setpoint(self) -> Array:
-        """What the encoders should read now, as planned, shape (joints,), rad."""
+        """The planned present encoder readings, shape (joints,), rad."""
         return self._setpoint
 
     def compare_with(self, setpoints: Callable[[], Array]) -> None:
-        """Let the protective stop compare encoders with these instead of what is planned, such as later ones.
+        """Let the protective stop compare encoders with other setpoints than planned, such as later ones.
 
         Args:
             setpoints: gives what the encoders should read, shape (joints,), rad.
@@ -560,7 +560,7 @@ class Arm:
         return error
 
     def _watch(self) -> None:
-        """After every tick: stop if the guard says so."""
+        """Stop after a tick if the guard demands it."""
         stop = self.guard.overload(self._following_error)
         if self._stop is not None:
             return
@@ -599,7 +599,7 @@ def _check_positive(name: str, value: float) -> None:
 
 
 def _flange_in_tool(robot: RobotModel) -> Array:
-    """Rotation matrix, shape (3, 3), of the flange's frame, in which forces are read, in the tool's frame."""
+    """Return the rotation, shape (3, 3), from the flange's frame, in which forces are read, to the tool's."""
     if robot.tool is None:
         return np.eye(3)
     turned = np.zeros(9)

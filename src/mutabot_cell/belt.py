@@ -1,4 +1,4 @@
-"""A conveyor belt: its drive, its encoder, and the surface that carries what lies on it."""
+"""A conveyor belt: its drive, its encoder, and the surface that carries parts."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _SPEED_WINDOW = 0.1
 
 
 class ConveyorBelt:
-    """One belt as a program uses it. Positions are metres of belt since the cell was made.
+    """A belt as a program uses it. Positions are metres of belt since the cell was made.
 
     The physics knows the belt as a surface velocity of a fixture that stays where it is: friction alone
     carries what lies on it.
@@ -57,7 +57,7 @@ class ConveyorBelt:
         simulation.travels[name] = self.true_position
 
     def run(self, speed: float) -> None:
-        """Bring the belt to `speed` (m/s; negative is backwards). Returns at once; the drive accelerates.
+        """Bring the belt to `speed` (m/s; negative is backwards). Return at once; the drive accelerates.
 
         Raises:
             BadArgument: not a number within the drive's limits.
@@ -73,15 +73,15 @@ class ConveyorBelt:
             self._simulation.before_tick.append(self._drive)
 
     def stop(self) -> None:
-        """Bring the belt to rest. Returns at once; the drive decelerates."""
+        """Bring the belt to rest. Return at once; the drive decelerates."""
         self.run(0.0)
 
     def commanded(self) -> float:
-        """The speed last asked for, m/s."""
+        """Return the last commanded speed, m/s."""
         return self._commanded
 
     def position(self, at: float | None = None) -> float:
-        """What the encoder reads, m, in whole counts.
+        """Return what the encoder reads, m, in whole counts.
 
         Args:
             at: simulated time, s, of a reading that was latched in the past 5 s, as a trigger of a camera or
@@ -94,25 +94,25 @@ class ConveyorBelt:
         return math.floor(self.encoder_factor * self._travelled(at) / count + 1e-6) * count
 
     def set_jitter(self, deviation: float) -> None:
-        """Let the speed wander from now on by this standard deviation, as part of the commanded one."""
+        """Set the standard deviation of the speed from now on, as a fraction of the commanded speed."""
         self._belt = replace(self._belt, jitter=deviation)
 
     def speed(self) -> float:
-        """Mean speed over the last 0.1 s as the encoder tells it, m/s."""
+        """Return the mean speed over the last 0.1 s by the encoder, m/s."""
         now = self._simulation.time
         before = max(now - _SPEED_WINDOW, (self._known - len(self._past) + 1) * TICK)
         return (self.position() - self.position(before)) / (now - before) if now > before else 0.0
 
     def true_position(self) -> float:
-        """Exact travel, m; for checks."""
+        """Return the exact travel, m; for checks."""
         return self._travelled(None)
 
     def true_speed(self) -> float:
-        """Exact speed of the surface, m/s; for checks."""
+        """Return the exact speed of the surface, m/s; for checks."""
         return self._speed
 
     def _travelled(self, at: float | None) -> float:
-        """Exact travel at a time, s; now by default. Within a tick the belt runs evenly."""
+        """Return the exact travel at a time, s; now by default. Within a tick the belt runs evenly."""
         self._catch_up()
         now = self._simulation.ticks
         tick = float(now) if at is None else at / TICK
@@ -129,7 +129,7 @@ class ConveyorBelt:
         return begin + part * (end - begin)
 
     def _catch_up(self) -> None:
-        """Note that the belt has stood since it was driven last."""
+        """Account for the time in which the belt stood since it was last driven."""
         missing = self._simulation.ticks - self._known
         if missing > 0:
             self._past.extend([self._past[-1]] * min(missing, _KEPT_TICKS))
@@ -152,7 +152,7 @@ class ConveyorBelt:
             simulation.before_tick = [hook for hook in simulation.before_tick if hook != self._drive]
 
     def _wandered(self) -> float:
-        """By what part the speed is off: an Ornstein-Uhlenbeck process, stepped exactly."""
+        """Return the speed's relative error: an Ornstein-Uhlenbeck process, stepped exactly."""
         deviation = self._belt.jitter
         if not deviation or not self._drive_speed:
             return 0.0

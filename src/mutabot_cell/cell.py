@@ -1,4 +1,4 @@
-"""The work cell: robot, gripper, sensors, scene and time under one roof."""
+"""The work cell: robot, gripper, sensors, scene and time."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ _current: weakref.ref[Cell] | None = None
 
 
 class Truth:
-    """The cell's exact state: for tests, monitors and mutabot. A robot program has sensors instead."""
+    """The cell's exact state, for tests, monitors and mutabot; a robot program has sensors instead."""
 
     def __init__(
         self,
@@ -56,44 +56,44 @@ class Truth:
         self._parts = {part.name: part for part in parts}
 
     def tool_pose(self, robot: str | None = None) -> Pose:
-        """Exact tool pose, base frame; of the first robot unless another one is named."""
+        """Return the exact tool pose, base frame; of the first robot unless another one is named."""
         return self._robot(robot).tool_pose()
 
     def tool_position(self, robot: str | None = None) -> Position:
-        """Exact tool position, base frame; quicker than the whole pose."""
+        """Return the exact tool position, base frame; faster than the whole pose."""
         return self._robot(robot).tool_position()
 
     def box_position(self, name: str = "box") -> Position:
-        """Exact middle of the box's bottom face, world frame."""
+        """Return the exact centre of the box's bottom face, world frame."""
         return true_box_position(self._simulation, self._parts[name])
 
     def box_tilt(self, name: str = "box") -> float:
-        """Angle between the box's up and the world's up, degrees."""
+        """Return the angle between the box's up and the world's up, degrees."""
         return true_box_tilt(self._simulation, self._parts[name])
 
     def belt_position(self, name: str | None = None) -> float:
-        """How far a belt has run since the cell was made, m; the first one unless another is named."""
+        """Return how far a belt has run since the cell was made, m; the first one unless another is named."""
         return _belt_of(self._belts, name).true_position()
 
     def belt_speed(self, name: str | None = None) -> float:
-        """Speed of a belt's surface, m/s; of the first one unless another is named."""
+        """Return the speed of a belt's surface, m/s; of the first one unless another is named."""
         return _belt_of(self._belts, name).true_speed()
 
     def opening(self, robot: str | None = None) -> float:
-        """Distance between the pads, m; 0 without fingers."""
+        """Return the distance between the pads, m; 0 without fingers."""
         return self._robot(robot).opening()
 
     def wrench(self, robot: str | None = None) -> Wrench:
-        """Exact force and torque of the tool on the flange, in the flange's frame."""
+        """Return the exact force and torque of the tool on the flange, in the flange's frame."""
         return Wrench(*true_wrench(self._simulation, self._robot(robot)).tolist())
 
     def vacuum(self, robot: str | None = None) -> float:
-        """Exact vacuum in the suction cup, Pa below the atmosphere; 0 without one."""
+        """Return the exact vacuum in the suction cup, Pa below the atmosphere; 0 without one."""
         system = next(iter(self._systems.values())) if robot is None else self._systems[robot]
         return system.vacuum() or 0.0
 
     def world(self) -> dict[str, float]:
-        """All of the above and the simulated time, flat: "box.x", "tool.z", "opening", "time" and so on.
+        """Return all of the above and the simulated time as a flat dict: "box.x", "opening", "time" etc.
 
         Of several robots those that are named have their names before: "left/tool.z". In units of which a
         thousandth is little: m, degrees, s, kN ("force"), bar ("vacuum"); 1 for an interrupted light barrier.
@@ -128,7 +128,7 @@ class Truth:
 
 
 class Cell:
-    """A robot, a gripper, sensors and what stands around them, in simulated time only.
+    """A robot, a gripper, sensors and their surroundings, in simulated time only.
 
     Same seed, same commands: bit-identical run (same versions, same machine).
 
@@ -213,7 +213,7 @@ class Cell:
         fixtures: Sequence[str] = (),
         noise: bool = True,
     ) -> Cell:
-        """A cell from one file that holds robots and what stands around them.
+        """Return a cell from one file that contains robots and their surroundings.
 
         Args:
             path: of the file.
@@ -250,7 +250,7 @@ class Cell:
         return self.simulation.time
 
     def belt(self, name: str | None = None) -> ConveyorBelt:
-        """A conveyor belt by the name of its fixture; without a name, the first one.
+        """Return a conveyor belt by the name of its fixture; without a name, the first one.
 
         Raises:
             BadArgument: there is no such belt.
@@ -270,7 +270,7 @@ class Cell:
     def always(
         self, condition: Callable[[], object], name: str, values: MonitoredValues | None = None
     ) -> Condition:
-        """Watch `condition` from now on, at every control tick.
+        """Check `condition` from now on, at every control tick.
 
         The condition should look at `cell.truth`: a sensor read at every tick would use up its noise.
 
@@ -285,7 +285,7 @@ class Cell:
         return self.monitors.always(condition, name, values)
 
     def verify(self) -> None:
-        """Raise the first condition that broke, also if its exception was swallowed when it did."""
+        """Raise the error of the first condition that broke, even if the program swallowed it then."""
         self.monitors.verify()
 
     def __enter__(self) -> Cell:
@@ -299,7 +299,7 @@ class Cell:
 
 
 def _belt_of(belts: Mapping[str, ConveyorBelt], name: str | None) -> ConveyorBelt:
-    """A belt by its name, the first one without; raises BadArgument if there is none."""
+    """Return a belt by its name, the first one without; raise BadArgument if there is none."""
     belt = next(iter(belts.values()), None) if name is None else belts.get(name)
     if belt is None:
         known = ", ".join(belts) or "none"
@@ -308,12 +308,12 @@ def _belt_of(belts: Mapping[str, ConveyorBelt], name: str | None) -> ConveyorBel
 
 
 def prefix_of(name: str) -> str:
-    """What stands before all names of a robot in the physics."""
+    """Return the prefix of all names of a robot in the physics."""
     return f"{name}/" if name else ""
 
 
 def _named(robot: RobotModel | None, robots: Mapping[str, RobotModel] | None) -> Mapping[str, RobotModel]:
-    """The robots by their names; the only one needs none."""
+    """Return the robots by their names; a single robot needs none."""
     if robots is None:
         return {"": robot or gen3()}
     if robot is not None or not robots or not all(robots):
@@ -325,7 +325,7 @@ def _named(robot: RobotModel | None, robots: Mapping[str, RobotModel] | None) ->
 
 
 def _placed(scene: Scene, draws: SeededNoise) -> tuple[Scene, dict[str, int]]:
-    """The scene with parts placed and coloured for this round, and each part's colour number."""
+    """Return the scene with parts placed and coloured for this round, and each part's colour number."""
     parts: list[Part] = []
     numbers: dict[str, int] = {}
     for part in scene.parts:
@@ -344,18 +344,18 @@ def _placed(scene: Scene, draws: SeededNoise) -> tuple[Scene, dict[str, int]]:
 
 
 def current() -> Cell | None:
-    """The cell made last, while it lives."""
+    """Return the cell made last, while it exists; else None."""
     return None if _current is None else _current()
 
 
 def forget_current() -> None:
-    """From now on there is no current cell."""
+    """Forget the current cell."""
     global _current  # noqa: PLW0603  (see Cell)
     _current = None
 
 
 def world() -> dict[str, float]:
-    """The exact final state of the cell made last, flat; {} without one.
+    """Return the exact final state of the cell made last, flat; {} without one.
 
     Meant for mutabot's comparison of a mutant's world with the original's at the end of a test, not for robot
     programs.

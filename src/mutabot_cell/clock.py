@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 @contextmanager
 def simulated_time(cell: Cell) -> Iterator[None]:
-    """Inside, `time.sleep(s)` lets `s` seconds pass in the cell and costs no wall time.
+    """Let `time.sleep(s)` in this context advance the cell by `s` seconds, at no wall time.
 
     A program that wrote `from time import sleep` before keeps the real one; let it call `time.sleep`.
     """

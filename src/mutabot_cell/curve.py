@@ -1,4 +1,4 @@
-"""A function given by points."""
+"""A function defined by points."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from itertools import pairwise
 
 
 class Curve:
-    """Straight between points, and going on straight beyond them.
+    """A function that is linear between points, and beyond them.
 
     Args:
         inputs: of the points; each greater, or each smaller, than the one before.
@@ -20,13 +20,13 @@ class Curve:
         self._rises = inputs[-1] > inputs[0]
 
     def __call__(self, value: float) -> float:
-        """The output at this input."""
+        """Return the output for this input."""
         index = self._index(value)
         start, output = self._starts[index]
         return output + (value - start) * self._slopes[index]
 
     def slope(self, value: float) -> float:
-        """By how much the output changes with the input there."""
+        """Return the function's slope at this input."""
         return self._slopes[self._index(value)]
 
     def _index(self, value: float) -> int:

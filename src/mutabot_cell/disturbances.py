@@ -1,4 +1,4 @@
-"""Disturbances of a cell's things: what `world.toml` of this package names; those of sensors stand apart.
+"""Disturbances of a cell, named in this package's `world.toml`; those of sensors are in a file of their own.
 
 Each is a function of the cell, or of what it is made with, and of the change, which says what becomes of a
 number in SI units; and, by name, of `names` (which of the cell's things are meant), `random`, and options.
@@ -34,7 +34,7 @@ _STANDS = 0.5
 
 
 def part_mass(cell: Cell, change: Changed, *, names: str, random: Random) -> None:
-    """Mass of parts, kg, with their inertia: they are as large as before."""
+    """Change the mass of parts, kg, with their inertia; their size stays."""
     model = cell.simulation.model
     for body in _part_bodies(cell, names):
         before = float(model.body_mass[body])
@@ -47,7 +47,7 @@ def part_mass(cell: Cell, change: Changed, *, names: str, random: Random) -> Non
 def part_centre_of_mass(
     making: dict[str, Any], change: Changed, *, names: str, random: Random, axis: str
 ) -> None:
-    """Centre of mass of parts along an axis of theirs, m; the cell is made with it."""
+    """Change the centre of mass of parts along one of their axes, m; the cell is made with it."""
 
     def moved(part: Part) -> Part:
         centre = list(part.centre_of_mass or (0.0, 0.0, 0.0))
@@ -58,7 +58,7 @@ def part_centre_of_mass(
 
 
 def part_size(making: dict[str, Any], change: Changed, *, names: str, random: Random) -> None:
-    """Edges of parts, m; the cell is made with them."""
+    """Change the edge lengths of parts, m; the cell is made with them."""
 
     def resized(part: Part) -> Part:
         if isinstance(part, Box):
@@ -72,14 +72,14 @@ def part_size(making: dict[str, Any], change: Changed, *, names: str, random: Ra
 
 
 def part_position(cell: Cell, change: Changed, *, names: str, random: Random, axis: str) -> None:
-    """Where parts lie along an axis of the world, m."""
+    """Change the position of parts along a world axis, m."""
     for body in _part_bodies(cell, names):
         _place(cell, body)[_AXES.index(axis)] = change(float(_place(cell, body)[_AXES.index(axis)]))
     _forward(cell)
 
 
 def part_angle(cell: Cell, change: Changed, *, names: str, random: Random) -> None:
-    """How parts are turned about the vertical, rad."""
+    """Change the rotation of parts about the vertical, rad."""
     turn = quaternion_from_euler(0.0, 0.0, math.degrees(change(0.0)))
     for body in _part_bodies(cell, names):
         turned, place = np.zeros(4), _place(cell, body)
@@ -89,12 +89,12 @@ def part_angle(cell: Cell, change: Changed, *, names: str, random: Random) -> No
 
 
 def friction_of_pads(cell: Cell, change: Changed, *, names: str, random: Random) -> None:
-    """Friction of parts against what takes hold of them: the pads of fingers, the lip of a suction cup."""
+    """Change the friction of parts against what grips them: the pads of fingers, the lip of a suction cup."""
     _change_pairs(cell, change, names, is_in_grip=True)
 
 
 def friction_of_surfaces(cell: Cell, change: Changed, *, names: str, random: Random) -> None:
-    """Friction of parts on fixtures, and on all else that they may lie on."""
+    """Change the friction of parts on fixtures, and on everything else that they may lie on."""
     _change_pairs(cell, change, names, is_in_grip=False)
     model = cell.simulation.model
     for part in _named([one.name for one in cell.simulation.scene.parts], names, "part"):
@@ -103,14 +103,14 @@ def friction_of_surfaces(cell: Cell, change: Changed, *, names: str, random: Ran
 
 
 def grip_force(cell: Cell, change: Changed, *, names: str, random: Random) -> None:
-    """Force of grippers, as a part of what they are commanded: a worn one is weaker."""
+    """Change the force of grippers, relative to the command: a worn one is weaker."""
     for name, system in cell.robots.items():
         if fnmatchcase(name, names):
             system.gripper.set_strength(change(1.0))
 
 
 def vacuum_leak(cell: Cell, change: Changed, *, names: str, random: Random) -> None:
-    """Opening of suction cups that a worn lip leaves, m²."""
+    """Change the opening that a worn lip leaves in suction cups, m²."""
     found = [
         one for name, one in cell.robots.items() if fnmatchcase(name, names) and one.vacuum() is not None
     ]
@@ -121,7 +121,7 @@ def vacuum_leak(cell: Cell, change: Changed, *, names: str, random: Random) -> N
 
 
 def fixture_position(cell: Cell, change: Changed, *, names: str, random: Random, axis: str) -> None:
-    """Where fixtures stand along an axis of the world, m, with the parts that stand on them."""
+    """Change the position of fixtures along a world axis, m, with the parts that stand on them."""
     for name in _fixtures(cell, names):
         body = cell.simulation.id_of("body", name)
         before = float(cell.simulation.model.body_pos[body][_AXES.index(axis)])
@@ -133,7 +133,7 @@ def fixture_position(cell: Cell, change: Changed, *, names: str, random: Random,
 
 
 def fixture_angle(cell: Cell, change: Changed, *, names: str, random: Random) -> None:
-    """How fixtures are turned about the vertical, rad; parts on them keep their places."""
+    """Change the rotation of fixtures about the vertical, rad; parts on them keep their places."""
     turn, model = quaternion_from_euler(0.0, 0.0, math.degrees(change(0.0))), cell.simulation.model
     for name in _fixtures(cell, names):
         body, turned = cell.simulation.id_of("body", name), np.zeros(4)
@@ -143,7 +143,7 @@ def fixture_angle(cell: Cell, change: Changed, *, names: str, random: Random) ->
 
 
 def base_position(cell: Cell, change: Changed, *, names: str, random: Random, axis: str) -> None:
-    """Where robots stand along an axis of the world, m: their controllers take them to be elsewhere."""
+    """Change the position of robots along a world axis, m, without the knowledge of their controllers."""
     for body in [system.robot.body for system in robots(cell, names)]:
         place = cell.simulation.model.body_pos[body]
         place[_AXES.index(axis)] = change(float(place[_AXES.index(axis)]))
@@ -151,7 +151,7 @@ def base_position(cell: Cell, change: Changed, *, names: str, random: Random, ax
 
 
 def tool_position(cell: Cell, change: Changed, *, names: str, random: Random, axis: str) -> None:
-    """Where tools sit along an axis of the flange, m: the controllers take them to be elsewhere."""
+    """Change the position of tools along a flange axis, m, without the knowledge of the controllers."""
     for system in robots(cell, names):
         tool = system.robot.model.tool
         if tool is None:
@@ -162,7 +162,7 @@ def tool_position(cell: Cell, change: Changed, *, names: str, random: Random, ax
 
 
 def joint_calibration(cell: Cell, change: Changed, *, names: str, random: Random, joint: int) -> None:
-    """What a joint's encoder reads too much, rad."""
+    """Change the error of a joint's encoder, rad."""
     for system in robots(cell, names):
         error = system.robot.encoder_error.tolist()
         error[joint - 1] = change(error[joint - 1])
@@ -170,7 +170,7 @@ def joint_calibration(cell: Cell, change: Changed, *, names: str, random: Random
 
 
 def joint_friction(cell: Cell, change: Changed, *, names: str, random: Random) -> None:
-    """Dry friction of all joints, Nm."""
+    """Change the dry friction of all joints, Nm."""
     for system in robots(cell, names):
         losses = cell.simulation.model.dof_frictionloss[system.robot.dofs]
         losses[:] = [max(change(float(one)), 0.0) for one in losses]
@@ -178,7 +178,7 @@ def joint_friction(cell: Cell, change: Changed, *, names: str, random: Random) -
 
 
 def servo_gain(cell: Cell, change: Changed, *, names: str, random: Random) -> None:
-    """Stiffness of all joints' servos, Nm/rad; the planner reckons with the nominal one."""
+    """Change the stiffness of all joints' servos, Nm/rad; the planner uses the nominal one."""
     model = cell.simulation.model
     for system in robots(cell, names):
         gains = [change(float(one)) for one in model.actuator_gainprm[system.robot.servos, 0]]
@@ -187,7 +187,7 @@ def servo_gain(cell: Cell, change: Changed, *, names: str, random: Random) -> No
 
 
 def actuation_delay(cell: Cell, change: Changed, *, names: str, random: Random) -> None:
-    """By how much later servos get their setpoints, s, in whole control ticks; also those of fingers.
+    """Delay the setpoints of servos, s, in whole control ticks; also those of fingers.
 
     The protective stop compares joints with the setpoints that the servos have.
     """
@@ -210,7 +210,7 @@ def actuation_delay(cell: Cell, change: Changed, *, names: str, random: Random) 
 
 
 def backlash(cell: Cell, change: Changed, *, names: str, random: Random, joint: int) -> None:
-    """Play of a joint, rad: it follows its setpoint when that has gone through the play."""
+    """Change the play of a joint, rad: it follows its setpoint once that has gone through the play."""
     simulation, half = cell.simulation, change(0.0) / 2
     for system in robots(cell, names):
         number = system.robot.servos.start + joint - 1
@@ -230,19 +230,19 @@ def _add_play(setpoints: Array, servo: int, half: float, hooks: list[Callable[[]
 
 
 def belt_speed(cell: Cell, change: Changed, *, names: str, random: Random) -> None:
-    """Speed of belts as a part of what they are commanded; their encoders tell the truth."""
+    """Change the speed of belts relative to the command; their encoders show the true speed."""
     for name in _belts(cell, names):
         cell.belt(name).drive_factor = change(1.0)
 
 
 def belt_jitter(cell: Cell, change: Changed, *, names: str, random: Random) -> None:
-    """Standard deviation of the speed of belts, as a part of it."""
+    """Change the standard deviation of the speed of belts, relative to it."""
     for name in _belts(cell, names):
         cell.belt(name).set_jitter(change(0.0))
 
 
 def belt_encoder(cell: Cell, change: Changed, *, names: str, random: Random) -> None:
-    """What encoders of belts read, as a part of how far the belts have gone."""
+    """Change what encoders of belts read, relative to the distance that the belts have run."""
     for name in _belts(cell, names):
         cell.belt(name).encoder_factor = change(1.0)
 
@@ -255,7 +255,7 @@ def _remake_parts(making: dict[str, Any], names: str, remade: Callable[[Part], P
 
 
 def _change_pairs(cell: Cell, change: Changed, names: str, *, is_in_grip: bool) -> None:
-    """Change what pairs of shapes say, without which friction of the shapes themselves has no effect."""
+    """Change the friction of pairs of shapes, which overrides that of the shapes themselves."""
     model, scene = cell.simulation.model, cell.simulation.scene
     parts = {int(model.geom(name).id) for name in _named([one.name for one in scene.parts], names, "part")}
     for pair in range(model.npair):
@@ -269,7 +269,7 @@ def _change_pairs(cell: Cell, change: Changed, names: str, *, is_in_grip: bool) 
 
 
 def _carried(cell: Cell, fixture: str) -> list[int]:
-    """The bodies of the parts that stand on a fixture."""
+    """Return the bodies of the parts that stand on a fixture."""
     model, data = cell.simulation.model, cell.simulation.data
     body, geom = cell.simulation.id_of("body", fixture), model.geom(fixture).id
     half, axes = model.geom_size[geom], data.xmat[body].reshape(3, 3)
@@ -282,7 +282,7 @@ def _carried(cell: Cell, fixture: str) -> list[int]:
 
 
 def _part_bodies(cell: Cell, names: str) -> list[int]:
-    """The bodies of the parts that are meant."""
+    """Return the bodies of the parts with these names."""
     found = [part.name for part in cell.simulation.scene.parts]
     return [cell.simulation.id_of("body", name) for name in _named(found, names, "part")]
 
@@ -296,7 +296,7 @@ def _belts(cell: Cell, names: str) -> list[str]:
 
 
 def robots(cell: Cell, names: str) -> list[RobotSystem]:
-    """The robots that are meant; the only one has no name."""
+    """Return the robots with these names; a single one has no name."""
     return [cell.robots[name] for name in _named([*cell.robots], names, "robot")]
 
 
@@ -308,7 +308,7 @@ def _named(found: Sequence[str], names: str, what: str) -> list[str]:
 
 
 def _place(cell: Cell, body: int) -> Array:
-    """Position and quaternion of a part, which may be written."""
+    """Return the position and quaternion of a part as a writable view."""
     model = cell.simulation.model
     place: Array = cell.simulation.data.qpos[model.jnt_qposadr[model.body_jntadr[body]] :][:7]
     return place
@@ -319,6 +319,6 @@ def _forward(cell: Cell) -> None:
 
 
 def _settle(cell: Cell) -> None:
-    """Let constants of the model follow a change; with the cell's own data, the joints would go to zero."""
+    """Recompute the model's constants after a change; the cell's own data would set the joints to zero."""
     mujoco.mj_setConst(cell.simulation.model, mujoco.MjData(cell.simulation.model))
     _forward(cell)

@@ -1,4 +1,4 @@
-"""Everything a work cell can raise.
+"""The errors that a work cell can raise.
 
     CellError
     ├── SimulatorMissing (ImportError)     mujoco or a planner library is not installed
@@ -23,7 +23,7 @@ from collections.abc import Mapping, Sequence
 
 
 class CellError(Exception):
-    """Base of all errors of a work cell."""
+    """Base class of all errors of a work cell."""
 
 
 class SimulatorMissing(CellError, ImportError):
@@ -39,7 +39,7 @@ class BadArgument(CellError, ValueError):
 
 
 class BadModel(CellError, ValueError):
-    """A model file of a robot, a tool or a scene cannot be used; the message says what to add to it."""
+    """A model file of a robot, tool or scene cannot be used; the message says what to add to it."""
 
 
 class LimitError(CellError):
@@ -83,14 +83,14 @@ class MotionRefused(LimitError):
 
 
 class PathLost(LimitError):
-    """What the tool followed led it out of the arm's limits; the arm brakes to rest by itself.
+    """The motion that the tool followed left the arm's limits; the arm brakes to rest by itself.
 
     Its `limit` is "reach", "joint 1 speed", "joint 1 angle" and so on.
     """
 
 
 class ProtectiveStop(CellError):
-    """The arm met a resistance it should not have, and stopped.
+    """The arm met an unexpected resistance, and stopped.
 
     Attributes:
         time: simulated time of the stop, s.
@@ -132,7 +132,7 @@ class ProtectiveStop(CellError):
 
 
 class ProgramsStuck(CellError):
-    """Programs that run together had not ended in time, as when they wait for each other.
+    """Programs that run together did not end in time, as when they wait for each other.
 
     Attributes:
         time: simulated time at which this was noticed, s.

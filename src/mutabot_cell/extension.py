@@ -1,4 +1,4 @@
-"""What the cell brings to mutabot: its vocabulary, projects to start from, and versions that count."""
+"""The extension by which mutabot finds this package's vocabulary, project templates and versions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A fingerprint of a model, which anybody may change at any time."""
+"""A fingerprint of a model, which any code may change at any time."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _PIECE = 1024
 
 
 class Fingerprint:
-    """Tells models apart, to the bit."""
+    """Tells models apart, bit by bit."""
 
     def __init__(self, model: mujoco.MjModel) -> None:
         self._model = model
@@ -26,7 +26,7 @@ class Fingerprint:
         self._digest = b""
 
     def now(self) -> bytes:
-        """Of the model as it is now."""
+        """Return the fingerprint of the model as it is now."""
         mujoco.mj_saveModel(self._model, None, self._saved)
         if not self._digest:
             self._read(range(len(self._now)))

@@ -1,4 +1,4 @@
-"""For a test suite: pytest fixtures and the hook that fails a test whose condition broke in silence.
+"""Pytest fixtures for a test suite, and the hook that fails a test whose broken condition was swallowed.
 
 # conftest.py
 from mutabot_cell.fixtures import *  # noqa: F403
@@ -24,7 +24,7 @@ __all__ = ["new_cell", "pytest_runtest_call"]
 
 @pytest.fixture
 def new_cell() -> Iterator[Callable[..., Cell]]:
-    """Makes cells (arguments as for `Cell`); from then on until the test's end `time.sleep` is simulated."""
+    """Return a function that makes cells (arguments as for `Cell`) and simulates `time.sleep` from then."""
     with ExitStack() as stack:
 
         def make(*args: object, **options: object) -> Cell:

@@ -30,7 +30,7 @@ class Wrench:
 
     @property
     def force(self) -> float:
-        """How large the force is, N."""
+        """The magnitude of the force, N."""
         return float(np.linalg.norm((self.fx, self.fy, self.fz)))
 
 
@@ -52,11 +52,11 @@ class ForceSensor:
         self._zero = np.zeros(6)
 
     def wrench(self) -> Wrench:
-        """The reading of this tick, minus what it read when `zero` was called."""
+        """Return the reading of this tick, minus the reading when `zero` was called."""
         return Wrench(*(self._measured() - self._zero).tolist())
 
     def zero(self) -> None:
-        """From now on it reads 0 for what it reads now, as long as the tool keeps its orientation."""
+        """Read 0 for the present load from now on, as long as the tool keeps its orientation."""
         self._zero = self._measured().copy()
 
     def _measured(self) -> Array:
@@ -72,7 +72,7 @@ class ForceSensor:
 
 
 def true_wrench(simulation: Simulation, robot: Robot) -> Array:
-    """What the tool exerts on the flange, force and torque, shape (6,), in the flange's frame, N and Nm.
+    """Return the force and torque of the tool on the flange, shape (6,), in the flange's frame, N and Nm.
 
     It is what inverse dynamics finds in the connection, with contacts, vacuum and inertia; 0 without a tool.
     """

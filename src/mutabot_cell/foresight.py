@@ -1,4 +1,4 @@
-"""What hooks of the simulation know beforehand, so that control ticks can be stepped in stretches.
+"""Predicts what hooks of the simulation will do, so that several control ticks can be stepped at once.
 
 What drivers and checks compute between two ticks can take as long as the physics. In a stretch, drivers lay
 down the inputs of all its ticks first, and checks look at what all its ticks were like afterwards. The first
@@ -19,7 +19,7 @@ Hook = Callable[[], None]
 
 @dataclass(frozen=True, slots=True)
 class InputPlan:
-    """What a driver does instead of being called before each tick.
+    """The inputs that a driver plans ahead instead of being called before each tick.
 
     Attributes:
         write: writes its servos' inputs, an array of the shape (ticks, physics steps in a tick, servos), and
@@ -33,7 +33,7 @@ class InputPlan:
 
 @dataclass(frozen=True, slots=True)
 class Glance:
-    """What a check does instead of being called after each tick but the last one of a stretch.
+    """A cheap test that replaces calling a check after each tick but the last one of a stretch.
 
     Attributes:
         until: gives within how many ticks it must be called again, whatever happens; at least 1.
@@ -52,7 +52,7 @@ class Glance:
 
 
 class Foresight:
-    """What is known of a simulation's hooks. One of which nothing is known is called at each tick.
+    """The known plans of a simulation's hooks. A hook without a plan is called at each tick.
 
     Attributes:
         notes: what is to be called after each tick of a stretch.
@@ -66,11 +66,11 @@ class Foresight:
         self.notes: list[StretchNote] = []
 
     def drives(self, hook: Hook, plan: InputPlan) -> None:
-        """In a stretch, this plan stands for `hook`, which is called before each tick."""
+        """In a stretch, use this plan instead of `hook`, which is called before each tick."""
         self._plans[hook] = plan
 
     def checks(self, hook: Hook, glance: Glance) -> None:
-        """In a stretch, it is enough to glance instead of calling `hook` after each tick."""
+        """In a stretch, use this cheap test instead of calling `hook` after each tick."""
         self._glances[hook] = glance
         if glance.note is not None:
             self.notes.append(glance.note)
@@ -80,7 +80,7 @@ class Foresight:
             self._passed.append(glance.passed)
 
     def write(self, drivers: Sequence[Hook], checks: Sequence[Hook], inputs: Array) -> int:
-        """Lay down the inputs of as many ticks as can be stepped in one stretch; gives how many these are.
+        """Write the inputs of as many ticks as can be stepped in one stretch; return how many these are.
 
         It is 1 as long as there is a hook of which nothing is known.
 
@@ -114,7 +114,7 @@ class Foresight:
         return ticks
 
     def keep(self, stretch: Stretch, ticks: int) -> None:
-        """So many ticks have passed; after the last of them the hooks are called."""
+        """Record that ticks have passed; after the last of them the hooks are called."""
         for plan in self._plans.values():
             plan.keep(ticks)
         for passed in self._passed:

@@ -16,20 +16,20 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Position:
-    """A point in m, in the frame that the giving function names."""
+    """A point in m, in the frame that the function returning it names."""
 
     x: float
     y: float
     z: float
 
     def __array__(self, dtype: object = None, copy: bool | None = None) -> Array:
-        """Shape (3,)."""
+        """Return the position as an array, shape (3,)."""
         return np.array([self.x, self.y, self.z])
 
 
 @dataclass(frozen=True, slots=True)
 class Pose:
-    """A position in m and Euler angles in degrees, in the frame that the giving function names."""
+    """A position in m and Euler angles in degrees, in the frame that the function returning it names."""
 
     x: float
     y: float
@@ -40,18 +40,18 @@ class Pose:
 
     @property
     def position(self) -> Position:
-        """The place alone."""
+        """The position without the angles."""
         return Position(self.x, self.y, self.z)
 
 
 def pose_of(position: Array, rotation: Array) -> Pose:
-    """The pose of a position, shape (3,), m, and a rotation matrix, shape (3, 3)."""
+    """Return the pose of a position, shape (3,), m, and a rotation matrix, shape (3, 3)."""
     x, y, z = position.tolist()
     return Pose(x, y, z, *euler_from_rotation(rotation))
 
 
 def rotation_from_euler(theta_x: float, theta_y: float, theta_z: float) -> Array:
-    """Rotation matrix, shape (3, 3), from Euler angles in degrees."""
+    """Return the rotation matrix, shape (3, 3), for Euler angles in degrees."""
     cx, cy, cz = (math.cos(math.radians(a)) for a in (theta_x, theta_y, theta_z))
     sx, sy, sz = (math.sin(math.radians(a)) for a in (theta_x, theta_y, theta_z))
     return np.array(
@@ -64,7 +64,7 @@ def rotation_from_euler(theta_x: float, theta_y: float, theta_z: float) -> Array
 
 
 def quaternion_from_euler(theta_x: float, theta_y: float, theta_z: float) -> Array:
-    """Unit quaternion w, x, y, z, shape (4,), from Euler angles in degrees."""
+    """Return the unit quaternion w, x, y, z, shape (4,), for Euler angles in degrees."""
     cx, cy, cz = (math.cos(math.radians(a) / 2) for a in (theta_x, theta_y, theta_z))
     sx, sy, sz = (math.sin(math.radians(a) / 2) for a in (theta_x, theta_y, theta_z))
     return np.array(
@@ -78,7 +78,7 @@ def quaternion_from_euler(theta_x: float, theta_y: float, theta_z: float) -> Arr
 
 
 def euler_from_rotation(rotation: Array) -> tuple[float, float, float]:
-    """Euler angles in degrees, each in (-180, 180], of a rotation matrix of shape (3, 3)."""
+    """Return the Euler angles in degrees, each in (-180, 180], of a rotation matrix of shape (3, 3)."""
     (r00, r01, _), (r10, r11, _), (r20, r21, r22) = rotation.tolist()
     sine_y = -r20
     if abs(sine_y) > 1.0 - 1e-12:  # gimbal lock: only theta_z - theta_x (or the sum) is defined
@@ -90,7 +90,7 @@ def euler_from_rotation(rotation: Array) -> tuple[float, float, float]:
 
 
 def rotation_vector(rotation: Array) -> Array:
-    """Axis times angle (rad), shape (3,), of a rotation matrix; the angle is in [0, pi]."""
+    """Return axis times angle (rad), shape (3,), of a rotation matrix; the angle is in [0, pi]."""
     axis = np.array(
         [
             rotation[2, 1] - rotation[1, 2],
@@ -113,7 +113,7 @@ def rotation_vector(rotation: Array) -> Array:
 
 
 def rotation_about(vector: Array) -> Array:
-    """Rotation matrix, shape (3, 3), of a rotation vector (axis times angle in rad), shape (3,)."""
+    """Return the rotation matrix, shape (3, 3), of a rotation vector, axis times angle (rad), shape (3,)."""
     angle = float(np.linalg.norm(vector))
     if angle < 1e-12:
         return np.eye(3)

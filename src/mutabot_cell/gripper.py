@@ -1,4 +1,4 @@
-"""The gripper as its user knows it: a command, a force, and what it reports of itself."""
+"""The gripper as robot programs use it: a command, a force, and its measurements."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class Gripper:
         simulation.foresight.checks(self._detect, Glance(lambda: LONGEST, passed=self._detect_in))
 
     def set_force(self, newtons: float) -> None:
-        """Grip force at each pad, N; the 2F-85 gives 20..235 N.
+        """Set the grip force at each pad, N; the 2F-85 has 20..235 N.
 
         Raises:
             BadArgument: outside that range.
@@ -67,7 +67,7 @@ class Gripper:
         self._apply_force()
 
     def set_strength(self, strength: float) -> None:
-        """Wear the gripper: it grips with this part of the force that it is set to, now and from now on.
+        """Wear the gripper: it grips with this fraction of the force that it is set to, now and from now on.
 
         Its object detection goes by the motor's current, and knows no better.
         """
@@ -79,7 +79,7 @@ class Gripper:
         self._simulation.model.actuator_forcerange[self._servo] = (-self._force, self._force)
 
     def set_speed(self, metres_per_second: float) -> None:
-        """Speed at which the opening changes, m/s; that of the 2F-85 is 0.020..0.150 m/s.
+        """Set the speed at which the opening changes, m/s; the 2F-85 has 0.020..0.150 m/s.
 
         Raises:
             BadArgument: outside that range.
@@ -114,11 +114,11 @@ class Gripper:
                     break
 
     def commanded(self) -> float:
-        """The last command, 0..1."""
+        """Return the last command, 0..1."""
         return self._target / self._fingers.stroke
 
     def opening(self) -> float:
-        """Measured distance between the pads, m, with noise; one reading per tick."""
+        """Return the measured distance between the pads, m, with noise; one reading per tick."""
         ticks, reading = self._read
         if ticks != self._simulation.ticks:
             reading = self._noise.add("opening", self._fingers.stroke - self._robot.closed_path())
@@ -126,7 +126,7 @@ class Gripper:
         return reading
 
     def holding(self) -> bool:
-        """Whether the fingers press and are blocked before the commanded opening: something is between them.
+        """Return whether the fingers press and are blocked by something between them.
 
         Like the real gripper's object detection, it knows only its own position, speed and motor current, and
         changes its report when the new state has lasted for 30 ms.
@@ -138,7 +138,7 @@ class Gripper:
         self._count(self._grips(path, speed, force))
 
     def _grips(self, path: float, speed: float, force: float) -> bool:
-        """Whether the fingers are blocked, press and stand."""
+        """Return whether the fingers are blocked, press and do not move."""
         return (
             abs(self._target - path) > _BLOCKED and abs(force) > 0.9 * self._force and abs(speed) < _STANDING
         )
@@ -159,7 +159,7 @@ class Gripper:
         self._simulation.setpoints[:, self._servo] = self._input(self._setpoint)
 
     def _next(self, setpoint: float) -> float:
-        """The setpoint one tick later."""
+        """Return the setpoint one tick later."""
         missing = self._target - setpoint
         return setpoint + math.copysign(min(self._speed * TICK, abs(missing)), missing)
 
@@ -167,7 +167,7 @@ class Gripper:
         return self._control(setpoint)
 
     def _write(self, inputs: Array) -> int:
-        """`_drive`, for the coming ticks."""
+        """Write the setpoints of the coming ticks, as `_drive` does for one."""
         wanted, setpoint = inputs[:, :, self._servo], self._setpoint
         if setpoint == self._target:
             self._planned = [setpoint] * len(inputs)
@@ -184,6 +184,6 @@ class Gripper:
         self._setpoint = self._planned[ticks - 1]
 
     def _detect_in(self, stretch: Stretch, ticks: int) -> None:
-        """`_detect`, for ticks of a stretch."""
+        """Detect a grip in each tick of a stretch, as `_detect` does for one."""
         for reading in stretch.readings[:ticks, self._robot.sensors].tolist():
             self._count(self._grips(*self._robot.finger_state_of(*reading)))

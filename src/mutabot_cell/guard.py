@@ -1,4 +1,4 @@
-"""The protective stop: what the arm's controller looks at after every control tick."""
+"""The protective stop: what the arm's controller checks after every control tick."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _SURELY = 1.0 - 1e-9
 
 
 class Guard:
-    """Finds why an arm must stop: something pushes it, a joint lags behind, a motor is too warm.
+    """Finds the reasons to stop an arm: something pushes it, a joint lags, or a motor is too warm.
 
     Attributes:
         explained: what else than contacts acts on the tool, as a torque on each joint, shape (joints,), Nm.
@@ -53,11 +53,11 @@ class Guard:
         self._looks_closer = False
 
     def state(self) -> tuple[int, bytes]:
-        """What it remembers from one tick to the next, to compare two runs to the bit."""
+        """Return the guard's memory between ticks, to compare two runs bit by bit."""
         return self.pressed_ticks, self._heat.tobytes()
 
     def overload(self, error: Callable[[], Array]) -> ProtectiveStop | None:
-        """Let the motors warm up with the square of their torque; the stop that is due if one is too warm.
+        """Warm the motors by the square of their torque; return the protective stop if one is too warm.
 
         Args:
             error: gives the following errors, shape (joints,), rad.
@@ -80,7 +80,7 @@ class Guard:
         )
 
     def collision(self, error: Array) -> ProtectiveStop | None:
-        """The stop that is due because something pushes the arm, or a joint lags behind.
+        """Return the protective stop if something pushes the arm, or a joint lags behind; else None.
 
         Args:
             error: the following errors, shape (joints,), rad.
@@ -116,19 +116,19 @@ class Guard:
         )
 
     def begin_stretch(self) -> None:
-        """A stretch may begin: find out whether its constraints' torques are of more than contacts."""
+        """Prepare for a stretch: find out whether the constraints' torques come from more than contacts."""
         model = self._simulation.model
         rubs = model.dof_frictionloss.any() or model.tendon_frictionloss.any()
         self._looks_closer = bool(self.explained or self.payload or rubs)
 
     def note(self, stretch: Stretch, number: int) -> None:
-        """After a tick of a stretch (its number): remember what the stretch does not."""
+        """Record after a tick of a stretch (its number) what the stretch itself does not keep."""
         if self._looks_closer:
             stretch.reach(number)
             self._pushes[number] = self._external()
 
     def quiet(self, stretch: Stretch, known: int, ticks: int) -> int:
-        """See `foresight.Glance`."""
+        """Return how many ticks of a stretch need no stop; see `foresight.Glance`."""
         dofs, now = self._robot.dofs, slice(known, ticks)
         external = self._pushes[now] if self._looks_closer else stretch.constraints[now, dofs]
         pushes = (external / self._torque_limit).ravel()
@@ -150,11 +150,11 @@ class Guard:
         return ticks
 
     def passed(self, stretch: Stretch, ticks: int) -> None:
-        """See `foresight.Glance`: the motors have warmed up meanwhile."""
+        """Warm the motors for the ticks that have passed; see `foresight.Glance`."""
         self._heat = next((heat for number, heat in reversed(self._heats) if number < ticks), self._heat)
 
     def _warmer(self, heat: Array, torques: Array) -> Array:
-        """How warm the motors are when these torques have lasted for `_WARMING_TICKS`."""
+        """Return the motors' warmth after these torques have lasted for `_WARMING_TICKS`."""
         share = _WARMING_TICKS * TICK / WARMING_TIME
         warmer: Array = heat + share * ((torques / self._continuous) ** 2 - heat)
         return warmer
@@ -164,7 +164,7 @@ class Guard:
         return bool(heat.dot(heat) <= 1.0 or heat.max() <= 1.0)
 
     def _external(self) -> Array:
-        """Torque on each joint that motors, friction, the arm and its declared payload do not explain, Nm."""
+        """Return each joint's torque beyond motors, friction, the arm and its declared payload, Nm."""
         torque = self._constraints
         for explain in self.explained:
             torque = torque + explain()
@@ -175,7 +175,7 @@ class Guard:
         return torque
 
     def _friction(self) -> Array:
-        """Torque on each joint from dry friction in it, which MuJoCo counts among the constraints, Nm."""
+        """Return each joint's torque from its dry friction, which MuJoCo counts among the constraints, Nm."""
         data = self._simulation.data
         torque = np.zeros(len(self._heat))
         for row in range(data.ne, data.ne + data.nf):  # rows of friction follow those of equalities
@@ -186,7 +186,7 @@ class Guard:
         return torque
 
     def _payload_torque(self) -> Array:
-        """Torque on each joint from the payload's weight and inertia, Nm."""
+        """Return each joint's torque from the payload's weight and inertia, Nm."""
         cell_model, data = self._simulation.model, self._simulation.data
         mujoco.mj_rnePostConstraint(cell_model, data)
         # acceleration minus gravity of the payload's centre of mass, as an accelerometer there would read it
@@ -199,7 +199,7 @@ class Guard:
 
 
 def strongest_contact(simulation: Simulation, robot: Robot) -> tuple[str, str, float]:
-    """The robot's part, what it touches, and the normal force (N) of the robot's strongest contact.
+    """Return the robot's strongest contact: its part, what it touches, and the normal force (N).
 
     A box between the fingers counts as the robot's part; ("", "", 0.0) without a contact.
     """
@@ -221,5 +221,5 @@ def strongest_contact(simulation: Simulation, robot: Robot) -> tuple[str, str, f
 
 
 def _name(model: mujoco.MjModel, geom: int) -> str:
-    """Of a shape; files often name bodies only."""
+    """Return the name of a shape, or of its body: files often name only bodies."""
     return str(model.geom(geom).name or model.body(int(model.geom_bodyid[geom])).name)

@@ -1,4 +1,4 @@
-"""Light barriers: whether anything stands between a lamp and its receiver."""
+"""Light barriers, which detect anything between a lamp and its receiver."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SOLID = np.array([1, 0, 0, 0, 0, 0], dtype=np.uint8)
 
 
 class LightBarriers:
-    """The light barriers of a cell. Each looks at its rate, and holds what it saw until it looks again."""
+    """The light barriers of a cell. Each samples at its rate, and holds the result until the next sample."""
 
     def __init__(self, simulation: Simulation, barriers: Iterable[LightBarrier]) -> None:
         self._simulation = simulation
@@ -32,15 +32,15 @@ class LightBarriers:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of all of them."""
+        """The names of all light barriers."""
         return tuple(self._barriers)
 
     def true_state(self, name: str) -> bool:
-        """Whether something stands in the beam of `name` at this moment: for checks."""
+        """Return whether something interrupts the beam of `name` at this moment; for checks."""
         return self._is_hit(self._barriers[name])
 
     def is_interrupted(self, name: str | None = None) -> bool:
-        """Whether something stands in the beam; without a name, of the first one.
+        """Return whether something interrupts the beam, as last sampled; of the first one without a name.
 
         Raises:
             SensorError: there is no such light barrier.
@@ -56,7 +56,7 @@ class LightBarriers:
         return self._read[name][1]
 
     def _until(self) -> int:
-        """Control ticks until one has to look."""
+        """Return the number of control ticks until the next sample of any barrier."""
         return min(period - self._simulation.ticks % period for period in self._periods)
 
     def _look(self) -> None:
@@ -74,5 +74,5 @@ class LightBarriers:
 
 
 def _period(barrier: LightBarrier) -> int:
-    """Control ticks from one look to the next."""
+    """Return the number of control ticks between samples."""
     return max(1, round(1.0 / (barrier.rate * TICK)))

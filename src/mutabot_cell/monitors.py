@@ -15,7 +15,7 @@ MonitoredValues = Callable[[], Mapping[str, object]]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Condition:
-    """One condition under watch."""
+    """A condition that is monitored."""
 
     name: str
     holds: Callable[[], object]
@@ -23,7 +23,7 @@ class Condition:
 
 
 class Monitors:
-    """Watches conditions; remembers what broke, so that a swallowed exception still fails the test."""
+    """Checks conditions, and remembers broken ones, so that a swallowed exception still fails the test."""
 
     def __init__(self, simulation: Simulation, values: MonitoredValues) -> None:
         self._simulation = simulation
@@ -36,14 +36,14 @@ class Monitors:
     def always(
         self, condition: Callable[[], object], name: str, values: MonitoredValues | None = None
     ) -> Condition:
-        """Watch `condition` from now on, at every tick. See `Cell.always`."""
+        """Check `condition` from now on, at every tick. See `Cell.always`."""
         watched = Condition(name, condition, values or self._values)
         self._watched.append(watched)
         self._check()
         return watched
 
     def forget(self, condition: Condition) -> None:
-        """Stop watching."""
+        """Stop checking a condition."""
         if condition in self._watched:
             self._watched.remove(condition)
 

@@ -1,4 +1,4 @@
-"""A motion that was started and goes on by itself while time passes."""
+"""A motion that was started and continues while time passes."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Protocol
 
 
 class _Mover(Protocol):
-    """What a move needs of its arm."""
+    """The interface of an arm for its moves."""
 
     def is_under_way(self, move: Move) -> bool: ...
 
@@ -16,7 +16,7 @@ class _Mover(Protocol):
 
 
 class Move:
-    """A motion of the arm that does not block: it goes on whenever simulated time passes.
+    """A motion of the arm that does not block: it continues whenever simulated time passes.
 
         move = cell.arm.start_move_by(y=0.2)
         while not move.done:
@@ -43,7 +43,7 @@ class Move:
         self._arm.finish(self)
 
     def stop(self) -> None:
-        """Brake on the path, and let time pass until the tool stands (on a tracked belt: stands on the belt).
+        """Brake on the path, and wait until the tool has stopped (on a tracked belt: relative to the belt).
 
         Does nothing if the motion has ended.
 
@@ -54,6 +54,6 @@ class Move:
         self.wait()
 
     def brake(self) -> None:
-        """Begin to brake on the path, and return at once. Does nothing if the motion has ended."""
+        """Begin to brake on the path, and return at once. Do nothing if the motion has ended."""
         if not self.done:
             self._arm.brake(self)

@@ -1,4 +1,4 @@
-"""Whether what computes the physics and the motions is what was imported.
+"""Checks that the code that computes physics and motions is the code that was imported.
 
 What processes of a campaign remember together holds only for that: a test may put something else in the place
 of a step of the physics, of a function of numpy or of a class that plans. So all that the code in question
@@ -19,7 +19,7 @@ _NamedValues = Mapping[str, Any]
 
 
 class Originals:
-    """Notes what the code of some modules depends on, and compares it later.
+    """Records what the code of some modules depends on, and compares it later.
 
     Args:
         modules: names of modules, and of packages with a dot behind, of which all that is loaded counts.
@@ -45,7 +45,7 @@ class Originals:
         self._is_of_library = all(_is_native(library) for library in libraries)
 
     def are_in_place(self, *objects: object) -> bool:
-        """Whether neither it nor a method of these objects has been replaced."""
+        """Return whether neither that code nor a method of these objects has been replaced."""
         try:
             return (
                 self._is_of_library
@@ -79,13 +79,13 @@ _known: dict[tuple[str, ...], Originals] = {}
 
 
 def note(*libraries: ModuleType) -> None:
-    """Note all of it, once it is imported, and what it uses of these libraries."""
+    """Record all code, once it is imported, and what it uses of these libraries."""
     for names in (STRETCHES, MOTIONS):
         _known[names] = Originals(names, libraries)
 
 
 def are_original(names: tuple[str, ...], *objects: object) -> bool:
-    """Whether ``STRETCHES`` or ``MOTIONS``, and the methods of these objects, are what was imported."""
+    """Return whether ``STRETCHES`` or ``MOTIONS``, and the methods of these objects, are unchanged."""
     known = _known.get(names)
     return known is not None and known.are_in_place(*objects)
 
@@ -118,7 +118,7 @@ def _names_in(code: CodeType) -> Iterator[str]:
 
 
 def _is_native(library: ModuleType) -> bool:
-    """Whether the functions of MuJoCo are its own: a test may have been there before us."""
+    """Return whether MuJoCo's functions are its own; a test may have replaced them before."""
     if library.__name__ != "mujoco":
         return True
     steps = ("mj_step", "mj_getState", "mj_setState", "mj_copyData", "mj_saveModel", "mj_forward")

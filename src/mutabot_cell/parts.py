@@ -53,21 +53,21 @@ class Part(ABC):
 
     @abstractmethod
     def reach(self, direction: Vector3) -> float:
-        """How far the part reaches from its middle along a direction of length 1 in its own frame, m."""
+        """Return how far the part extends from its centre along a unit direction in its own frame, m."""
 
     @abstractmethod
     def points(self) -> tuple[Vector3, ...]:
-        """Points within the part, near its surface, and its middle: what a camera looks for; m, own frame."""
+        """Return points within the part, near its surface, and its centre, for the camera; m, own frame."""
 
     @property
     def foot(self) -> Vector3:
-        """From the middle to the point below it on which the part rests at first, in its own frame, m."""
+        """The vector from the centre to where the part first rests, below it, in its own frame, m."""
         (x, y, z), height = self.up, self.middle_height
         return (-height * x, -height * y, -height * z)
 
     @property
     def middle_height(self) -> float:
-        """How high its middle is at first above what it rests on, m."""
+        """The height of its centre at first above what it rests on, m."""
         return self.reach(self.up)
 
     @property
@@ -78,7 +78,7 @@ class Part(ABC):
 
     @property
     def looks(self) -> tuple[float, float, float, float]:
-        """Red, green, blue and opacity, 0..1."""
+        """Its red, green, blue and opacity, 0..1."""
         return self.rgba or (RED_RGBA if self.colour == "red" else BLUE_RGBA)
 
 
@@ -94,11 +94,11 @@ class Box(Part):
         return self.size
 
     def reach(self, direction: Vector3) -> float:
-        """Half of the edges along it, m."""
+        """Return half of the extent of the block along a direction, m."""
         return sum(abs(part) * edge / 2 for part, edge in zip(direction, self.size, strict=True))
 
     def points(self) -> tuple[Vector3, ...]:
-        """Its middle and its corners, nearly."""
+        """Return its centre, and points close to its corners."""
         return _corners(self.size)
 
 
@@ -115,12 +115,12 @@ class Cylinder(Part):
         return (self.diameter, self.diameter, self.height)
 
     def reach(self, direction: Vector3) -> float:
-        """To the farthest point of the upper or lower rim, m."""
+        """Return the distance to the farthest point of the upper or lower rim, m."""
         x, y, z = direction
         return math.hypot(x, y) * self.diameter / 2 + abs(z) * self.height / 2
 
     def points(self) -> tuple[Vector3, ...]:
-        """Its middle and four points near each rim."""
+        """Return its centre, and four points close to each rim."""
         edge = self.diameter / math.sqrt(2)
         return _corners((edge, edge, self.height))
 
@@ -142,17 +142,17 @@ class Mesh(Part):
         return (high[0] - low[0], high[1] - low[1], high[2] - low[2])
 
     def centred(self) -> tuple[Vector3, ...]:
-        """The points from the middle of the bounding box, m."""
+        """Return the points relative to the centre of the bounding box, m."""
         low, high = self._bounds()
         middle = [(one + other) / 2 for one, other in zip(low, high, strict=True)]
         return tuple((x - middle[0], y - middle[1], z - middle[2]) for x, y, z in self.vertices)
 
     def reach(self, direction: Vector3) -> float:
-        """To the point that lies farthest along it, m."""
+        """Return the distance to the point that is farthest along a direction, m."""
         return max(_along(point, direction) for point in self.centred())
 
     def points(self) -> tuple[Vector3, ...]:
-        """Its middle and its farthest points along the diagonals, nearly."""
+        """Return its centre, and points close to the farthest ones along the diagonals."""
         points = self.centred()
         far = [max(points, key=partial(_along, way)) for way in _corners((1.0, 1.0, 1.0))[1:]]
         return ((0.0, 0.0, 0.0), *((x * _SEEN, y * _SEEN, z * _SEEN) for x, y, z in far))

@@ -1,4 +1,4 @@
-"""Misplaced fixtures: move them without rebuilding the cell."""
+"""Moves fixtures without rebuilding the cell, to misplace them."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def move_fixture(
     *,
     carried: Iterable[str] = (),
 ) -> None:
-    """Put a fixture elsewhere at once. What stands on it stays, unless it is named.
+    """Move a fixture at once. Parts on it stay in place, unless they are named.
 
     Args:
         name: of the fixture.
@@ -51,7 +51,7 @@ def move_fixture(
 
 
 def _carried(before: Placement, after: Placement, pose: Placement) -> Placement:
-    """The pose that relates to `after` as `pose` did to `before`."""
+    """Return the pose that relates to `after` as `pose` did to `before`."""
     back, place, turned = (np.zeros(3), np.zeros(4)), np.zeros(3), np.zeros(4)
     mujoco.mju_negPose(*back, *before)
     mujoco.mju_mulPose(place, turned, *back, *pose)

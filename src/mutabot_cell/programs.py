@@ -1,4 +1,4 @@
-"""Programs of several robots on one clock: while one waits, the others go on."""
+"""Runs programs of several robots on one clock: while one waits, the others continue."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ Result = TypeVar("Result")
 
 
 class _Tick(Awaitable[None]):
-    """Until the next control tick."""
+    """An awaitable that ends at the next control tick."""
 
     def __await__(self) -> Generator[None]:
         yield
 
 
 async def until(cell: Cell, condition: Callable[[], object], *, within: float = math.inf) -> bool:
-    """Wait in a program of `run_together` until a condition holds, looked at once per control tick.
+    """Wait in a program of `run_together` until a condition holds, checked once per control tick.
 
     Args:
         cell: whose time passes.
@@ -42,7 +42,7 @@ async def until(cell: Cell, condition: Callable[[], object], *, within: float = 
 def run_together(
     cell: Cell, programs: Mapping[str, Coroutine[object, object, Result]], *, within: float, seed: int = 0
 ) -> dict[str, Result]:
-    """Run a program for each robot until all have ended; they take turns at every control tick.
+    """Run a program for each robot until all have ended, in turns at every control tick.
 
         async def take(cell): ...
             move = cell.robots["right"].arm.start_home()

@@ -1,4 +1,4 @@
-"""Pictures of the cell, as files. On a machine without a screen see `shown.camera`."""
+"""Writes pictures of the cell to files. On a machine without a screen see `shown.camera`."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def render(
 
 
 def _png(pixels: Pixels) -> bytes:
-    """PNG file of RGB pixels, shape (height, width, 3)."""
+    """Return a PNG file of RGB pixels, shape (height, width, 3)."""
     height, width = pixels.shape[:2]
 
     def chunk(kind: bytes, body: bytes) -> bytes:

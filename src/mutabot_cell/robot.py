@@ -1,4 +1,4 @@
-"""One robot in the physics: where its joints, servos and tool are, and what its encoders read."""
+"""A robot in the physics: its joints, servos, tool and encoders."""
 
 from __future__ import annotations
 
@@ -61,28 +61,28 @@ class Robot:
         self._places = data.qpos  # a view of the physics' own memory
 
     def place_at_home(self) -> None:
-        """Joints and servos at the home position, fingers open; for the start only."""
+        """Set joints and servos to the home position, fingers open; only at the start."""
         self._data.qpos[self.joints] = self.model.home
         self._data.ctrl[self.servos] = self.model.home
 
     def stiffness(self) -> Array:
-        """Of each servo, Nm/rad, shape (joints,)."""
+        """Return the stiffness of each servo, Nm/rad, shape (joints,)."""
         gains: Array = self._physics.actuator_gainprm[self.servos, 0].copy()
         return gains
 
     def lag(self) -> Array:
-        """Of each servo, s, shape (joints,): this times the wanted speed, added to a setpoint, removes it."""
+        """Return each servo's lag, s, shape (joints,); times the wanted speed, it compensates a setpoint."""
         damping = -self._physics.actuator_biasprm[self.servos, 2] + self._physics.dof_damping[self.dofs]
         result: Array = damping / self.stiffness()
         return result
 
     def encoders(self) -> Array:
-        """Joint angles as the encoders tell them to the controller, shape (joints,), rad, without noise."""
+        """Return the joint angles, shape (joints,), rad, as the encoders report them, without noise."""
         read: Array = self._places[self.joints] + self.encoder_error
         return read
 
     def set_encoder_error(self, error: Sequence[float]) -> None:
-        """Calibrate the encoders wrongly: the joints move to where the encoders read what they read now.
+        """Miscalibrate the encoders: the joints move to where the encoders read what they read now.
 
         Args:
             error: encoder minus joint, rad, one per joint.
@@ -100,19 +100,19 @@ class Robot:
         mujoco.mj_forward(self._physics, self._data)
 
     def closed_path(self) -> float:
-        """How far the fingers have closed, m; 0 when they are open, and without fingers."""
+        """Return how far the fingers have closed, m; 0 when they are open, and without fingers."""
         return 0.0 if self._fingers is None else self.finger_state()[0]
 
     def opening(self) -> float:
-        """Distance between the pads as the fingers' servo tells it, m; 0 without fingers."""
+        """Return the distance between the pads by the fingers' servo, m; 0 without fingers."""
         return 0.0 if self._fingers is None else self._fingers.stroke - self.closed_path()
 
     def closing_speed(self) -> float:
-        """How fast the fingers close, m/s."""
+        """Return how fast the fingers close, m/s."""
         return 0.0 if self._fingers is None else self.finger_state()[1]
 
     def finger_state(self) -> tuple[float, float, float]:
-        """How far and how fast the fingers close, m and m/s, and their servo's force, in its own unit."""
+        """Return how far and how fast the fingers close, m and m/s, and their servo's force in its unit."""
         return self.finger_state_of(*self._sensed.tolist())
 
     def finger_state_of(self, length: float, speed: float, force: float) -> tuple[float, float, float]:
@@ -120,18 +120,18 @@ class Robot:
         return self._closed(length), speed * self._closed.slope(length), force
 
     def tool_pose(self) -> Pose:
-        """Exact tool pose, base frame."""
+        """Return the exact tool pose, base frame."""
         rotation = self._data.site_xmat[self.site].reshape(3, 3)
         if self._turned is not None:
             rotation = self._turned.T @ rotation
         return pose_of(self._tool_place(), rotation)
 
     def tool_position(self) -> Position:
-        """Exact tool position, base frame; quicker than the whole pose, for checks at every tick."""
+        """Return the exact tool position, base frame; faster than the pose, for checks at every tick."""
         return Position(*self._tool_place().tolist())
 
     def in_base_frame(self, direction: Array) -> Array:
-        """A direction of the world, shape (3,), as the robot's base frame has it."""
+        """Return a direction of the world, shape (3,), in the robot's base frame."""
         return direction if self._turned is None else self._turned.T @ direction
 
     def _tool_place(self) -> Array:
@@ -140,7 +140,7 @@ class Robot:
 
 
 def _run(numbers: list[int]) -> slice:
-    """The slice of these numbers, which follow each other."""
+    """Return the slice of these consecutive numbers."""
     first, last = numbers[0], numbers[-1]
     if numbers != list(range(first, last + 1)):
         raise BadArgument(f"joints and servos must follow each other in the model, but they are {numbers}")

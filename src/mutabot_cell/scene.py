@@ -1,4 +1,4 @@
-"""What stands in the cell, as plain data.
+"""The contents of the cell, as plain data.
 
 Lengths in m, angles in degrees, masses in kg; world frame with z up.
 """
@@ -24,7 +24,7 @@ typical values of tables of materials. The target table has the mat: what falls 
 
 @dataclass(frozen=True, slots=True)
 class Belt:
-    """What makes a fixture a conveyor: a drive for its surface, and an encoder. It stands until it is run.
+    """A fixture's conveyor: a drive for its surface, and an encoder. It stands still until it is run.
 
     Attributes:
         direction: of positive speed, in the fixture's frame; its length does not matter.
@@ -66,7 +66,7 @@ class Fixture:
 
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """A flat coloured patch without a body. `size` holds full edge lengths in x and y."""
+    """A flat coloured patch without a body. `size` is the full edge lengths in x and y."""
 
     name: str
     size: tuple[float, float]
@@ -76,7 +76,7 @@ class Mark:
 
 @dataclass(frozen=True, slots=True)
 class LightBarrier:
-    """A lamp and a receiver opposite; interrupted by whatever stands between them.
+    """A lamp and a receiver opposite; interrupted by anything between them.
 
     Attributes:
         start, end: of the beam, world frame, m.
@@ -100,7 +100,7 @@ RED_TARGET = Mark("red target", (0.10, 0.10), (-0.4, 0.15, 0.76))
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """All that stands around the robot. The default is the published experiment's cell.
+    """Everything around the robot. The default is the published experiment's cell.
 
     Attributes:
         camera: where the camera stands that sees parts, world frame, m.
@@ -116,7 +116,7 @@ class Scene:
     def from_mjcf(
         cls, path: str | PathLike[str], *, parts: Sequence[str] = (), fixtures: Sequence[str] = ()
     ) -> Scene:
-        """Fixtures and parts from a file in MuJoCo's format; what is not named stays out.
+        """Return a scene from a file in MuJoCo's format; unnamed parts are left out.
 
         Args:
             path: of the file.

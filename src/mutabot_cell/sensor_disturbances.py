@@ -1,4 +1,4 @@
-"""Disturbances of a cell's sensors: what `world.toml` of this package names. See `disturbances`."""
+"""Disturbances of a cell's sensors, named in this package's `world.toml`. See `disturbances`."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _PER_LOOK = {"box position": 3}
 def bias(
     cell: Cell, change: Changed, *, names: str, random: Random, sensor: str, axis: str = "", unit: float = 1.0
 ) -> None:
-    """A constant error of a sensor, or a part of what it reads.
+    """Add a constant error to a sensor, or a fraction of its reading.
 
     Args:
         names: of robots.
@@ -37,7 +37,7 @@ def bias(
 def drift(
     cell: Cell, change: Changed, *, names: str, random: Random, sensor: str, axis: str = "", unit: float = 1.0
 ) -> None:
-    """An error that grows by this each second; otherwise as `bias`."""
+    """Add an error that grows by this each second; otherwise as `bias`."""
     number, begin = _AXES.index(axis) if axis else None, cell.time
 
     def read(count: int, value: float) -> float:
@@ -47,18 +47,18 @@ def drift(
 
 
 def noise(cell: Cell, change: Changed, *, names: str, random: Random, sensor: str, unit: float = 1.0) -> None:
-    """Normal noise beside the sensor's own, of this standard deviation."""
+    """Add normal noise of this standard deviation to the sensor's own."""
     _disturb(cell, names, sensor, lambda count, value: value + random.gauss(0.0, change(0.0) / unit))
 
 
 def dropout(cell: Cell, change: Changed, *, names: str, random: Random) -> None:
-    """Share of pictures in which the camera sees no part: reading it raises `SensorError`."""
+    """Let the camera see no part in a share of pictures: reading it raises `SensorError`."""
     for system in robots(cell, names):
         system.sensors.hidden.append(lambda *_: random.random() < change(0.0))
 
 
 def outage(cell: Cell, change: Changed, *, names: str, random: Random, begin: float = 0.0) -> None:
-    """For how long the camera sees no part, s, from a simulated time on."""
+    """Let the camera see no part for a time, s, from a simulated time on."""
     for system in robots(cell, names):
         system.sensors.hidden.append(lambda *_: begin <= cell.time < begin + change(0.0))
 
@@ -66,7 +66,7 @@ def outage(cell: Cell, change: Changed, *, names: str, random: Random, begin: fl
 def occlusion(
     cell: Cell, change: Changed, *, names: str, random: Random, part: str = "", share: float = 0.5
 ) -> None:
-    """Radius of a ball that stands in the camera's line of sight to a part as it lies now, m.
+    """Put a ball with this radius, m, into the camera's line of sight to a part.
 
     Args:
         names: of robots.
@@ -83,17 +83,17 @@ def occlusion(
 
 
 def latency(cell: Cell, change: Changed, *, names: str, random: Random) -> None:
-    """Age of a picture of the camera when it can be read first, s, in whole control ticks."""
+    """Change the age of a camera picture when it can first be read, s, in whole control ticks."""
     cell.simulation.set_camera(latency=change(cell.simulation.camera_latency))
 
 
 def interval(cell: Cell, change: Changed, *, names: str, random: Random) -> None:
-    """Time from one picture of the camera to the next, s; a multiple of that of the camera."""
+    """Change the time between pictures of the camera, s; a multiple of the camera's own."""
     cell.simulation.set_camera(interval=change(cell.simulation.camera_interval))
 
 
 def _disturb(cell: Cell, names: str, sensor: str, read: Callable[[int, float], float]) -> None:
-    """Let a sensor read something else; `read` gets the number of the value within a look."""
+    """Change a sensor's readings; `read` gets the index of the value within a reading."""
     for system in robots(cell, names):
         numbers = cycle(range(_PER_LOOK.get(sensor, 1)))
         system.noise.errors[sensor] = partial(_read_next, numbers, read)

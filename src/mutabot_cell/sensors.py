@@ -1,4 +1,4 @@
-"""What the robot program can read: each with its own noise, rate and delay."""
+"""The sensors that a robot program can read, each with its own noise, rate and delay."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ DISTANCE_RANGE = (0.02, 2.0)
 
 
 class Sensors:
-    """Readings of the cell. World frame unless said otherwise.
+    """Readings of the cell. World frame unless stated otherwise.
 
     Attributes:
         light_barriers: those of the scene.
@@ -64,18 +64,18 @@ class Sensors:
         self._ranged: tuple[int, float] = (-1, 0.0)
 
     def tool_pose(self) -> Pose:
-        """Tool pose in the base frame, computed from the joint encoders.
+        """Return the tool pose in the base frame, computed from the joint encoders.
 
         Like a real controller's, it knows nothing of a wrong calibration, a bent link or a moved base.
         """
         return pose_of(*self._kinematics.tool(np.radians(self._encoders())))
 
     def joint_angles(self) -> tuple[float, ...]:
-        """Measured joint angles, degrees, each in (-180, 180]."""
+        """Return the measured joint angles, degrees, each in (-180, 180]."""
         return self._wrapped_encoders()
 
     def box_position(self, name: str | None = None) -> Position:
-        """Middle of the bottom face of a box as the camera sees it; without a name, of the first box.
+        """Return the centre of a box's bottom face as the camera sees it; of the first box without a name.
 
         The camera takes 25 pictures a second. Each can be read 40 ms later, and until the next one can.
 
@@ -97,11 +97,11 @@ class Sensors:
         return found
 
     def picture_time(self) -> float:
-        """Simulated time, s, at which the picture was taken that `box_position` reads from now."""
+        """Return the simulated time, s, of the picture that `box_position` reads now."""
         return self._simulation.frame()[0] * TICK
 
     def _look_for(self, box: Part) -> Position | None:
-        """Where the picture shows the box; None if less than a third of it can be seen."""
+        """Return where the picture shows the box; None if less than a third of it is visible."""
         body, geom = self._simulation.id_of("body", box.name), self._simulation.model.geom(box.name).id
         centre, rotation = self._picture.xpos[body], self._picture.xmat[body].reshape(3, 3)
         rays = centre + np.array(box.points()) @ rotation.T - self.camera
@@ -125,7 +125,7 @@ class Sensors:
         return Position(*(self._noise.add("box position", value) for value in bottom))
 
     def _hidden_by_balls(self, rays: Array) -> Array:
-        """Which of these rays from the camera, shape (rays, 3), a ball is in the way of."""
+        """Return which of these rays from the camera, shape (rays, 3), a ball blocks."""
         found = np.zeros(len(rays), dtype=bool)
         for centre, radius in self.balls:
             way = centre - self.camera
@@ -134,7 +134,7 @@ class Sensors:
         return found
 
     def colour_number(self, name: str | None = None) -> int:
-        """Colour as a whole number 1..10: even is red, odd is blue. Drawn once per round.
+        """Return the colour as a whole number 1..10: even is red, odd is blue. Drawn once per round.
 
         Raises:
             SensorError: there is no such box.
@@ -142,7 +142,7 @@ class Sensors:
         return self._numbers[self._box(name).name]
 
     def colour(self, name: str | None = None) -> str:
-        """Colour as a label, "red" or "blue".
+        """Return the colour as a label, "red" or "blue".
 
         Raises:
             SensorError: there is no such box.
@@ -150,7 +150,7 @@ class Sensors:
         return "red" if self.colour_number(name) % 2 == 0 else "blue"
 
     def distance(self) -> float:
-        """Distance from the gripper's palm to the nearest surface along the tool's axis, m, once per tick."""
+        """Return the distance from the palm to the nearest surface along the tool's axis, m; one per tick."""
         ticks, reading = self._ranged
         if ticks != self._simulation.ticks:
             low, high = DISTANCE_RANGE
@@ -169,7 +169,7 @@ class Sensors:
         return tuple(180.0 - (180.0 - angle) % 360.0 for angle in self._encoders())
 
     def _encoders(self) -> tuple[float, ...]:
-        """One reading of all encoders per tick, with noise, degrees, not wrapped."""
+        """Return one reading of all encoders per tick, with noise, degrees, not wrapped."""
         ticks, read = self._read
         if ticks != self._simulation.ticks:
             angles = np.degrees(self._robot.encoders()).tolist()
@@ -187,7 +187,7 @@ class Sensors:
 
 
 def true_box_position(simulation: Simulation, box: Part) -> Position:
-    """Exact middle of the box's bottom face (the face that was below at the start), world frame."""
+    """Return the exact centre of the box's bottom face (the one below at the start), world frame."""
     body = simulation.id_of("body", box.name)
     centre = simulation.data.xpos[body]
     foot = simulation.data.xmat[body].reshape(3, 3) @ box.foot
@@ -195,6 +195,6 @@ def true_box_position(simulation: Simulation, box: Part) -> Position:
 
 
 def true_box_tilt(simulation: Simulation, box: Part) -> float:
-    """Exact angle between the box's own up and the world's up, degrees."""
+    """Return the exact angle between the box's own up and the world's up, degrees."""
     body = simulation.id_of("body", box.name)
     return math.degrees(math.acos(min(1.0, max(-1.0, float(simulation.data.xmat[body][6:] @ box.up)))))

@@ -1,4 +1,4 @@
-"""The clock and the physics. Every advance of simulated time goes through `Simulation.tick`."""
+"""The physics and its clock. Every advance of simulated time goes through `Simulation.tick`."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _KEPT_FRAMES = 1 + math.ceil(LATENCY_TICKS / FRAME_TICKS)
 
 
 class Simulation:
-    """Model and state of the cell, and its time.
+    """The model and state of the cell, and its time.
 
     Attributes:
         scene: what stands around the robots, as it was built.
@@ -82,17 +82,17 @@ class Simulation:
 
     @property
     def ticks(self) -> int:
-        """Control ticks since the cell was made."""
+        """The number of control ticks since the cell was made."""
         return self._ticks
 
     def frame(self) -> tuple[int, Array]:
-        """What the camera's newest readable picture shows: its tick, and `qpos` at that time."""
+        """Return the tick of the camera's newest readable picture, and `qpos` at that time."""
         latest, every = self._ticks - round(self.camera_latency / TICK), round(self.camera_interval / TICK)
         taken = (frame for frame in reversed(self._frames) if frame[0] <= latest and not frame[0] % every)
         return next(taken, self._frames[0])
 
     def set_camera(self, *, interval: float | None = None, latency: float | None = None) -> None:
-        """Let the camera be slower, or its pictures later, from now on.
+        """Set the camera's interval and latency to larger values, from now on.
 
         Args:
             interval: from one picture to the next, s, rounded up to a multiple of 40 ms.
@@ -106,11 +106,11 @@ class Simulation:
 
     @property
     def robot(self) -> Robot:
-        """The first robot, which mostly is the only one."""
+        """The first robot, usually the only one."""
         return next(iter(self.robots.values()))
 
     def id_of(self, kind: Literal["body", "site"], name: str) -> int:
-        """Number of a body or site of the model; looked up once, since checks ask for it at every tick."""
+        """Return the number of a body or site of the model; cached, since checks need it at every tick."""
         found = self._ids.get((kind, name))
         if found is None:
             found = self._ids[kind, name] = int(getattr(self.model, kind)(name).id)
@@ -165,7 +165,7 @@ class Simulation:
         return True
 
     def call_within_stretch(self, hook: Callable[[], None], number: int) -> None:
-        """After a tick of a stretch (its number), call a hook that only looks, as after a single tick.
+        """Call a hook that changes nothing after a tick of a stretch (its number), as after a single tick.
 
         Nothing is called if that tick, or one before, may be taken back because a check is needed.
         """
@@ -208,5 +208,5 @@ class Simulation:
 
 
 def _are_sane(places: Array, speeds: Array) -> bool:
-    """Whether one number tells that all are finite and no speed is absurd; in doubt not."""
+    """Return whether one number shows that all are finite and no speed is absurd; False in doubt."""
     return bool(speeds.dot(speeds) < _ABSURD_SPEED**2 and math.isfinite(places.dot(places)))

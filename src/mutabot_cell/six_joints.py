@@ -1,4 +1,4 @@
-"""What a robot with six joints has of its own: calls whose values are six.
+"""The interface of a robot with six joints, whose calls have six values.
 
 The vocabulary says what each joint's value means, so calls with six values and with seven are different ones.
 """
@@ -16,7 +16,7 @@ class SixJointArm(Arm):
     """An arm with six joints."""
 
     def commanded_joints(self) -> tuple[float, ...]:
-        """Setpoints of the six joints, degrees, not wrapped."""
+        """Return the setpoints of the six joints, degrees, not wrapped."""
         return self._setpoint_degrees()
 
     def move_joints(self, angles: Sequence[float], *, speed: float = 1.0) -> None:
@@ -24,7 +24,7 @@ class SixJointArm(Arm):
         self._start_angles(angles, speed).wait()
 
     def start_move_joints(self, angles: Sequence[float], *, speed: float = 1.0) -> Move:
-        """Like `move_joints`, but returns at once."""
+        """Start the same move as `move_joints`, and return at once."""
         return self._start_angles(angles, speed)
 
 
@@ -32,5 +32,5 @@ class SixJointSensors(Sensors):
     """The sensors of a robot with six joints."""
 
     def joint_angles(self) -> tuple[float, ...]:
-        """Measured angles of the six joints, degrees, each in (-180, 180]."""
+        """Return the measured angles of the six joints, degrees, each in (-180, 180]."""
         return self._wrapped_encoders()

@@ -1,4 +1,4 @@
-"""The physics, stepped by control ticks, or taken from memory where the same ticks were stepped before.
+"""Steps the physics by control ticks, or reuses earlier results of the same ticks.
 
 What a tick leads to depends on the model, on the state of the physics and on the inputs of the servos, and on
 nothing else.
@@ -29,7 +29,7 @@ _CALLBACKS = ("passive", "control", "contactfilter", "sensor", "act_dyn", "act_g
 
 
 class Stepping:
-    """Steps one cell's physics; the processes of a campaign remember together.
+    """Steps one cell's physics; the processes of a campaign share the results.
 
     What is remembered of a tick is the state before its last step. That step is carried out anew, since
     contacts, forces and the like are no part of a state.
@@ -61,7 +61,7 @@ class Stepping:
             self.keep(self._before)
 
     def recall(self, inputs: Array) -> Array | None:
-        """What was kept when the physics was as it is now and had these inputs; None if nothing was."""
+        """Return the values kept for this state of the physics and these inputs; None if there are none."""
         self._key = None
         if self._memory is None or not self._is_told_by_state():
             return None
@@ -72,12 +72,12 @@ class Stepping:
         return None if kept is None else np.frombuffer(kept)
 
     def _is_told_by_state(self) -> bool:
-        """Whether nothing else decides: islands that sleep, callbacks, or what a test has put in place."""
+        """Return whether the state alone decides: no sleeping islands, callbacks, or replaced functions."""
         sleeps = self._model.opt.enableflags & _SLEEP
         return not sleeps and _is_native() and _ORIGINALS.are_in_place(self, self._fingerprint)
 
     def keep(self, values: Array) -> None:
-        """Keep values that follow from all that was given when `recall` was last asked."""
+        """Keep values that follow from the state and inputs of the last `recall`."""
         if self._memory is not None and self._key is not None and self._is_told_by_state():
             self._memory.put(self._key, values.tobytes())
 
@@ -92,7 +92,7 @@ class Stepping:
         step(model, data)
 
     def end(self, before: Array, inputs: Array) -> None:
-        """Carry out the last step of a tick, from the state before it."""
+        """Compute the last step of a tick, from the state before it."""
         mujoco.mj_setState(self._model, self._data, before, MOVING)
         self._servos[:] = inputs[-1]
         mujoco.mj_step(self._model, self._data)
@@ -109,7 +109,7 @@ def _measure_no_time() -> None:
 
 
 class _Pointers:
-    """The callbacks and collision functions that MuJoCo holds: C code may set them without the bindings."""
+    """The callbacks and collision functions that MuJoCo holds; C code may set them without the bindings."""
 
     def __init__(self) -> None:
         self._callbacks: list[ctypes.c_void_p] = []
@@ -123,7 +123,7 @@ class _Pointers:
         self._known = bytes(self._collisions)
 
     def are_original(self) -> bool:
-        """Whether there are no callbacks, and all collision functions are MuJoCo's own."""
+        """Return whether there are no callbacks, and all collision functions are MuJoCo's own."""
         known = self._known
         return bool(known) and not any(map(_is_set, self._callbacks)) and bytes(self._collisions) == known
 

@@ -1,4 +1,4 @@
-"""Several control ticks stepped in a row, with what the ticks looked like at their ends."""
+"""Steps several control ticks in a row, and keeps the state at each one's end."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ StretchNote = Callable[["Stretch", int], None]
 
 
 class Stretch:
-    """Memory of one stretch, used again for the next.
+    """The recorded states of a stretch; the memory is reused for the next.
 
     Attributes:
         inputs: of all servos, shape (LONGEST, physics steps in a tick, servos).
@@ -69,7 +69,7 @@ class Stretch:
         return is_well
 
     def reach(self, number: int) -> None:
-        """While a stretch runs: bring the physics to the end of a tick that was remembered."""
+        """While a stretch runs, restore the physics at the end of a recorded tick."""
         if number != self._reached:
             self._stepping.end(self._before[number], self.inputs[number])
             self._reached = number

@@ -1,4 +1,4 @@
-"""The suction cup as its user knows it: on, off, and what its vacuum sensor reads.
+"""The suction cup as robot programs use it: on, off, and its vacuum sensor.
 
 Nothing ties a part to the cup. The vacuum presses it against the lip with pressure times area; the lip's
 friction carries it sideways; and where the lip does not touch, air comes in.
@@ -60,19 +60,19 @@ class Suction:
         simulation.foresight.checks(self._pull, Glance(lambda: 1 if self._acts() else LONGEST))
 
     def on(self) -> None:
-        """Start the ejector. Returns at once; the vacuum comes within some tenths of a second."""
+        """Start the ejector. Return at once; the vacuum comes within some tenths of a second."""
         self._is_on = True
 
     def off(self) -> None:
-        """Stop the ejector and let air in. Returns at once."""
+        """Stop the ejector and let air in. Return at once."""
         self._is_on = False
 
     def is_on(self) -> bool:
-        """Whether the ejector is commanded to draw."""
+        """Return whether the ejector is commanded to draw."""
         return self._is_on
 
     def vacuum(self) -> float:
-        """What the vacuum sensor reads, Pa below the atmosphere, with noise; one reading per tick."""
+        """Return what the vacuum sensor reads, Pa below the atmosphere, with noise; one reading per tick."""
         ticks, reading = self._read
         if ticks != self._simulation.ticks:
             reading = self._noise.add("vacuum", self._vacuum.pressure)
@@ -80,15 +80,15 @@ class Suction:
         return reading
 
     def holding(self) -> bool:
-        """Whether the vacuum sensor's switch reports a part: above 55 kPa, until it falls below 54 kPa."""
+        """Return whether the sensor's switch reports a part: above 55 kPa, until it falls below 54 kPa."""
         return self._has_part
 
     def true_vacuum(self) -> float:
-        """The exact vacuum, Pa: for checks."""
+        """Return the exact vacuum, Pa; for checks."""
         return self._vacuum.pressure
 
     def arm_torque(self) -> Array:
-        """What the vacuum's pull on the cup exerts on each joint of the arm, shape (joints,), Nm.
+        """Return the torque of the vacuum's pull on each joint of the arm, shape (joints,), Nm.
 
         Together with the lip's contacts it makes what the part weighs on the cup.
         """
@@ -102,7 +102,7 @@ class Suction:
         return self._torque[self._dofs]
 
     def _acts(self) -> bool:
-        """Whether it draws, presses or has a vacuum; otherwise nothing changes with the time."""
+        """Return whether it draws, presses or has a vacuum; otherwise nothing changes with time."""
         return self._is_on or bool(self._pulled) or self._vacuum.pressure != 0.0
 
     def _pull(self) -> None:
@@ -117,7 +117,7 @@ class Suction:
         self._press(touched)
 
     def _touched(self) -> tuple[dict[int, list[int]], float]:
-        """Points of the lip on each body that they touch or nearly touch, and the opening they leave, m²."""
+        """Return the lip's points on each body that it (nearly) touches, and the opening that is left, m²."""
         contact, points, bodies = self._simulation.data.contact, self._points, self._bodies
         nearest: dict[int, tuple[float, int]] = {}
         for (one, other), distance in zip(contact.geom.tolist(), contact.dist.tolist(), strict=True):
@@ -132,7 +132,7 @@ class Suction:
         return found, opening
 
     def _press(self, touched: dict[int, list[int]]) -> None:
-        """Press the cup on what it touches, and that on the cup: each sector with pressure times its area."""
+        """Press the cup and what it touches together: each sector with pressure times its area."""
         data = self._simulation.data
         for body in self._pulled:
             data.xfrc_applied[body] = 0.0

@@ -80,5 +80,5 @@ class RobotSystem:
         return self._suction
 
     def vacuum(self) -> float | None:
-        """Exact vacuum in the suction cup, Pa below the atmosphere; None without one."""
+        """Return the exact vacuum in the suction cup, Pa below the atmosphere; None without one."""
         return None if self._suction is None else self._suction.true_vacuum()

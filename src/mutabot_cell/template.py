@@ -1,4 +1,4 @@
-"""A project to start from: a program for a robot in the cell, its tests, and mutabot's configuration."""
+"""A project template: a program for a robot in the cell, its tests, and mutabot's configuration."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ KNOWN = ("gen3", "ur5e", "panda", "xarm7")
 
 
 def project(robot: str) -> Mapping[str, str]:
-    """The files of a project for a robot, by their names.
+    """Return the files of a project for a robot, by their names.
 
     Args:
         robot: one of `KNOWN`; or FILE:SITE, an MJCF file and the site of its flange, or a URDF and its link.

@@ -1,4 +1,4 @@
-"""Texts of the files that `template` writes."""
+"""The texts of the files that `template` writes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A path for the tool as a robot program describes it: point by point, then travelled without a stop."""
+"""A tool path as a robot program describes it: point by point, then travelled without a stop."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _LOOK_AHEAD, _FINE = 0.02, 0.0005
 
 
 class ToolPath:
-    """A path through poses, with rounded corners, that begins where the tool is commanded to be.
+    """A path through poses, with rounded corners, that begins at the commanded tool pose.
 
         path = cell.arm.new_path()
         path.line_to(Pose(0.5, 0.1, 0.1, 180, 0, 90), blend=0.01)
@@ -45,7 +45,7 @@ class ToolPath:
         self._speed = self._gone = self._looked = 0.0
 
     def line_to(self, pose: Pose, *, blend: float = 0.0) -> None:
-        """Add a straight line to a pose; the tool turns evenly on the way.
+        """Add a straight line to a pose, during which the tool turns evenly.
 
         Args:
             pose: base frame, m and degrees.
@@ -65,7 +65,7 @@ class ToolPath:
         self._points.append(Waypoint(np.array(values[:3]), rotation_from_euler(*values[3:6]), blend))
 
     def start(self, speed: float) -> Move:
-        """Begin to travel the path; returns at once. Joint limits can make the motion slower.
+        """Begin to travel the path; return at once. Joint limits can make the motion slower.
 
         Args:
             speed: of the tool along the path, m/s.
@@ -82,11 +82,11 @@ class ToolPath:
         return move
 
     def length(self) -> float:
-        """Of the whole path, with rounded corners, m; 0 before it begins."""
+        """Return the length of the whole path, with rounded corners, m; 0 before it begins."""
         return 0.0 if self._path is None else self._path.length
 
     def travelled(self) -> float:
-        """How far along the path the tool has come, by the encoders, m; it never goes back."""
+        """Return how far along the path the tool has come, by the encoders, m; it never decreases."""
         if self._path is None:
             return 0.0
         place, length, now = self._where(), self._path.length, self._clock()

@@ -1,4 +1,4 @@
-"""Parts on a belt that moves, where parts at rest may sleep."""
+"""Keeps parts on a moving belt awake if parts at rest may sleep."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class PartsOnBelt:
         self._most: Array = model.geom_size[geom] + np.array((_BESIDE, _BESIDE, _ABOVE))
 
     def keep(self) -> None:
-        """Wake what is over the belt, and let sleep what no longer is."""
+        """Wake what is on the belt, and let sleep what no longer is."""
         if not len(self._trees):
             return
         data = self._simulation.data
@@ -44,7 +44,7 @@ class PartsOnBelt:
             self._set(int(index), kept=bool(over[index]))
 
     def let_sleep(self) -> None:
-        """The belt stands: what lies on it may sleep."""
+        """Let parts on the belt sleep, since it has stopped."""
         for index in np.flatnonzero(self._kept):
             self._set(int(index), kept=False)
 

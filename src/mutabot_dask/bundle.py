@@ -1,4 +1,4 @@
-"""The project on its way to workers: a tar of the files that are sent, named by what they hold.
+"""The bundle of a project for workers: a tar of the files sent, named by a hash of its contents.
 
 Also, in words, what goes to workers and what stays here.
 """
@@ -48,7 +48,7 @@ class Bundle:
 
     @classmethod
     def make(cls, shipment: Shipment) -> Bundle:
-        """Pack what is to be sent."""
+        """Pack the files that are sent."""
         base = shipment.top.parent
         digest = hashlib.blake2b(digest_size=12)
         buffer = io.BytesIO()
@@ -74,12 +74,12 @@ class Bundle:
         return cls(digest.hexdigest(), inner, buffer.getvalue(), count, tuple(outside))
 
     def chunks(self) -> list[bytes]:
-        """The tar in parts that messages can carry."""
+        """Return the tar in parts that messages can carry."""
         return [self.data[start : start + CHUNK] for start in range(0, len(self.data), CHUNK)]
 
 
 def _packed(path: Path, shipment: Shipment) -> tuple[tarfile.TarInfo, bytes] | None:
-    """The entry of a file or a link, and what it holds; None for what leads out of the project."""
+    """Return the tar entry of a file or link, and its content; None for one that leads out of the project."""
     info = tarfile.TarInfo()
     if path.is_symlink():
         target = _target(path, shipment.root if path.is_relative_to(shipment.root) else shipment.top)
@@ -103,7 +103,7 @@ def _opened(path: Path) -> int:
 
 
 def _target(link: Path, limit: Path) -> str | None:
-    """The final target of a link, relative to it; None if it is outside or cannot be resolved."""
+    """Return the final target of a link, relative to it; None if it is outside or cannot be resolved."""
     try:
         folder, target = link.parent.resolve(), link.resolve()
     except (OSError, RuntimeError):
@@ -119,12 +119,12 @@ _ADVICE = "`git add` what workers need, or name it under `cluster.files`"
 
 
 def summary(bundle: Bundle) -> str:
-    """How much goes."""
+    """Return a summary of how much is sent."""
     return f"{_files(bundle.files)}, {len(bundle.data) / 1000:.0f} kB"
 
 
 def warnings(shipment: Shipment, bundle: Bundle) -> Iterator[str]:
-    """What the user is to know before anything is sent."""
+    """Yield warnings for the user before anything is sent."""
     if shipment.left_out:
         why = (
             "that git does not track"
@@ -142,7 +142,7 @@ def warnings(shipment: Shipment, bundle: Bundle) -> Iterator[str]:
 
 @dataclass(frozen=True, slots=True)
 class Forecast:
-    """See ``Preview`` of the core: what workers will be sent."""
+    """The preview of what workers will be sent; see ``Preview`` of the core."""
 
     shipment: Shipment
 
@@ -153,16 +153,16 @@ class Forecast:
 
     @property
     def folders_left_out(self) -> set[str]:
-        """See ``Preview``."""
+        """The folders with files that are not sent; see ``Preview``."""
         return self.shipment.folders_left_out
 
     def lacking(self, opened: Collection[str] | None) -> str | None:
-        """See ``Preview``."""
+        """Return which opened files are not sent; see ``Preview``."""
         missed = self.shipment.missed(opened or ())
         return f"tests open files that workers will not have: {listed(missed)}; {_ADVICE}" if missed else None
 
     def check(self, opened: Collection[str] | None) -> tuple[list[str], Mapping[str, Any]]:
-        """See ``Preview``."""
+        """Return what ``mutabot check`` says of the bundle; see ``Preview``."""
         shipment = self.shipment
         bundle = Bundle.make(shipment)
         variables = sorted(decided())
@@ -186,7 +186,7 @@ class Forecast:
 
 
 def listed(names: Collection[str]) -> str:
-    """A few names, and how many more there are."""
+    """Return a few names, and the number of others."""
     shown = [_printable(name) for name in list(names)[:_SHOWN]]
     more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
     return ", ".join(shown) + more

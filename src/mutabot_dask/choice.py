@@ -1,4 +1,4 @@
-"""What ``--cluster WHERE`` means."""
+"""The option ``--cluster WHERE``."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class ClusterChoice(ExecutorChoice):
 
     @classmethod
     def parse(cls, value: str, root: Path, table: Table | None) -> Self:
-        """See ``ExecutorChoice``: with the certificate files of the configuration, if it may need them."""
+        """Parse the option, with the certificate files of the configuration; see ``ExecutorChoice``."""
         own = ClusterTable.of(table)
         names = () if value.startswith(("tcp://", "local:")) else (own.ca, own.cert, own.key)
         settings = ClusterSettings(value, *(None if name is None else str(root / name) for name in names))
@@ -33,12 +33,12 @@ class ClusterChoice(ExecutorChoice):
         return cls(settings)
 
     def open(self, request: Request, tell: Callable[[str], None]) -> AbstractContextManager[Cluster]:
-        """See ``ExecutorChoice``. Raises UsageError."""
+        """Open the cluster; see ``ExecutorChoice``. Raises UsageError."""
         from .cluster import Cluster  # noqa: PLC0415  # it needs Dask
 
         return Cluster.opened(request, self.settings, tell)
 
     @classmethod
     def preview(cls, request: Request) -> Forecast:
-        """See ``ExecutorChoice``: what workers are sent."""
+        """Return the preview of what workers are sent; see ``ExecutorChoice``."""
         return Forecast.of(request)

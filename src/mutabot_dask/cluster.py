@@ -13,7 +13,7 @@ from .settings import ClusterSettings
 
 
 class Cluster(RemoteExecutor):
-    """See ``RemoteExecutor``.
+    """The executor on a cluster; see ``RemoteExecutor``.
 
     Args:
         connection: the cluster.
@@ -29,7 +29,7 @@ class Cluster(RemoteExecutor):
     def opened(
         cls, request: Request, settings: ClusterSettings, tell: Callable[[str], None]
     ) -> Iterator[Cluster]:
-        """Open one for a campaign, with worker processes on this machine beside it. Raises UsageError."""
+        """Open a cluster for a campaign, with worker processes on this machine as well. Raises UsageError."""
         with (
             request.on_this_machine(tell) as here,
             closing(ClusterConnection(request, settings, tell)) as connection,
@@ -38,7 +38,7 @@ class Cluster(RemoteExecutor):
 
     @property
     def spread(self) -> int:
-        """How many workers are there; see ``Executor``."""
+        """The number of workers; see ``Executor``."""
         return max(1, self._connection.size)
 
     @property
@@ -47,6 +47,6 @@ class Cluster(RemoteExecutor):
         return list(self._connection.roster.told)
 
     def answers(self, tasks: Iterator[Task]) -> Iterator[Answer | Task]:
-        """See ``RemoteExecutor``."""
+        """Yield the answers to tasks; see ``RemoteExecutor``."""
         if not self._connection.is_given_up:
             yield from Dispatch(self._connection, tasks).answers()

@@ -1,4 +1,4 @@
-"""The cluster of a campaign: a scheduler and workers, reached again when the scheduler is lost."""
+"""The connection to a campaign's scheduler and workers, which is restored if the scheduler is lost."""
 
 from __future__ import annotations
 
@@ -76,16 +76,16 @@ class ClusterConnection:
 
     @property
     def size(self) -> int:
-        """How many workers there are, or will be."""
+        """The number of workers, or of expected workers."""
         return len(self.roster.usable) or self._settings.local or 0
 
     def close(self) -> None:
-        """Let workers forget the campaign, and end what was started for it."""
+        """Make workers forget the campaign, and end what was started for it."""
         self._ends.close()
 
     @cached_property
     def ground(self) -> Ground:
-        """What all units stand on. From the first time on, workers are sent the project."""
+        """The data shared by all units. The first access sends the project to the workers."""
         root, shipment = self._request.root, Shipment.of(self._request)
         bundle = self.roster.bundle = Bundle.make(shipment)
         for text in (f"workers are sent {summary(bundle)}", *warnings(shipment, bundle)):
@@ -94,17 +94,17 @@ class ClusterConnection:
         return Ground(bundle.digest, str(root), bundle.inner, self._request.arguments, decided(), paths)
 
     def give_up(self, why: str) -> None:
-        """Leave all that is left to this machine."""
+        """Leave the remaining tasks to this machine."""
         self.is_given_up = True
         self.tell(f"{why}: the campaign goes on on this machine, {self._request.jobs} at a time")
 
     def look_after(self) -> None:
-        """Start again what is gone of workers on this machine."""
+        """Restart workers on this machine that have ended."""
         if self._local is not None and self._local.look_after_workers():
             self.tell("the workers on this machine were gone, and are started again")
 
     def reconnect(self) -> bool:
-        """The scheduler is gone: reach it again, or another one in its place; returns whether that worked."""
+        """Reconnect to the lost scheduler, or to another one in its place; return whether that worked."""
         self.link.close()
         self._restarts = self._restarts + 1 if self.done == 0 else 1
         self.done = 0
@@ -128,7 +128,7 @@ class ClusterConnection:
         return True
 
     def _address(self) -> str:
-        """Where the scheduler is; one of our own is started."""
+        """Return the address of the scheduler; start one of our own if necessary."""
         if self._local is not None:
             return self._local.start()
         return address_in(Path(self._settings.address)) if self._settings.is_file else self._settings.address
@@ -163,7 +163,7 @@ class ClusterConnection:
 
 
 def _remove(folder: Path) -> None:
-    """Remove the folder of a cluster; tests that are ending with their workers may still write there."""
+    """Remove the folder of a cluster; tests that end with their workers may still write to it."""
     until = time.monotonic() + _FAREWELL
     while folder.exists() and time.monotonic() < until:
         shutil.rmtree(folder, ignore_errors=True)

@@ -1,4 +1,4 @@
-"""Who runs what, and what becomes of it: units to workers, one at a time each, and their answers back.
+"""Dispatches units to workers, one at a time each, and returns their answers.
 
 A worker that dies, hangs or goes away with a unit is not the mutant's fault: the unit goes to another, at
 most three times. It goes to one that it has failed at only where there is no other; one at which units fail
@@ -36,7 +36,7 @@ _TOLD, _PATIENCE = 5.0, 600.0
 
 @dataclass(slots=True)
 class _RunningTask:
-    """A task on its way.
+    """A task that is running on a worker.
 
     Attributes:
         task: the task.
@@ -108,7 +108,7 @@ class Dispatch:
             self._running[number] = worker, trial
 
     def _due(self, worker: str, fit: Collection[str]) -> _RunningTask | None:
-        """The next trial for a worker: one lost once comes first, one lost more often when all have begun.
+        """Return the next trial for a worker: first one lost once; one lost more often when all have begun.
 
         Losses come together, as where a cluster is taken away piece by piece: later tries are better later.
         What was lost at this worker waits for another, if there is one.
@@ -121,7 +121,7 @@ class Dispatch:
         return trial
 
     def _may_run(self, trial: _RunningTask, worker: str, fit: Collection[str]) -> bool:
-        """Whether a lost trial may go to a worker: to one that it was lost at if there will be no other."""
+        """Return whether a worker may run a trial that it lost before: only if there is no other worker."""
         if worker not in trial.avoided:
             return True
         is_coming = time.monotonic() < trial.lost_at + _COMING
@@ -173,7 +173,7 @@ class Dispatch:
         self._settled.append(answer.found or Answer([], Result(trial.task, lost=answer.lost)))
 
     def _misfit(self, trial: _RunningTask, worker: str, why: str) -> None:
-        """Take no answer from a worker that gives wrong ones, and make nothing of this one."""
+        """Reject a wrong answer, and refuse the worker from now on."""
         self._connection.roster.refuse(worker, f"its answer does not fit: {why}")
         lost = f"the answer of its worker does not fit: {why} ({worker})"
         self._settled.append(Answer([], Result(trial.task, lost=lost)))
@@ -194,7 +194,7 @@ class Dispatch:
         self._settled.append(Answer([], Result(trial.task, lost=lost)))
 
     def _can_go_on(self) -> bool:
-        """Whether there is a cluster; it may have to be reached again, or waited for."""
+        """Return whether there is a cluster; reconnect or wait if necessary."""
         cluster = self._connection
         if cluster.link.is_lost:
             self._again.extendleft(trial for _, trial in self._running.values())
@@ -220,14 +220,14 @@ class Dispatch:
         return True
 
     def _rest(self) -> Iterator[Task]:
-        """What has begun and has no answer, and what comes next."""
+        """Yield tasks that have begun and have no answer, and the remaining ones."""
         for trial in (*(one for _, one in self._running.values()), *self._again, self._next):
             if trial is not None:
                 yield trial.task
 
 
 def longest(task: Task) -> float:
-    """Seconds after which a worker that has not answered never will: limits inside end a task long before."""
+    """Return the seconds after which a worker's answer is given up; limits inside end a task much earlier."""
     walls = [task.deadlines.get(test, task.deadline).wall for test in task.job.tests or ()]
     forking = task.job.forking
     if forking is not None:

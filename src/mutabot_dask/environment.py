@@ -1,4 +1,4 @@
-"""What makes runs elsewhere mean what they mean here: versions, variables, where modules come from."""
+"""Makes runs on workers equivalent to those here: versions, variables, module folders."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ _RESET = (
 
 
 def decided() -> dict[str, str | None]:
-    """The variables that this machine decides for all; None for those that are not to be set."""
+    """Return the variables that this machine sets for all workers; None for those to be unset."""
     return dict.fromkeys(_RESET) | {name: text for name, text in os.environ.items() if name in _DECIDED}
 
 
 def apply(environment: Mapping[str, str | None], paths: Iterable[str]) -> None:
-    """Let processes that start from now on have these variables, and find modules in these folders first."""
+    """Set these variables for new processes, and let them find modules in these folders first."""
     for name, value in environment.items():
         if value is None:
             os.environ.pop(name, None)
@@ -54,7 +54,7 @@ _OWN_PATH = "MUTABOT_WORKERS_PYTHONPATH"
 
 
 def module_folders(root: Path) -> tuple[str, ...]:
-    """Folders of the project that modules come from, relative to it.
+    """Return the project's folders from which modules are imported, relative to it.
 
     Installed in place, a project would be imported from where it was installed, not from its copy.
     """

@@ -1,4 +1,4 @@
-"""What Dask's workers run for a campaign. Each function takes plain values or bytes, and returns bytes.
+"""The functions that Dask's workers run for a campaign; all take plain values or bytes and return bytes.
 
 A unit has its process while it is wanted, and its answer says whether its failure is this machine's fault.
 The project is unpacked into the folder that Dask gives a worker. Dask removes it when the worker ends, or
@@ -38,12 +38,12 @@ TAKEN = b"{}"
 
 
 class Unwanted(Exception):  # noqa: N818  # it is no error
-    """Nobody waits for this unit any more."""
+    """The unit's result is no longer needed."""
 
 
 @dataclass(slots=True)
 class WorkerSession:
-    """What a worker keeps from one unit to the next.
+    """The state that a worker keeps between units.
 
     Args:
         place: where the bundle is.
@@ -62,11 +62,11 @@ class WorkerSession:
 
     @property
     def root(self) -> str:
-        """The project's folder here."""
+        """The project's folder on this worker."""
         return str(self.place / self.ground.inner)
 
     def answer(self, unit: WorkUnit, look: Callable[[], None]) -> bytes:
-        """Run a unit. ``look`` is called several times a second, and raises Unwanted if it is to end."""
+        """Run a unit. ``look`` is called several times a second, and raises Unwanted to end it."""
         with self._lock:
             self._close_later(None)
             try:
@@ -81,7 +81,7 @@ class WorkerSession:
         return self._fitting(replace(answer, ticket=unit.ticket).data(self.ground.root), unit)
 
     def _fitting(self, data: bytes, unit: WorkUnit) -> bytes:
-        """The answer if the controller will take it: what processes report is in the hands of mutants."""
+        """Return the answer if the controller will accept it, since mutants may tamper with it."""
         try:
             UnitAnswer.of(data, unit)
         except Misfit as error:
@@ -90,13 +90,13 @@ class WorkerSession:
         return data
 
     def close(self) -> None:
-        """End what it keeps."""
+        """End the session's processes."""
         with self._lock:
             self._close_later(None)
             self._close()
 
     def _close_later(self, seconds: float | None) -> None:
-        """End what it keeps after this many seconds; None cancels that."""
+        """End the session's processes after this many seconds; None cancels that."""
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
@@ -142,7 +142,7 @@ class WorkerSession:
         return None
 
     def _why_unfit(self, task: Task, test: str, look: Callable[[], None]) -> str | None:
-        """Whether a test fails here without any mutant, as it does not where the baseline was taken."""
+        """Return how a test fails here without any mutant, unlike in the baseline; None if it does not."""
         result = self._run(task.without_mutant(test), look).result
         ended = next((end for end in result.ends if end.test == test), None)
         if ended is not None and ended.outcome != "failed":
@@ -153,7 +153,7 @@ class WorkerSession:
 
 
 class Store:
-    """The bundle of a worker: that of one campaign at a time, in a folder of the worker's own.
+    """The bundle on a worker: one campaign's at a time, in the worker's own folder.
 
     Args:
         folder: where it is unpacked.
@@ -165,11 +165,11 @@ class Store:
         self._digest = ""
 
     def place(self, digest: str) -> Path:
-        """Where a bundle is."""
+        """Return the path of a bundle."""
         return self._folder / f"mutabot-{digest}"
 
     def has(self, digest: str) -> bool:
-        """Whether a bundle is there; any other is removed."""
+        """Return whether a bundle exists; remove any other one."""
         if digest != self._digest:
             self.clear()
             self._digest = digest
@@ -181,7 +181,7 @@ class Store:
         shutil.rmtree(self.place(self._digest), ignore_errors=True)
 
     def take(self, digest: str, index: int, count: int, part: bytes) -> None:
-        """Take a part of a bundle, and unpack it with the last one."""
+        """Store a part of a bundle, and unpack the bundle with the last part."""
         if self.has(digest):
             return
         self._parts[index] = part
@@ -202,13 +202,13 @@ _stores: dict[str, Store] = {}
 
 
 def introduce(digest: str) -> bytes:
-    """Say who this worker is, and whether it has a bundle. An empty digest asks for none."""
+    """Return this worker's versions, and whether it has a bundle. An empty digest asks for none."""
     has = bool(digest) and _store().has(digest)
     return Introduction(Workers.versions(), has).data()
 
 
 def receive(digest: str, index: int, count: int, part: bytes) -> bytes:
-    """Take a part of a bundle."""
+    """Store a part of a bundle."""
     _store().take(digest, index, count, part)
     return TAKEN
 
@@ -223,7 +223,7 @@ def run_unit(data: bytes) -> bytes:
 
 
 def leave() -> bytes:
-    """Keep nothing of a campaign."""
+    """Delete everything kept for a campaign."""
     _end_sessions()
     _store().clear()
     return TAKEN
@@ -246,7 +246,7 @@ def _store() -> Store:
 
 
 def _look_of(worker: Any) -> Any:
-    """What raises Unwanted once the unit that runs now is wanted no more."""
+    """Return a function that raises Unwanted once the running unit is no longer needed."""
     key = worker.get_current_task()
 
     def look() -> None:

@@ -1,4 +1,4 @@
-"""Keep Dask from unpickling what workers send: descriptions take its place.
+"""Keeps Dask from unpickling what workers send: descriptions replace the objects.
 
 Dask's client unpickles results, exceptions, the types of results, and warnings of workers. Its option
 ``deserializers`` does not close this: messages on the stream from the scheduler, parts that a message marks
@@ -24,7 +24,7 @@ _SAID = 1000
 
 
 class Unreadable(Exception):  # noqa: N818  # it is a value
-    """Stands for an object that was not unpickled, or for one of its parts.
+    """A placeholder for an object that was not unpickled, or for one of its parts.
 
     Attributes:
         kind: the name of its class.
@@ -42,21 +42,21 @@ class Unreadable(Exception):  # noqa: N818  # it is a value
         self.kind = next(kinds, type(self).__name__)
 
     def __setstate__(self, state: Any) -> None:
-        """Take nothing over."""
+        """Ignore the state."""
 
     def __str__(self) -> str:
         return self.said or "an object that is not read"
 
 
 class _SafeUnpickler(pickle.Unpickler):
-    """Imports nothing and calls nothing: classes and functions are stand-ins."""
+    """An unpickler that imports and calls nothing: placeholders replace classes and functions."""
 
     def find_class(self, module: str, name: str) -> Any:
         return type(str(name)[:100], (Unreadable,), {})
 
 
 def install() -> None:
-    """Replace what unpickles. Raises UsageError if Dask has changed so much that it is not where it was."""
+    """Replace Dask's unpickling functions. Raises UsageError if this version of Dask has none of these."""
     for module, name, replacement in (
         ("distributed.protocol.pickle", "loads", _loaded),
         ("distributed.protocol.core", "merge_and_deserialize", _deserialized),
@@ -75,14 +75,14 @@ def install() -> None:
 
 
 def words(error: object) -> str:
-    """What an exception says, in one line; of other objects, what they are."""
+    """Return a description of an exception in one line; of other objects, what they are."""
     said = str(error).strip().splitlines() if isinstance(error, Exception) else []
     kind = error.kind if isinstance(error, Unreadable) and error.kind else type(error).__name__
     return f"{kind}: {said[0]}" if said else kind
 
 
 def _loaded(data: Any, **given: Any) -> Any:
-    """In the place of ``pickle.loads``: plain values, the type of bytes, and stand-ins."""
+    """Replace ``pickle.loads``: return plain values, the type of bytes, and placeholders."""
     try:
         if bytes(data) in _BYTES:
             return bytes
@@ -92,7 +92,7 @@ def _loaded(data: Any, **given: Any) -> Any:
 
 
 def _deserialized(header: Any, frames: Any, deserializers: Any = None) -> Any:
-    """In the place of what reads a value in a message: bytes as they are, words for all else."""
+    """Replace the deserialization of a value in a message: return bytes as they are, else a description."""
     try:
         data = b"".join(map(bytes, frames))
         match header.get("serializer"):
@@ -108,7 +108,7 @@ def _deserialized(header: Any, frames: Any, deserializers: Any = None) -> Any:
 
 
 def _exception(exception: Any = None, traceback: Any = None, **_: Any) -> tuple[type[Any], Any, None]:
-    """In the place of what makes an exception of what came; tracebacks are of no use here."""
+    """Replace the deserialization of exceptions; tracebacks are dropped."""
     found = _loaded(exception) if isinstance(exception, bytes | bytearray) else exception
     if not isinstance(found, BaseException):
         found = Unreadable(found if type(found) is str else "an object that is not read")

@@ -1,4 +1,4 @@
-"""The controller's connection to a Dask scheduler: who is there, and what is asked of whom.
+"""The controller's connection to a Dask scheduler: its workers, and the requests to them.
 
 Dask only ships functions and bytes here, and tells who is connected: which worker runs what is decided by
 the controller, and so is what the loss of one means.
@@ -60,7 +60,7 @@ except BaseException as error:
 
 @dataclass(frozen=True, slots=True)
 class News:
-    """An answer to what was asked.
+    """An answer to a request.
 
     Attributes:
         asked: the number of what was asked.
@@ -111,16 +111,16 @@ class Link:
 
     @property
     def workers(self) -> Mapping[str, int]:
-        """The workers that are connected, with how many threads each has."""
+        """The connected workers, with the number of threads of each."""
         return self._there
 
     @property
     def is_lost(self) -> bool:
-        """Whether the scheduler is gone, or cannot be reached."""
+        """Whether the scheduler has ended, or cannot be reached."""
         return self._client.status != "running" or time.monotonic() - self._heard > _SILENCE
 
     def ask(self, worker: str, function: Callable[..., bytes], *arguments: Any) -> int:
-        """Let a worker run a function; returns the number by which its answer comes."""
+        """Let a worker run a function; return the number of its answer."""
         number = next(self._numbers)
         code = _CODE.format(function.__module__, function.__name__)
         with warnings.catch_warnings():
@@ -135,14 +135,14 @@ class Link:
         return number
 
     def forget(self, *numbers: int) -> None:
-        """Take back what was asked: it ends where it runs."""
+        """Cancel requests; they end where they run."""
         futures = [self._asked.pop(number) for number in numbers if number in self._asked]
         if futures and not self.is_lost:
             with suppress(Exception):
                 self._client.cancel(futures, force=True)
 
     def close(self) -> None:
-        """Take back all, and let go."""
+        """Cancel all requests, and disconnect."""
         self.forget(*self._asked)
         self._is_closed.set()
         self._fetching.shutdown(wait=False, cancel_futures=True)
@@ -183,12 +183,12 @@ def _news(number: int, found: Any) -> News:
 
 
 def _is_foreign(error: Exception) -> bool:
-    """Whether a worker's error came neither from our functions, which return data, nor from its loss."""
+    """Return whether a worker's error came neither from our functions, which return data, nor its loss."""
     return isinstance(error, guard.Unreadable) and error.kind not in _LOSSES
 
 
 def shown(text: str) -> str:
-    """What a worker says, as one line that does nothing to a terminal."""
+    """Return a worker's message as one line without control characters."""
     return "".join(one if one.isprintable() else "�" for one in text[:_WORDS])
 
 
@@ -214,7 +214,7 @@ def _security(settings: ClusterSettings, address: str) -> Any:
 
 
 def is_private(address: str) -> bool:
-    """Whether a connection to this address is encrypted, or does not leave this machine."""
+    """Return whether a connection to this address is encrypted, or stays on this machine."""
     if address.startswith("tls://"):
         return True
     try:

@@ -86,14 +86,14 @@ class LocalCluster:
         return self._address
 
     def look_after_workers(self) -> bool:
-        """Start the workers again if whoever looks after them is gone; returns whether that was so."""
+        """Restart the workers if their supervising process has ended; return whether that was so."""
         if self._workers is None or self._workers.poll() is None:
             return False
         self._start_workers()
         return True
 
     def close(self) -> None:
-        """End all."""
+        """End all processes."""
         for process in (self._workers, self._scheduler):
             if process is not None:
                 _end(process)
@@ -132,7 +132,7 @@ def _end(process: subprocess.Popen[bytes]) -> None:
 
 
 def address_in(file: Path) -> str:
-    """The address in a scheduler file. Raises UsageError."""
+    """Return the address in a scheduler file. Raises UsageError."""
     try:
         return str(json.loads(file.read_text(encoding="utf-8"))["address"])
     except (OSError, ValueError, KeyError, TypeError) as error:
@@ -157,7 +157,7 @@ class Certificates:
 
     @classmethod
     def make(cls, folder: Path) -> Certificates:
-        """New ones, in a new folder that only this user can enter. Raises UsageError."""
+        """Make new certificates, in a new folder that only this user can enter. Raises UsageError."""
         import distributed  # noqa: PLC0415  # addresses in scheduler files are read without Dask
 
         security: type = distributed.Security
@@ -174,7 +174,7 @@ class Certificates:
 
 
 def _write(file: Path, text: str) -> str:
-    """Never readable by others, not even while it is written."""
+    """Write a file that is never readable by others, not even while it is being written."""
     descriptor = os.open(file, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
     with os.fdopen(descriptor, "w", encoding="ascii") as stream:
         stream.write(text)

@@ -1,4 +1,4 @@
-"""The workers of a cluster as the controller knows them: who runs with the same, and has the project."""
+"""The workers of a cluster as the controller knows them: their versions, and which have the project."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class _ClusterWorker:
 
 @dataclass
 class Roster:
-    """Who is there.
+    """All workers of a cluster.
 
     Args:
         link: the connection.
@@ -70,12 +70,12 @@ class Roster:
 
     @property
     def fit(self) -> list[str]:
-        """The workers that units can be given to."""
+        """The workers to which units can be given."""
         return [address for address, worker in self._workers.items() if worker.is_fit]
 
     @property
     def usable(self) -> list[str]:
-        """Return workers that are usable or may become so."""
+        """The workers that are usable or may become so."""
         return [address for address, worker in self._workers.items() if worker.refused is None]
 
     @property
@@ -85,16 +85,16 @@ class Roster:
 
     @property
     def is_quiet(self) -> bool:
-        """Whether nothing is asked that is not answered."""
+        """Whether all requests have been answered."""
         return not self._asked
 
     @property
     def refusals(self) -> dict[str, str]:
-        """Why workers are not used, by their address."""
+        """The reasons why workers are not used, by their address."""
         return {address: one.refused for address, one in self._workers.items() if one.refused is not None}
 
     def update(self) -> set[str]:
-        """Look who has come; returns who has gone."""
+        """Add new workers; return the workers that have gone."""
         there = self.link.workers
         gone = self._workers.keys() - there.keys()
         for address in gone:
@@ -108,7 +108,7 @@ class Roster:
         return gone
 
     def take(self, news: News) -> bool:
-        """Take an answer; returns whether it was for the roster."""
+        """Process an answer; return whether it was for the roster."""
         address = self._asked.pop(news.asked, None)
         if address is None:
             return False
@@ -128,7 +128,7 @@ class Roster:
         return True
 
     def _has_answered(self, address: str, worker: _ClusterWorker) -> None:
-        """A worker has answered all that it was asked."""
+        """Record that a worker has answered all requests."""
         fault, worker.fault = worker.fault, None
         if fault is None:
             worker.is_fit, worker.failures = worker.refused is None, 0
@@ -139,7 +139,7 @@ class Roster:
             self.refuse(address, f"it cannot take part ({fault}): {hint}")
 
     def refuse(self, address: str, why: str) -> None:
-        """Give a worker no units any more."""
+        """Give a worker no more units."""
         worker = self._workers.get(address)
         if worker is not None and worker.refused is None:
             worker.refused, worker.is_fit = why, False
@@ -153,7 +153,7 @@ class Roster:
             worker.failed.clear()
 
     def has_failed(self, address: str, unit: int, tried: Collection[str], why: str) -> None:
-        """Note that a unit, by its number, failed at a worker. After two in a row the worker is left out.
+        """Record that a unit failed on a worker. After two in a row the worker is excluded.
 
         What fails at two workers that have run others says nothing of them.
 
@@ -178,7 +178,7 @@ class Roster:
                 self.tell(f"worker {address} is used again: what failed there fails elsewhere, too")
 
     def dismiss(self) -> None:
-        """The campaign is over: workers need to keep nothing of it."""
+        """End the campaign on the workers, which need to keep nothing of it."""
         for address in self.usable:
             self._ask(address, far.leave)
 

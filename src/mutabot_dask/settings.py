@@ -1,4 +1,4 @@
-"""Which cluster a campaign runs on: an address, and the files that prove who is who."""
+"""The cluster that a campaign runs on: an address, and the files for authentication."""
 
 from __future__ import annotations
 
@@ -50,13 +50,13 @@ class ClusterTable(Table):
 
     @classmethod
     def of(cls, table: Table | None) -> ClusterTable:
-        """The table of a configuration; an empty one if it has none."""
+        """Return the table of a configuration; an empty one if it has none."""
         return table if isinstance(table, cls) else cls()
 
 
 @dataclass(frozen=True, slots=True)
 class ClusterSettings:
-    """A cluster.
+    """The settings of a cluster.
 
     Attributes:
         address: of the scheduler, or ``local:N``, or the path of a scheduler file.
@@ -69,7 +69,7 @@ class ClusterSettings:
     key: str | None = None
 
     def check(self) -> None:
-        """Raise UsageError for what cannot be a cluster."""
+        """Raise UsageError for invalid settings."""
         address = self.address
         name = address if len(address) <= _SHOWN else f"{address[:_SHOWN]}…"
         if self.local is not None:
@@ -99,13 +99,13 @@ class ClusterSettings:
 
     @property
     def local(self) -> int | None:
-        """How many workers to start on this machine; None for a cluster that is there."""
+        """The number of workers to start on this machine; None for an existing cluster."""
         match = _LOCAL.fullmatch(self.address)
         return _number(match[1]) if match is not None else None
 
     @property
     def is_file(self) -> bool:
-        """Whether the address stands in a file."""
+        """Whether the address is read from a file."""
         return self.local is None and "://" not in self.address
 
     @property
@@ -120,7 +120,7 @@ def _is_address(address: str) -> bool:
 
 
 def _check_count(workers: int, name: str) -> None:
-    """Raises UsageError for a number of workers that this machine cannot carry."""
+    """Raise UsageError for a number of workers that this machine cannot carry."""
     if workers == 0:
         raise UsageError("--cluster local:0 has no workers; local:2 starts two on this machine")
     processors = len(os.sched_getaffinity(0))

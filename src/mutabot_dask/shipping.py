@@ -1,4 +1,4 @@
-"""What of a project is sent to workers: what git tracks, and what the configuration names.
+"""Selects the project's files that are sent to workers: those tracked by git, and those configured.
 
 Nothing else leaves this machine, since a project's folder also holds what nobody means to give away: keys,
 passwords, the robot's own addresses. Where there is no repository, nobody has said what may be given away;
@@ -30,7 +30,7 @@ _KINDS = {
 
 @dataclass(frozen=True)
 class Shipment:
-    """The files that go to workers.
+    """The files that are sent to workers.
 
     Attributes:
         root: the project's folder.
@@ -50,7 +50,7 @@ class Shipment:
 
     @classmethod
     def of(cls, request: Request) -> Shipment:
-        """What goes of a project. Raises UsageError where git cannot tell what it tracks."""
+        """Return the files to send for a project. Raises UsageError if git cannot list its tracked files."""
         listing, root = request.files(), request.root
         chosen = {*listing.tracked, *listing.named}
         if listing.tracked:
@@ -73,22 +73,22 @@ class Shipment:
 
     @cached_property
     def suspicious(self) -> tuple[str, ...]:
-        """Files that go, relative to the project, though they are named like secrets."""
+        """The files to send whose names look like secrets, relative to the project."""
         names = (Path(os.path.relpath(path, self.root)).as_posix() for path in self.files)
         return tuple(name for name in names if may_be_secret(name))
 
     @property
     def folders_left_out(self) -> set[str]:
-        """The folders that have files which stay here, relative to the project."""
+        """The folders with files that are not sent, relative to the project."""
         return {PurePosixPath(name).parent.as_posix() for name in self.left_out}
 
     def missed(self, opened: Iterable[str]) -> list[str]:
-        """Files that stay here though tests open them."""
+        """Return the files that tests open but that are not sent."""
         return sorted(set(self.left_out) & set(opened))
 
 
 def _further(root: Path, files: Collection[str], patterns: Iterable[str]) -> Iterator[str]:
-    """The files that patterns name, and where these are links in the project, what they lead to."""
+    """Yield the files that patterns name, and the targets of those that are links within the project."""
     for pattern in patterns:
         for path in [root / pattern] if os.path.lexists(root / pattern) else sorted(root.glob(pattern)):
             yield from _files_of(root, files, path)
@@ -97,7 +97,7 @@ def _further(root: Path, files: Collection[str], patterns: Iterable[str]) -> Ite
 
 
 def _files_of(root: Path, files: Collection[str], path: Path) -> Iterator[str]:
-    """A file or link, or what is below a folder, without what is hidden there or named like a secret.
+    """Yield a file or link, or all files below a folder, except hidden ones and those named like secrets.
 
     ``files``: those of the project. A hidden folder, which has none of them, goes where it is named.
     """
@@ -113,7 +113,7 @@ def _files_of(root: Path, files: Collection[str], path: Path) -> Iterator[str]:
 
 
 def _is_usual(name: str) -> bool:
-    """Whether a file is of a kind that robots are described in, neither hidden nor named like a secret."""
+    """Return whether a file's kind is usual for robot descriptions, and it is not hidden or like a secret."""
     return PurePosixPath(name).suffix.lower() in _KINDS and not _is_hidden(name) and not may_be_secret(name)
 
 
@@ -144,7 +144,7 @@ _SAMPLES = re.compile(r".*\.(example|sample|template|dist|pub)", re.IGNORECASE)
 
 
 def may_be_secret(name: str) -> bool:
-    """Whether a file of this name, relative to the project, is of the kind that holds secrets."""
+    """Return whether a file's name, relative to the project, suggests that it contains secrets."""
     *folders, last = PurePosixPath(name).parts
     if _SAMPLES.fullmatch(last):
         return False

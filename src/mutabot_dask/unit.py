@@ -1,4 +1,4 @@
-"""Messages to workers and from them: a line of JSON, then a task or its answer as the core writes it.
+"""Messages to and from workers: a line of JSON, then a task or its answer as the core writes it.
 
 Workers may be broken, of another version, or hostile: what they send is checked before it is used.
 """
@@ -19,12 +19,12 @@ _SHOWN = 200
 
 
 class Misfit(ValueError):  # noqa: N818  # it is a finding
-    """Data that are not what they should be."""
+    """Raised for invalid data."""
 
 
 @dataclass(frozen=True, slots=True)
 class Ground:
-    """What all units of a campaign stand on.
+    """The data shared by all units of a campaign.
 
     Attributes:
         digest: of the bundle, which is its name.
@@ -55,12 +55,12 @@ class WorkUnit:
     ticket: str = ""
 
     def data(self) -> bytes:
-        """Return it as bytes."""
+        """Return the unit as bytes."""
         return _message({"ticket": self.ticket, "ground": asdict(self.ground)}, self.task.to_bytes())
 
     @classmethod
     def of(cls, data: bytes) -> WorkUnit:
-        """Return the unit in such bytes, which come from the controller."""
+        """Read a unit from bytes, which come from the controller."""
         line, _, task = data.partition(b"\n")
         found = json.loads(line)
         ground: dict[str, Any] = found["ground"]
@@ -70,7 +70,7 @@ class WorkUnit:
 
 @dataclass(frozen=True, slots=True)
 class UnitAnswer:
-    """What became of a unit.
+    """The result of a unit.
 
     Attributes:
         found: what became of its task; None if it has not run.
@@ -87,7 +87,7 @@ class UnitAnswer:
     ticket: str = ""
 
     def data(self, root: str) -> bytes:
-        """Return it as bytes; ``root`` is what the controller calls the project's folder."""
+        """Return the answer as bytes; ``root`` is the project's folder on the controller."""
         said = {"ticket": self.ticket, "fault": self.fault, "is_unfit": self.is_unfit, "lost": self.lost}
         return _message(said, self.found.to_bytes(root) if self.found is not None else b"")
 
@@ -108,7 +108,7 @@ class UnitAnswer:
 
 @dataclass(frozen=True, slots=True)
 class Introduction:
-    """What a worker says of itself.
+    """What a worker reports about itself.
 
     Attributes:
         versions: what it runs with, see ``Workers.versions``.
@@ -119,12 +119,12 @@ class Introduction:
     has: bool = False
 
     def data(self) -> bytes:
-        """Return it as bytes."""
+        """Return the introduction as bytes."""
         return _message(asdict(self))
 
     @classmethod
     def of(cls, data: bytes) -> Introduction:
-        """Return the introduction in such bytes. Raises Misfit."""
+        """Read an introduction from bytes. Raises Misfit if they are invalid."""
         said = _read(data.rstrip(b"\n"), {"versions": (dict,), "has": (bool,)})
         if any(type(version) is not str for version in said["versions"].values()):
             raise Misfit("versions: a text was expected for each")
@@ -139,7 +139,7 @@ def _message(said: Mapping[str, Any], more: bytes = b"") -> bytes:
 
 
 def _read(line: bytes, kinds: Mapping[str, tuple[type, ...]]) -> dict[str, Any]:
-    """The fields in a line, each of one of its types, with texts that can be stored. Raises Misfit."""
+    """Return the fields in a line, with checked types and storable texts. Raises Misfit."""
     if len(line) > _MOST_BYTES:
         raise Misfit(f"a line of {len(line)} bytes, more than {_MOST_BYTES}")
     try:
@@ -155,5 +155,5 @@ def _read(line: bytes, kinds: Mapping[str, tuple[type, ...]]) -> dict[str, Any]:
 
 
 def _storable(text: str) -> str:
-    """The text without characters that come in halves."""
+    """Return the text without unpaired surrogates."""
     return text.encode("utf-8", "backslashreplace").decode("utf-8")

@@ -1,4 +1,4 @@
-"""The process that asks the hardware whether it is well and brings it into its safe state.
+"""The process that checks the hardware's health and brings it into its safe state.
 
 The controller imports nothing of the user's: it starts this module as a program, in the project's folder, and
 asks it by lines of JSON, ``{"call": "module:function"}``. The answer is ``{}``, or ``{"error": text}``.
@@ -23,7 +23,7 @@ STARTUP = 30.0
 
 
 class Attendant:
-    """The process, as the controller has it; use as a context manager.
+    """The controller's side of the process; use as a context manager.
 
     Args:
         root: the project's folder.
@@ -50,7 +50,7 @@ class Attendant:
         self._waiting.close()
 
     def call(self, function: str, seconds: float) -> str | None:
-        """Call a function; returns what went wrong, in words, None if nothing did."""
+        """Call a function; return a description of what went wrong, None if nothing did."""
         stdin, stdout = self._process.stdin, self._process.stdout
         assert stdin is not None
         assert stdout is not None
@@ -73,7 +73,7 @@ class Attendant:
         return f"{function} raises {answer['error']}" if answer else None
 
     def check(self, functions: tuple[str, ...]) -> None:
-        """Raise UsageError unless these functions are there."""
+        """Raise UsageError unless these functions exist."""
         for function in functions:
             if why := self.call(f"?{function}", STARTUP):
                 raise UsageError(f"hardware: {why.replace('?', '', 1)}")
@@ -95,7 +95,7 @@ def _answer(asked: str) -> dict[str, Any]:
 
 
 def main() -> None:
-    """Answer until the controller is gone."""
+    """Answer requests until the controller has ended."""
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "w", encoding="utf-8")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # what the functions print is no answer
     sys.path.insert(0, str(Path.cwd()))

@@ -1,4 +1,4 @@
-"""What ``--hardware ask|yes|repeat`` means, and that a project with the table ``hardware`` needs it."""
+"""The option ``--hardware ask|yes|repeat``, which a project with the table ``hardware`` requires."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class HardwareChoice(ExecutorChoice):
-    """The choice of the hardware.
+    """The hardware chosen as executor.
 
     Attributes:
         table: the table of the configuration.
@@ -32,7 +32,7 @@ class HardwareChoice(ExecutorChoice):
 
     @classmethod
     def parse(cls, value: str, root: Path, table: Table | None) -> Self:
-        """See ``ExecutorChoice``."""
+        """Parse the option; see ``ExecutorChoice``."""
         if not isinstance(table, HardwareTable) or not table.enabled:
             raise UsageError("--hardware: the configuration has no table hardware that is enabled")
         if value not in get_args(Unasked):
@@ -41,11 +41,11 @@ class HardwareChoice(ExecutorChoice):
 
     @classmethod
     def implied(cls, table: Table) -> Self | None:
-        """See ``ExecutorChoice``: with this table, nothing runs otherwise."""
+        """Return the choice implied by the table, without which nothing runs; see ``ExecutorChoice``."""
         return cls(table) if isinstance(table, HardwareTable) and table.enabled else None
 
     def fitted(self, request: Request) -> Request:
-        """See ``ExecutorChoice``: one fresh process at a time, and no repeats."""
+        """Return the request for one fresh process at a time, without repeats; see ``ExecutorChoice``."""
         for name in ("safe_state", "heartbeat"):
             if getattr(self.table, name) is None:
                 raise UsageError(f'hardware: nothing runs without {name}, such as {name} = "cell_io:{name}"')
@@ -64,7 +64,7 @@ class HardwareChoice(ExecutorChoice):
         )  # fmt: skip
 
     def open(self, request: Request, tell: Callable[[str], None]) -> AbstractContextManager[HardwareExecutor]:
-        """See ``ExecutorChoice``. Raises UsageError."""
+        """Open the hardware's executor; see ``ExecutorChoice``. Raises UsageError."""
         from .executor import HardwareExecutor  # noqa: PLC0415  # it starts processes
 
         return HardwareExecutor.opened(request, self.table, self.unasked, tell)

@@ -29,14 +29,14 @@ _BEAT, _SAFE = 1.0, 60.0
 
 
 class HardwareStoppedError(MutabotError):
-    """The campaign was stopped, and the hardware is in its safe state, or that failed as the message says."""
+    """The campaign was stopped; the hardware is in its safe state, or the message says that this failed."""
 
     exit_code = 4
 
 
 @dataclass(slots=True)
 class Heartbeat:
-    """Asks the hardware whether it is well, again and again, and tells the processes of the tests.
+    """Repeatedly checks the hardware's health, and reports it to the test processes.
 
     Attributes:
         missing: what went wrong; None while all is well.
@@ -73,7 +73,7 @@ class Heartbeat:
 
 @dataclass(slots=True)
 class HardwareExecutor:
-    """Runs tasks on the hardware, see ``mutabot.api.processes.Request``; ``opened`` makes one.
+    """Runs tasks on the hardware, see ``mutabot.api.processes.Request``; ``opened`` makes an executor.
 
     Attributes:
         spread, remarks: as executors have them.
@@ -96,7 +96,7 @@ class HardwareExecutor:
     def opened(
         cls, request: Request, table: HardwareTable, unasked: Unasked, tell: Callable[[str], None]
     ) -> Iterator[Self]:
-        """An executor whose processes may send commands until it is left. Raises UsageError."""
+        """Open an executor whose processes may send commands until it is closed. Raises UsageError."""
         if unasked == "ask" and not sys.stdin.isatty():
             raise UsageError("hardware: each mutant is to be confirmed, but nobody can: use --hardware yes")
         home = request.journal_path.parent
@@ -121,11 +121,11 @@ class HardwareExecutor:
         return self.table.heartbeat or ""
 
     def run(self, tasks: Iterable[Task]) -> Iterator[Result]:
-        """Results in the order in which tasks ran."""
+        """Yield results in the order in which tasks ran."""
         return (event for event in self.events(tasks) if isinstance(event, Result))
 
     def events(self, tasks: Iterable[Task]) -> Iterator[Any]:
-        """The same, with each event as it comes. Raises HardwareStoppedError at a surprise."""
+        """Yield each event as it comes. Raises HardwareStoppedError at a surprise."""
         unfinished = self.log.unfinished()
         for task in self._ordered(tasks):
             why = self._why_not(task, unfinished)
@@ -141,15 +141,15 @@ class HardwareExecutor:
                 raise self._stopped(surprise)
 
     def rest(self, is_awaited: Callable[[], bool], seconds: float) -> Iterator[Any]:
-        """Nothing goes on after an interruption."""
+        """Yield nothing: no run continues after an interruption."""
         return iter(())
 
     def apart(self) -> AbstractContextManager[HardwareExecutor]:
-        """The same hardware: there is no other."""
+        """Return the same hardware, since there is no other."""
         return _itself(self)
 
     def _ordered(self, tasks: Iterable[Task]) -> Iterable[Task]:
-        """The original first, then the most harmless mutant."""
+        """Return the tasks: the original first, then mutants from the most harmless on."""
         waiting = list(tasks)
         return sorted(waiting, key=self._harm)
 
@@ -160,7 +160,7 @@ class HardwareExecutor:
         return self.rehearsal.of(mutant.id).harm, mutant.magnitude or 0.0
 
     def _why_not(self, task: Task, unfinished: frozenset[str]) -> str | None:
-        """Why a task is not run; None if it is. Raises HardwareStoppedError if the user says so."""
+        """Return why a task is not run; None if it is. Raises HardwareStoppedError if the user stops."""
         mutant = task.job.mutant
         is_again = mutant is not None and mutant.id in unfinished
         if is_again and self.unasked == "yes":
@@ -183,7 +183,7 @@ class HardwareExecutor:
                 raise HardwareStoppedError("hardware: stopped by the user; nothing was moving")
 
     def _shown(self, task: Task, *, is_again: bool) -> Iterator[str]:
-        """A mutant as the user sees it before it runs."""
+        """Yield the lines that describe a mutant to the user before it runs."""
         mutant, tests = task.job.mutant, task.job.tests
         which = "all tests" if tests is None else f"{len(tests)} {'test' if len(tests) == 1 else 'tests'}"
         if mutant is None:
@@ -239,7 +239,7 @@ class HardwareExecutor:
             raise HardwareStoppedError(f"hardware: the safe state was not reached: {why}")
 
     def _make_safe_after(self, attendant: Attendant) -> None:
-        """Bring the hardware into its safe state whatever happened; another process if this one is gone."""
+        """Bring the hardware into its safe state in any case; by another process if this one has ended."""
         why = attendant.call(self._safe_state, _SAFE)
         if why is not None:
             with Attendant(self.request.root) as another:
@@ -248,7 +248,7 @@ class HardwareExecutor:
             self.log.write(safe="after", failed=None)
 
     def _surprise(self, result: Result) -> str | None:
-        """What stops the campaign after this run; None if nothing does."""
+        """Return what stops the campaign after this run; None if nothing does."""
         found = self._found_in(result)
         if result.task.job.mutant is None:
             for end in result.ends:

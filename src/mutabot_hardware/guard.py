@@ -14,12 +14,12 @@ from .targets import UnreadableTarget
 
 
 def rules_of(table: GuardTable) -> list[LimitRule | BoxRule]:
-    """The limits and boxes of a table."""
+    """Return the limits and boxes of a table."""
     return [*(LimitRule(one) for one in table.limit), *(BoxRule(one) for one in table.box)]
 
 
 def why_idle(table: GuardTable, operations: Iterable[Operation]) -> str | None:
-    """Which part of a table never keeps a command back, since it concerns nothing; None if all parts do."""
+    """Return which part of a table concerns no operation, so that it never blocks a command; None if none."""
     commands = [one for one in operations if one.command]
     for rule in rules_of(table):
         if not any(rule.concerns(one) for one in commands):
@@ -40,13 +40,13 @@ def why_idle(table: GuardTable, operations: Iterable[Operation]) -> str | None:
 
 
 def _says_tool(operation: Operation, tool: str) -> bool:
-    """Whether an operation has a quantity that says which tool is mounted."""
+    """Return whether an operation has a quantity that says which tool is mounted."""
     target, *names = tool.split()
     return operation.target == target and any(one.name in names for one in described(operation))
 
 
 class TableGuard(CallGuard):
-    """Keeps from the robot what the table does not allow.
+    """Blocks the commands that the table does not allow.
 
     A command of which a rule cannot read what it needs is kept back as well; text commands that the
     vocabulary does not know concern no rule, see ``watch.HardwareGuard``.
@@ -61,12 +61,12 @@ class TableGuard(CallGuard):
         self.start_test()
 
     def start_test(self) -> None:
-        """See ``CallGuard``: nothing has been done yet."""
+        """Forget the commands of the test before; see ``CallGuard``."""
         self._orders = [OrderRule(one) for one in self._tables]
         self._tool: str | None = None
 
     def why_not(self, call: Call, unread: Mapping[str, str]) -> str | None:
-        """See ``CallGuard``."""
+        """Return why a command is blocked, or None; see ``CallGuard``."""
         if not call.is_command:
             return None
         why = self._why_not(call, unread)
@@ -93,7 +93,7 @@ class TableGuard(CallGuard):
         return any(fits(call, rule.table.operations) for rule in self._rules)
 
     def findings(self, call: Call) -> Iterator[RuleFinding]:
-        """What the limits and boxes say of a call. Raises UnreadableTarget."""
+        """Yield what the limits and boxes find for a call. Raises UnreadableTarget."""
         for rule in self._rules:
             yield from rule.of(call, self._tool)
 

@@ -1,4 +1,4 @@
-"""Where the processes of the tests ask whether a command may go out: the controller's half."""
+"""Gives test processes permission to send commands: the controller's side."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _MOST = 1 << 16
 
 
 class Leave:
-    """Gives processes of the tests leave to send commands, each after it is in the log.
+    """Gives test processes permission to send commands, each after it has been logged.
 
     Use as a context manager: inside, new processes know where to ask.
 
@@ -52,7 +52,7 @@ class Leave:
 
     @contextmanager
     def given(self) -> Iterator[None]:
-        """Inside, commands may go out, unless there has been a stop."""
+        """Allow commands in this context, unless there has been a stop."""
         with self._turn:
             self._is_given = True
         try:
@@ -62,7 +62,7 @@ class Leave:
                 self._is_given = False
 
     def stop(self, why: str) -> None:
-        """From now on, when this returns, no command goes out any more. The first reason counts."""
+        """Block all commands once this returns. Only the first reason is kept."""
         with self._turn:
             self._stopped = self._stopped or why
 
@@ -96,6 +96,6 @@ class Leave:
 
 
 def _is_ours(connection: socket.socket) -> bool:
-    """Whether the other end belongs to the same user."""
+    """Return whether the other end belongs to the same user."""
     found = connection.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, _CREDENTIALS.size)
     return bool(_CREDENTIALS.unpack(found)[1] == os.getuid())

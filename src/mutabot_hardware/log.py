@@ -1,4 +1,4 @@
-"""The log of a hardware campaign: what was begun and sent when, a line of JSON each. It is only added to."""
+"""The log of a hardware campaign: when what was begun and sent, as appended lines of JSON."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class HardwareLog:
             os.close(descriptor)
 
     def unfinished(self) -> frozenset[str]:
-        """The mutants, by their ids, whose last run was begun and did not come to its end."""
+        """Return the ids of mutants whose last run began but did not end."""
         begun: dict[str, bool] = {}
         for line in self._lines():
             if isinstance(mutant := line.get("mutant"), str):

@@ -1,4 +1,4 @@
-"""What mutants did in a campaign on a simulation of the same program: a rehearsal.
+"""The results of mutants in a campaign on a simulation of the same program: a rehearsal.
 
 The order on hardware is by that, the most harmless first: what changed nothing that anybody could see, then
 by how far the world was from the original's, and last what the simulated robot refused, what crashed or hung,
@@ -20,7 +20,7 @@ _BAD = frozenset({Verdict.REFUSED, Verdict.GUARDED, Verdict.TIMEOUT, Verdict.ERR
 
 @dataclass(frozen=True, slots=True)
 class Rehearsed:
-    """What a mutant did in the rehearsal.
+    """The results of a mutant in the rehearsal.
 
     Attributes:
         harm: 0 for none, larger for more; infinite for what is not known.
@@ -46,7 +46,7 @@ class Rehearsal:
 
     @classmethod
     def read(cls, journal: Path | None) -> Rehearsal:
-        """The rehearsal in a journal; an empty one for None. Raises UsageError if it cannot be read."""
+        """Read the rehearsal in a journal; an empty one for None. Raises UsageError if it cannot be read."""
         if journal is None:
             return cls({})
         try:
@@ -56,7 +56,7 @@ class Rehearsal:
         return cls({one.mutant.id: _of(one) for one in results.mutants})
 
     def of(self, mutant: str) -> Rehearsed:
-        """What the mutant with this id did."""
+        """Return the results of the mutant with this id."""
         return self._found.get(mutant, UNKNOWN)
 
 

@@ -1,4 +1,4 @@
-"""The rules of a guard: why a call must not reach the robot, and how near it comes to a limit.
+"""The rules of a guard: why a call must not reach the robot, and how close it comes to a limit.
 
 All rules look at the values that would go out. A relative move counts by its target: where the robot is, as
 the vocabulary's reading says, and the amount. What is not a finite number is within no limit.
@@ -23,7 +23,7 @@ _PLACES = ("translation",)
 
 @dataclass(frozen=True, slots=True)
 class RuleFinding:
-    """What a rule says of a call.
+    """The result of a rule for a call.
 
     Attributes:
         margin: how far the call is within the limit, in ``unit``; negative beyond it.
@@ -37,29 +37,29 @@ class RuleFinding:
 
     @property
     def is_within(self) -> bool:
-        """Whether the call may pass; not if the margin is no number."""
+        """Whether the call may pass; not if the margin is NaN."""
         return self.margin >= 0
 
 
 def fits(call: Call, operations: Iterable[str]) -> bool:
-    """Whether a call is of one of these operations."""
+    """Return whether a call is of one of these operations."""
     return is_one(call.operation, operations)
 
 
 def is_one(operation: Operation, operations: Iterable[str]) -> bool:
-    """Whether an operation is one of these."""
+    """Return whether an operation is one of these."""
     return any(fnmatchcase(operation.target, one) for one in operations)
 
 
 def described(operation: Operation) -> Iterator[Quantity]:
-    """All that the vocabulary describes of what an operation writes."""
+    """Yield everything that the vocabulary describes of what an operation writes."""
     yield from operation.arguments
     for pattern in operation.patterns:
         yield from pattern.arguments
 
 
 def written(call: Call) -> Iterator[tuple[Quantity, Any]]:
-    """The quantities that a call writes, with their values."""
+    """Yield the quantities that a call writes, with their values."""
     meant = call.pattern or call.operation
     for quantity in meant.arguments:
         if quantity.name in call.values:
@@ -68,16 +68,16 @@ def written(call: Call) -> Iterator[tuple[Quantity, Any]]:
 
 @dataclass(frozen=True, slots=True)
 class LimitRule:
-    """Least and greatest value of a quantity."""
+    """The limits of a quantity."""
 
     table: LimitTable
 
     def concerns(self, operation: Operation) -> bool:
-        """Whether there is a quantity of an operation that it limits."""
+        """Return whether the rule limits a quantity of an operation."""
         return is_one(operation, self.table.operations) and any(map(self._is_meant, described(operation)))
 
     def of(self, call: Call, tool: str | None) -> Iterator[RuleFinding]:
-        """What it says of a call. Raises UnreadableTarget."""
+        """Yield the results for a call. Raises UnreadableTarget."""
         table = self.table
         if not fits(call, table.operations) or not _holds(table.tool, tool):
             return
@@ -107,16 +107,16 @@ class LimitRule:
 
 @dataclass(frozen=True, slots=True)
 class BoxRule:
-    """A workspace, or what stands in it."""
+    """A workspace, or an obstacle in it."""
 
     table: BoxTable
 
     def concerns(self, operation: Operation) -> bool:
-        """Whether there is a target of an operation that it is compared with."""
+        """Return whether the rule concerns a target of an operation."""
         return is_one(operation, self.table.operations) and any(map(self._is_place, described(operation)))
 
     def of(self, call: Call, tool: str | None) -> Iterator[RuleFinding]:
-        """What it says of a call. Raises UnreadableTarget."""
+        """Yield the results for a call. Raises UnreadableTarget."""
         table = self.table
         if not fits(call, table.operations) or not _holds(table.tool, tool):
             return
@@ -131,7 +131,7 @@ class BoxRule:
         return quantity.kind in _PLACES and quantity.axis in self.table.sides and self._is_frame(quantity)
 
     def _target(self, call: Call, quantity: Quantity) -> float:
-        """Where the call leads to along an axis, m or as the box: where the robot is, if it says nothing."""
+        """Return the target along an axis, m or in the box's unit; without one, the robot's position."""
         value = call.values.get(quantity.name)
         target = target_now(call, quantity) if value is None else target_of(call, quantity, value)
         return quantity.to_unit(target, self.table.unit)
@@ -140,7 +140,7 @@ class BoxRule:
         return self.table.frame is None or quantity.frame is None or quantity.frame == self.table.frame
 
     def _inside(self, quantity: Quantity, number: float) -> RuleFinding:
-        """How far a target lies within the workspace along one axis."""
+        """Return how far a target is inside the workspace along one axis."""
         unit, (least, greatest) = self.table.unit, self.table.sides[quantity.axis or ""]
         target, margin = quantity.to_unit(number, self.table.unit), self.table.margin
         text = (
@@ -149,7 +149,7 @@ class BoxRule:
         return RuleFinding(_least(target - least - margin, greatest - margin - target), unit, text)
 
     def _outside(self, targets: Mapping[str, float]) -> RuleFinding:
-        """How far a target lies outside, along the axis along which that is farthest."""
+        """Return how far a target is outside an obstacle, along the axis with the largest distance."""
         table = self.table
         missing = ", ".join(sorted(table.sides.keys() - targets.keys()))
         if missing:
@@ -165,19 +165,19 @@ class BoxRule:
 
 @dataclass(slots=True)
 class OrderRule:
-    """An order of commands; it remembers what has come in the running test."""
+    """A required order of commands; it remembers the commands of the running test."""
 
     table: OrderTable
     is_open: bool = False
 
     def why_not(self, call: Call) -> str | None:
-        """Why the call comes too early; None if it does not."""
+        """Return why the call comes too early; None if it does not."""
         if fits(call, self.table.operations) and not self.is_open:
             return f"is allowed only after {' or '.join(self.table.after)}"
         return None
 
     def note(self, call: Call) -> None:
-        """The call goes to the robot."""
+        """Record a call that goes to the robot."""
         if fits(call, self.table.until):
             self.is_open = False
         if fits(call, self.table.after):
@@ -185,10 +185,10 @@ class OrderRule:
 
 
 def _holds(wanted: str | None, tool: str | None) -> bool:
-    """Whether a rule for one tool holds: also while nothing has said which one is mounted."""
+    """Return whether a rule for one tool applies: also while it is unknown which one is mounted."""
     return wanted is None or tool is None or wanted == tool
 
 
 def _least(above: float, below: float) -> float:
-    """The smaller of two margins; what is no number is beyond all limits."""
+    """Return the smaller of two margins; NaN counts as beyond all limits."""
     return -inf if isnan(above) or isnan(below) else min(above, below)

@@ -81,7 +81,7 @@ class BoxTable(Table):
 
     @property
     def sides(self) -> dict[str, tuple[float, float]]:
-        """The sides that it has, by axis."""
+        """The sides that the box has, by axis."""
         found = (("x", self.x), ("y", self.y), ("z", self.z))
         return {axis: side for axis, side in found if side is not None}
 
@@ -137,7 +137,7 @@ class GuardTable(Table):
 
     @property
     def is_empty(self) -> bool:
-        """Whether it lets everything pass."""
+        """Whether the guard blocks nothing."""
         return not (self.limit or self.box or self.forbid or self.order)
 
 

@@ -1,4 +1,4 @@
-"""Where a command leads to: the commanded value, or where the robot is and the amount of a relative move."""
+"""The target of a command: the commanded value, or the robot's position plus a relative move."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from mutabot.api.values import Call, Mode, Quantity
 
 
 class UnreadableTarget(Exception):  # noqa: N818  # a reason
-    """Why it is not known where a command leads to."""
+    """The target of a command is unknown, for the reason given."""
 
 
 def target_of(call: Call, quantity: Quantity, value: Any) -> float:
-    """Where a commanded amount leads to, in the quantity's unit. Raises UnreadableTarget."""
+    """Return the target of a commanded amount, in the quantity's unit. Raises UnreadableTarget."""
     try:
         number = float(value)
     except (TypeError, ValueError) as error:
@@ -21,7 +21,7 @@ def target_of(call: Call, quantity: Quantity, value: Any) -> float:
 
 
 def target_now(call: Call, quantity: Quantity) -> float:
-    """Where the robot is. Raises UnreadableTarget."""
+    """Return the robot's current value of a quantity. Raises UnreadableTarget."""
     lacking = f"where {quantity.name} leads to is not known"
     try:
         asked = call.current(quantity)

@@ -1,4 +1,4 @@
-"""What stands before every command in hardware mode, in the processes of the tests.
+"""Checks every command in hardware mode, in the test processes.
 
 Each command asks the controller: it goes out once the controller has written it to the log and says so. So
 nothing goes out after a stop, nor when the controller is gone, hangs or answers late.
@@ -31,7 +31,7 @@ _MOST = 1 << 16
 
 
 class HardwareGuard(CallGuard):
-    """Lets a command pass only if it can be read and the controller says so."""
+    """Lets a command pass only if it can be read and the controller allows it."""
 
     def __init__(self, table: Mapping[str, Any]) -> None:
         super().__init__(table)
@@ -41,7 +41,7 @@ class HardwareGuard(CallGuard):
         self._turn = threading.Lock()
 
     def why_not(self, call: Call, unread: Mapping[str, str]) -> str | None:
-        """See ``CallGuard``."""
+        """Return why a command must not go out, or None; see ``CallGuard``."""
         if not self._is_on:
             return None
         is_unknown = call.pattern is None and bool(call.operation.patterns)
@@ -56,7 +56,7 @@ class HardwareGuard(CallGuard):
         )
 
     def _asked(self, command: Mapping[str, Any]) -> str | None:
-        """Ask the controller; returns why the command must not go out, None if it may."""
+        """Ask the controller; return why the command must not go out, None if it may."""
         if self._owner != os.getpid():  # of a copy of a process, the connection and the turn are the other's
             self._connection, self._turn, self._owner = None, threading.Lock(), os.getpid()
         with self._turn:
@@ -73,7 +73,7 @@ class HardwareGuard(CallGuard):
 
 
 def unreadable(call: Call, unread: Mapping[str, str]) -> str | None:
-    """Why no guard can read a command, as ``CallGuard.why_not`` has it; None if guards can.
+    """Return why no guard can read a command, as ``CallGuard.why_not`` defines it; None if guards can.
 
     Of a command of which the vocabulary describes no argument, guards know nothing but its name. Flags such
     as ``wait=True`` say how a command is made, and not what it does.
@@ -98,7 +98,7 @@ def _short(value: object) -> str:
 
 @dataclass(frozen=True, slots=True)
 class _LeaveConnection:
-    """A connection to the controller, by its descriptor: Python warns of sockets that nobody closes.
+    """A connection to the controller, kept as a descriptor: Python warns of sockets that are not closed.
 
     Attributes:
         descriptor: its number, which a test may close and use for something else.
@@ -110,7 +110,7 @@ class _LeaveConnection:
 
     @classmethod
     def open(cls, name: str) -> Self:
-        """A new one. Raises OSError."""
+        """Open a new connection. Raises OSError."""
         with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as made:
             made.setblocking(True)  # libraries of robots set a default timeout for all sockets
             for option in (socket.SO_RCVTIMEO, socket.SO_SNDTIMEO):
@@ -121,7 +121,7 @@ class _LeaveConnection:
 
     @property
     def is_there(self) -> bool:
-        """Whether the descriptor is still this connection's."""
+        """Whether the descriptor still refers to this connection."""
         try:
             return os.fstat(self.descriptor).st_ino == self.node
         except OSError:

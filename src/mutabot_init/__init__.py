@@ -1,1 +1,1 @@
-"""Proposing a configuration and a vocabulary for a project, from one plain run of its tests; or a project."""
+"""Proposes a configuration and a vocabulary from one plain run of a project's tests, or starts a project."""

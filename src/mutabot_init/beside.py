@@ -1,4 +1,4 @@
-"""What packages beside this one add to the draft, from the same run of the tests, and projects to start from.
+"""The additions of other packages to the draft, from the same test run, and the projects that they start.
 
 The module that keeps a package's ``EXTENSION`` names these beside it, by reference: ``PROPOSER =
 "module:name"`` an object that keeps ``Proposer``, ``STARTER = "module:name"`` a function as ``Starter``.
@@ -18,25 +18,25 @@ Starter = Callable[[Path, Sequence[Path]], tuple[dict[str, str], list[str]] | No
 
 
 class Proposer(Protocol):
-    """What a package watches and proposes."""
+    """Proposes lines for the configuration, from a package's own observations."""
 
     def watch(self) -> Callable[[], Any]:
-        """Watch this process, which has not imported the program yet.
+        """Observe this process, which has not imported the program yet.
 
         Returns a function that returns what was seen so far, as plain data.
         """
 
     def lines(self, seen: Sequence[Any]) -> list[str]:
-        """The lines for the end of the configuration, from what each process saw, with a remark at first."""
+        """Return lines for the end of the configuration, after a comment, from what each process observed."""
 
 
 def brought_proposers() -> dict[str, Proposer]:
-    """The proposals of packages, by the packages' names; a package that cannot be used proposes nothing."""
+    """Return the proposers of packages, by the packages' names; unusable packages propose nothing."""
     return _brought("PROPOSER")
 
 
 def started(root: Path, files: Sequence[Path]) -> tuple[dict[str, str], list[str]] | None:
-    """The project of the first package that has the language of these files, as ``Starter`` makes it."""
+    """Return the project of the first package that knows these files' language, as ``Starter`` makes it."""
     starters: dict[str, Starter] = _brought("STARTER") if files else {}
     return next((made for one in starters.values() if (made := one(root, files)) is not None), None)
 

@@ -1,4 +1,4 @@
-"""``mutabot init``: a draft for a project that there is, or a project from a template."""
+"""``mutabot init``: drafts a configuration for an existing project, or starts one from a template."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def init(
 
 
 def _started(context: CommandContext, program: list[Path]) -> list[str] | None:
-    """Start a project for programs in a package's language; None if there are none of these."""
+    """Start a project for programs in a package's language; return None if there are none."""
     root = context.project.resolve()
     if not root.is_dir() or not (files := other_files(root, program)):
         return None

@@ -1,4 +1,4 @@
-"""The meaning of arguments and results, from names, docstrings and values: a line or a question.
+"""Guesses what arguments and results mean, from names, docstrings and values: a line or a question.
 
 The verb of the callable decides first: the argument of ``set_speed(x)`` is a speed, that of ``move_up(x)``
 a distance along z. A guess with questions becomes a comment in the draft.
@@ -76,7 +76,7 @@ _ACTIONS = frozenset({"action", "actions", "act", "a", "u", "ctrl"})
 
 @dataclass
 class Guess:
-    """A quantity and how sure we are.
+    """A quantity and how certain the guess is.
 
     Attributes:
         table: the quantity; empty if nothing could be guessed.
@@ -90,13 +90,13 @@ class Guess:
 
     @property
     def is_sure(self) -> bool:
-        """Whether it can stand in the vocabulary as it is."""
+        """Whether the quantity can be added to the vocabulary as it is."""
         return bool(self.table) and not self.questions
 
 
 @dataclass(frozen=True)
 class NameContext:
-    """Where a name stands.
+    """The context of a name.
 
     Attributes:
         words: words of the callable's own name.
@@ -120,12 +120,12 @@ class NameContext:
 
     @property
     def is_of_gripper(self) -> bool:
-        """Whether the callable or its class is about a gripper."""
+        """Whether the callable or its class concerns a gripper."""
         return bool(GRIPPER & {*self.words, *self.owner})
 
 
 def guess_argument(name: str, setting: NameContext) -> Guess:
-    """What an argument means; an empty guess if neither the callable's name nor its own tells."""
+    """Return what an argument means; an empty guess if neither the callable's name nor its own shows it."""
     words, unit = _without_unit(words_of(name))
     noun = noun_of(words)
     if noun == "none" or any(isinstance(value, str) for value in setting.values):
@@ -160,7 +160,7 @@ def guess_argument(name: str, setting: NameContext) -> Guess:
 
 
 def _by_verb(noun: str, stem: str, setting: NameContext) -> MotionMeaning | None:
-    """Kind, axis and mode where the callable's verb decides, whatever its only number is called."""
+    """Return kind, axis and mode if the callable's verb alone decides, whatever its only number is called."""
     verb, subject = first(VERBS, setting.words), noun_of(setting.words)
     is_axis = _AXIS.fullmatch(stem) is not None
     is_vector = len({"x", "y", "z", "dx", "dy", "dz"} & setting.names) > 1
@@ -178,7 +178,7 @@ def _by_verb(noun: str, stem: str, setting: NameContext) -> MotionMeaning | None
 
 
 def _by_name(noun: str, stem: str) -> MotionMeaning | None:
-    """Kind, axis and mode where the name alone shows a motion."""
+    """Return kind, axis and mode if the argument's name alone shows a motion; else None."""
     if match := _AXIS.fullmatch(stem):
         return "translation", match["axis"], "by" if match["delta"] else None
     if match := _RATE.fullmatch(stem):
@@ -196,7 +196,7 @@ def _by_name(noun: str, stem: str) -> MotionMeaning | None:
 def _moved(
     kind: str, axis: str | None, mode: str | None, unit: str | None, name: str, setting: NameContext
 ) -> Guess:
-    """A commanded motion, or what a setter sets."""
+    """Return the guess of a commanded motion, or of what a setter sets."""
     table: TomlTable = {"kind": kind, **({"axis": axis} if axis else {})}
     if kind not in ("translation", "rotation"):
         return measured(table, kind, unit, name, setting)
@@ -223,7 +223,7 @@ def _mode(setting: NameContext) -> str | None:
 
 
 def measured(table: TomlTable, dimension: str, unit: str | None, name: str, setting: NameContext) -> Guess:
-    """A quantity with a unit: as its name or a docstring says, else as its values show."""
+    """Return the guess of a quantity with a unit: from its name or a docstring, else from its values."""
     fitting = UNITS[dimension]
     if unit in fitting:
         return Guess({**table, "unit": unit})
@@ -252,7 +252,7 @@ def measured(table: TomlTable, dimension: str, unit: str | None, name: str, sett
 
 
 def _about(name: str, doc: str) -> str:
-    """The lines of a docstring that speak of an argument."""
+    """Return the lines of a docstring that are about an argument."""
     lines, found = doc.splitlines(), []
     for index, line in enumerate(lines):
         if re.search(rf"(?<!\w){re.escape(name)}(?!\w)", line):
@@ -262,7 +262,7 @@ def _about(name: str, doc: str) -> str:
 
 
 def _documented_range(text: str, setting: NameContext) -> list[float] | None:
-    """The least and greatest value that the docstring of an argument gives, if it gives one that fits."""
+    """Return the smallest and largest value that an argument's documentation gives; None without any."""
     pairs = {(float(one), float(other)) for pattern in _RANGES for one, other in pattern.findall(text)}
     seen = [value for value in setting.values if isinstance(value, int | float)]
     found = [[least, most] for least, most in pairs if least < most and least <= min(seen, default=least)]
@@ -271,7 +271,7 @@ def _documented_range(text: str, setting: NameContext) -> list[float] | None:
 
 
 def _unit_by_size(dimension: str, values: Sequence[Any]) -> str | None:
-    """The unit that numbers of this size have: no arm reaches 10 m, and 1.57 are no degrees."""
+    """Return the unit that numbers of this size have: no arm reaches 10 m, and 1.57 is not in degrees."""
     flat = [one for value in values for one in (value if isinstance(value, list) else [value])]
     numbers = [abs(one) for one in flat if isinstance(one, int | float) and not isinstance(one, bool)]
     largest = max(numbers, default=0.0)
@@ -317,7 +317,7 @@ def _literals(annotation: str) -> list[str]:
 
 
 def guess_reading(name: str, setting: NameContext) -> Guess:
-    """What a result, or the part of it with this name, means."""
+    """Return what a result, or its part with this name, means."""
     words, unit = _without_unit(words_of(name))
     about = {*words, *setting.words}
     while len(words) > 1 and words[0] in READERS:
@@ -359,7 +359,7 @@ def _label(setting: NameContext) -> Guess:
 
 
 def guess_elements(part: WatchedPart, name: str, setting: NameContext, *, written: bool) -> dict[str, Guess]:
-    """What the elements of a sequence mean, by path; nothing if neither its name nor the callable's tells.
+    """Return what a sequence's elements mean, by path; empty if no name shows it.
 
     ``setting.values`` are the sequences that were seen.
     """
@@ -385,7 +385,7 @@ def guess_elements(part: WatchedPart, name: str, setting: NameContext, *, writte
 
 
 def _is_no_pose(values: Sequence[Any]) -> bool:
-    """Whether seven numbers do not end with a quaternion: then they are joints."""
+    """Return whether seven numbers do not end in a quaternion, and so are joints."""
     return any(len(one) == 7 and abs(sum(part * part for part in one[3:]) - 1) > 0.1 for one in values)
 
 
@@ -411,14 +411,14 @@ def _pose(at: str, name: str, length: int, setting: NameContext, written: bool) 
 
 
 def _action(index: int, limits: list[list[float]] | None) -> Guess:
-    """An element of a policy's action or of a simulator's controls: a number on a scale of its own."""
+    """Return the guess of an element of a policy's action or a simulator's controls, on its own scale."""
     if limits is not None and limits[index][0] < limits[index][1]:
         return Guess({"kind": "output", "range": limits[index]})
     return Guess({"kind": "output", "range": ["…", "…"]}, ["its least and greatest value?"])
 
 
 def _without_unit(words: tuple[str, ...]) -> tuple[tuple[str, ...], str | None]:
-    """A name's words without a unit at its end, and the unit."""
+    """Return a name's words without a unit at its end, and the unit."""
     found = [unit for dimension in UNITS for unit in units_in(words[-1], dimension)] if words else []
     if not found or words[-1] in ("t", "g"):
         return words, None

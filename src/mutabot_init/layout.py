@@ -1,4 +1,4 @@
-"""What the text of a project tells: where program and tests lie, and what values are compared with."""
+"""Finds where a project's program and tests are, and the values with which they compare."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _PROGRAM_NAMES = (
 
 @dataclass(frozen=True)
 class Layout:
-    """What lies where in a project.
+    """The locations of a project's files.
 
     Attributes:
         root: absolute path of the project.
@@ -46,12 +46,12 @@ class Layout:
     guessed: bool
 
     def relative(self, path: Path) -> str:
-        """A path as the configuration writes it."""
+        """Return a path as the configuration writes it."""
         return path.relative_to(self.root).as_posix()
 
 
 def look(root: Path, given: Sequence[Path]) -> Layout:
-    """The layout of the project in ``root``; ``given`` are files or folders of the program, if known.
+    """Return the layout of the project in ``root``; ``given``: the program's files or folders, if known.
 
     Raises UsageError if a given path is not there, or if there is no Python file at all.
     """
@@ -70,7 +70,7 @@ def look(root: Path, given: Sequence[Path]) -> Layout:
 
 
 def other_files(root: Path, given: Sequence[Path]) -> list[Path]:
-    """Files that are no Python: those that are given, or of a project whose program is no Python; else none.
+    """Return non-Python files: the given ones, or those of a project without a Python program.
 
     Raises UsageError if a given path is not there.
     """
@@ -81,7 +81,7 @@ def other_files(root: Path, given: Sequence[Path]) -> list[Path]:
 
 
 def refuse_mistakes(layout: Layout) -> None:
-    """Raise UsageError for a file of the program, or a conftest, that is no Python."""
+    """Raise UsageError if a file of the program, or a conftest, is not valid Python."""
     for path in (*layout.program, *(one for one in layout.tests if one.name == "conftest.py")):
         try:
             ast.parse(path.read_bytes())
@@ -94,7 +94,7 @@ def refuse_mistakes(layout: Layout) -> None:
 
 
 def project_above(folder: Path) -> Path:
-    """The folder of the project: this one, or if it has no tests the nearest above it that has a build file.
+    """Return the project's folder: this one, or the nearest above it with tests or a build file.
 
     So ``mutabot init`` works in any folder of a project.
     """
@@ -105,7 +105,7 @@ def project_above(folder: Path) -> Path:
 
 
 def imported_modules(path: Path) -> set[str]:
-    """Names of the modules that a file imports, and of what it imports from them."""
+    """Return the names of the modules that a file imports, and of what it imports from them."""
     names: set[str] = set()
     for node in ast.walk(parsed(path)):
         if isinstance(node, ast.Import):
@@ -117,7 +117,7 @@ def imported_modules(path: Path) -> set[str]:
 
 
 def parsed(path: Path) -> ast.Module:
-    """A file's syntax tree; an empty one if it is no Python."""
+    """Return a file's syntax tree; an empty one if it is not valid Python."""
     try:
         return ast.parse(path.read_bytes())
     except (OSError, SyntaxError, ValueError):
@@ -163,7 +163,7 @@ def _places(root: Path, given: Sequence[Path]) -> list[Path]:
 
 
 def _guess_program(code: Sequence[Path]) -> list[Path]:
-    """Files that use others and are used by none of the program's side; by their names where that helps."""
+    """Return files that import others and are not imported by the program, preferring telling names."""
     ends = {path: path.stem for path in code}
     imports = {path: {part for name in imported_modules(path) for part in name.split(".")} for path in code}
     used = {path for path in code for other in code if other != path and ends[path] in imports[other]}
@@ -175,7 +175,7 @@ def _guess_program(code: Sequence[Path]) -> list[Path]:
 
 
 def _arguments(root: Path, tests: Sequence[Path]) -> list[str]:
-    """The outermost folder of tests for each file, or the file where it lies among others."""
+    """Return the outermost test folder of each test file, or the file itself if its folder has others."""
     found = []
     for path in tests:
         parts = path.relative_to(root).parts
@@ -188,7 +188,7 @@ def _arguments(root: Path, tests: Sequence[Path]) -> list[str]:
 
 
 def compared_with(layout: Layout) -> list[list[Any]]:
-    """Constants that the program and its tests compare one and the same thing with, a list for each thing."""
+    """Return lists of constants with which the program and its tests compare the same thing."""
     groups: dict[str, list[Any]] = {}
     for path in (*layout.program, *layout.tests):
         for node in ast.walk(parsed(path)):
@@ -199,7 +199,7 @@ def compared_with(layout: Layout) -> list[list[Any]]:
 
 
 def with_compared(values: Sequence[Any], groups: Iterable[Sequence[Any]]) -> list[Any]:
-    """Values that were seen, and those that the program compares the same thing with."""
+    """Return observed values, and those with which the program compares the same thing."""
     found = list(values)
     for group in groups:
         if any(isinstance(value, str) and value in group for value in values):

@@ -1,4 +1,4 @@
-"""Proposed entries for what was done under names of a middleware, by the types of the messages.
+"""Proposes entries for names of a middleware, by the types of their messages.
 
 Units and axes are those of REP 103. Where no convention is known of a type, the names of its fields tell.
 """
@@ -51,7 +51,7 @@ _OF_MIDDLEWARE = (
 
 @dataclass
 class DescribedPart:
-    """A part with the table it belongs to, and what it means; without a guess nothing tells."""
+    """A part with its table and meaning; without a guess, its meaning is unknown."""
 
     table: str
     path: str
@@ -61,7 +61,7 @@ class DescribedPart:
 
 @dataclass
 class MessageEntry:
-    """One entry.
+    """A proposed entry.
 
     Attributes:
         key, name: what it is called by.
@@ -82,22 +82,22 @@ class MessageEntry:
 
     @property
     def files(self) -> list[str]:
-        """Where it stands."""
+        """The files with the uses."""
         return list(dict.fromkeys(where.rpartition(":")[0] for use in self.uses for where in use.sites))
 
     @property
     def of_tests(self) -> bool:
-        """Whether the tests alone do it."""
+        """Whether only the tests use the name."""
         return all(use.of_tests for use in self.uses)
 
     @property
     def has_meaning(self) -> bool:
-        """Whether the draft gives a meaning to any part of the message."""
+        """Whether the draft describes the meaning of any part of the message."""
         return any(part.guess is not None for part in self.parts)
 
 
 def entries(found: Sequence[Use]) -> list[MessageEntry]:
-    """An entry for each name that the program uses, and for the readings of the tests that mean something."""
+    """Return an entry for each name that the program uses, and for meaningful readings of the tests."""
     made: dict[tuple[str, str, str | None], MessageEntry] = {}
     for use in sorted(found, key=lambda use: use.of_tests):
         if use.form not in _ENTRIES or use.name.startswith(_OF_MIDDLEWARE):
@@ -116,7 +116,7 @@ def entries(found: Sequence[Use]) -> list[MessageEntry]:
 
 
 def _type(use: Use) -> str:
-    """The type of a message, service or action; ROS 2 calls the parts ``SetBool_Request``."""
+    """Return the type of a message, service or action; ROS 2 calls the parts ``SetBool_Request``."""
     kind = use.written.type or use.read.type
     package, slash, name = kind.partition("/")
     if use.form is Form.TRANSFORM or not slash:
@@ -156,7 +156,7 @@ _BY = frozenset({"by", "relative", "rel", "offset", "shift", "jog", "delta", "st
 
 @dataclass(frozen=True)
 class MessagePlace:
-    """Where parts pass.
+    """The place where parts are sent or received.
 
     Attributes:
         form: what is done.
@@ -172,7 +172,7 @@ class MessagePlace:
 
     @classmethod
     def of(cls, use: Use, values: Values, *, is_written: bool) -> MessagePlace:
-        """The place of what passes in a use."""
+        """Return the place of the values of a use."""
         parts = values.parts.values()
         frames = {value for part in parts if _is_header(part, "frame_id") for value in part.values}
         frame = next(iter(frames)) if len(frames) == 1 else ""
@@ -180,17 +180,17 @@ class MessagePlace:
 
     @property
     def is_by(self) -> bool:
-        """Whether its name says that what is sent is relative."""
+        """Whether its name shows that the sent values are relative."""
         return bool(_BY & set(self.words))
 
     @property
     def tells_nothing(self) -> bool:
-        """Whether it is the answer to a command, which says how that went."""
+        """Whether it is the response to a command, which only reports success."""
         return self.form is Form.CALL and not self.is_written and not READERS & set(self.words)
 
 
 def meaning(part: WatchedPart, place: MessagePlace) -> Meant:
-    """What a part means, by path; an empty guess for a path of which nothing tells, nothing for the whole."""
+    """Return what a part means, by path; an empty guess for an unknown path, nothing for an unknown whole."""
     if place.tells_nothing:
         return {}
     field_ = part.within[-1] if part.within else ("", "")
@@ -210,7 +210,7 @@ def meaning(part: WatchedPart, place: MessagePlace) -> Meant:
 
 
 def _by_type(part: WatchedPart, field_: tuple[str, str], place: MessagePlace) -> Guess | None:
-    """What a number means by the types that hold it; None if no convention tells."""
+    """Return what a number means by the types that contain it; None if no convention applies."""
     holder, name = field_
     around = part.within[-2] if len(part.within) > 1 else ("", "")
     if holder in _POINTS or (holder == "geometry_msgs/Vector3" and around == _TRANSLATION):
@@ -227,7 +227,7 @@ def _by_type(part: WatchedPart, field_: tuple[str, str], place: MessagePlace) ->
 
 
 def _motion(kind: str, name: str, place: MessagePlace) -> Guess:
-    """Where something is, or is to be."""
+    """Return the guess of a present or commanded position."""
     turns = kind == "rotation"
     axis, unit = "z" if name == "theta" else name, "rad" if turns else "m"
     read = "orientation" if turns else "position"
@@ -252,7 +252,7 @@ def _is_header(part: WatchedPart, name: str) -> bool:
 
 
 def is_nothing(part: WatchedPart, place: MessagePlace) -> bool:
-    """Whether a part is not worth asking about: what the middleware itself writes, and words for people."""
+    """Return whether a part is irrelevant: fields of the middleware itself, and texts for people."""
     if part.within and part.within[-1][0] in (_HEADER, "std_msgs/MultiArrayLayout"):
         return True
     if any(isinstance(value, str) for value in part.values):
@@ -269,7 +269,7 @@ _FULL_TURN = 6.5
 
 
 def by_name(part: WatchedPart, words: Sequence[str], *, is_written: bool) -> Meant:
-    """What a part means by the names of its field and topic, by path."""
+    """Return what a part means by the names of its field and topic, by path."""
     own, values = part.within[-1][1] if part.within else "", part.values
     setting = NameContext(tuple(words), values=values)
     if not values:
@@ -303,7 +303,7 @@ def by_name(part: WatchedPart, words: Sequence[str], *, is_written: bool) -> Mea
 
 
 def _by_convention(guess: Guess, values: Sequence[Any]) -> Guess:
-    """Angles of ROS are in radians, if nothing says otherwise and they are no larger than a turn."""
+    """Assume radians, as is usual in ROS, for angles without a unit that are at most a turn."""
     numbers = [one for value in values for one in (value if isinstance(value, list) else [value])]
     is_small = all(abs(one) <= _FULL_TURN for one in numbers if isinstance(one, int | float))
     if guess.table.get("unit") == "rad" and is_small:

@@ -1,4 +1,4 @@
-"""Observe the calls that a program makes in one run of its tests."""
+"""Observes the calls that a program makes in one run of its tests."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _ANONYMOUS = re.compile(r"_\d+_\d{10,}(?=/|$)")
 
 
 def watch(layout: Layout, limit: float = LIMIT) -> Observed[WatchedCalls]:
-    """Run the tests once and watch the program; what each of its processes saw."""
+    """Run the tests once and observe the program; return what each of its processes observed."""
     return observe(
         layout.root,
         layout.arguments,
@@ -32,7 +32,7 @@ def watch(layout: Layout, limit: float = LIMIT) -> Observed[WatchedCalls]:
 
 
 def merged(processes: Iterable[WatchedCalls]) -> WatchedCalls:
-    """One call for each callable and side, one use for each form, name and side, whichever process saw it."""
+    """Merge processes: one call for each callable and side, one use for each form, name and side."""
     calls: dict[tuple[str, bool, bool], WatchedCallable] = {}
     uses: dict[tuple[Any, ...], Use] = {}
     for seen in processes:
@@ -44,7 +44,7 @@ def merged(processes: Iterable[WatchedCalls]) -> WatchedCalls:
 
 
 def _add_call(calls: dict[tuple[str, bool, bool], WatchedCallable], call: WatchedCallable) -> None:
-    """Add what a process saw of a callable; the values are those of the first process that saw it."""
+    """Add a process's observation of a callable; the values are those of the first process with any."""
     first = calls.setdefault((call.target, call.of_tests, call.is_set), call)
     if first is not call:
         first.leads_to_names |= call.leads_to_names

@@ -1,4 +1,4 @@
-"""Turn observed calls into proposed operations, with the commands that a call can express.
+"""Turns observed calls into proposed operations, with the commands that a call can express.
 
 A text, or a node, register or name, tells such commands apart: patterns, and what stands beside them.
 """
@@ -42,7 +42,7 @@ _TOLD = {"position": "position", "orientation": "orientation", "angle": "orienta
 
 @dataclass
 class Proposal:
-    """One proposed operation.
+    """A proposed operation.
 
     Attributes:
         call: the callable and what was seen of it.
@@ -68,23 +68,23 @@ class Proposal:
 
     @property
     def target(self) -> str:
-        """Return the callable's name as vocabularies write it."""
+        """The callable's name as vocabularies write it."""
         return self.call.target
 
     @property
     def refusals(self) -> list[str]:
-        """Exceptions that look like a refusal."""
+        """The exceptions that look like a refusal."""
         return [name for name in self.call.raised if _REFUSAL.search(name.partition(":")[2])]
 
     @property
     def is_clock(self) -> bool:
-        """Whether it looks like what lets a simulation go on by one step."""
+        """Whether it looks like a call that advances a simulation by one step."""
         words = {*words_of(self.call.owner), *words_of(self.target.partition(":")[0])}
         return self.call.name in STEPS and not self.call.arguments and bool(SIMULATORS & words)
 
     @property
     def is_reading(self) -> bool:
-        """Whether it takes nothing that matters and answers something."""
+        """Whether it takes no relevant arguments and returns something."""
         return bool(self.result) and not self.arguments and self.message is None
 
     @property
@@ -103,7 +103,7 @@ class Proposal:
 
 
 def proposals(calls: Sequence[WatchedCallable], groups: Sequence[Sequence[Any]] = ()) -> list[Proposal]:
-    """What becomes of calls; ``groups``: constants that the program compares one and the same thing with."""
+    """Return the proposals for calls; ``groups``: constants that the program compares with the same thing."""
     found = [_proposal(call, groups) for call in calls if not (_is_housekeeping(call) or _computes(call))]
     assigned = {one.target for one in found if one.call.is_set and one.is_operation}
     found = [one for one in found if one.call.is_set or one.target not in assigned]
@@ -142,7 +142,7 @@ def _proposal(call: WatchedCallable, groups: Sequence[Sequence[Any]]) -> Proposa
 
 
 def _share_units(guesses: dict[str, Guess]) -> None:
-    """Lengths, and angles, of one call have one unit: what tells that of one tells that of all."""
+    """Give all lengths, and all angles, of one call the unit that is known for one of them."""
     for kind in ("translation", "rotation"):
         some = [guess for guess in guesses.values() if guess.table["kind"] == kind]
         units = {guess.table["unit"] for guess in some if guess.is_sure}
@@ -152,20 +152,20 @@ def _share_units(guesses: dict[str, Guess]) -> None:
 
 
 def _is_housekeeping(call: WatchedCallable) -> bool:
-    """Whether it asks a reply, or a connection, how it is."""
+    """Return whether it queries the state of a reply or a connection."""
     words = set(words_of(call.name))
     return bool(words & HOUSEKEEPING) and ("is" in words or bool(REPLIES & set(words_of(call.owner))))
 
 
 def _computes(call: WatchedCallable) -> bool:
-    """Whether it makes or computes something of its arguments: the robot has no part in that."""
+    """Return whether it makes or computes something from its arguments, without the robot."""
     is_constructor = call.is_of_class and call.owner != "" and call.result.type == call.owner
     is_pure = call.only_computes and bool(call.arguments)
     return is_constructor or ((is_pure or _packs(call)) and not _reads(call))
 
 
 def _packs(call: WatchedCallable) -> bool:
-    """Whether it is a function that puts a value into a buffer, which something else sends."""
+    """Return whether it is a function that puts a value into a buffer, which something else sends."""
     words, first = words_of(call.name), next(iter(call.arguments.values()), None)
     is_buffer = first is not None and any(part.type == "bytearray" for part in first.parts.values())
     return not call.owner and is_buffer and bool(words) and words[0] in PACKERS
@@ -189,7 +189,7 @@ def _reads(call: WatchedCallable) -> bool:
 
 
 def _message(call: WatchedCallable) -> str | None:
-    """The argument that holds a text command."""
+    """Return the argument that contains a text command; None if none does."""
     if TALK & set(words_of(call.name)):
         return None
     for name, values in call.arguments.items():
@@ -250,7 +250,7 @@ def _reading(call: WatchedCallable, part: WatchedPart, groups: Sequence[Sequence
 
 
 def _find_current(proposal: Proposal, found: dict[str, Proposal]) -> None:
-    """Look for the reading that tells where a moved thing is: of the same object, with all its axes."""
+    """Find the reading that returns the position of a moved thing: of the same object, with all its axes."""
     wanted, owner = _with_axes(proposal.arguments, _MOVED), proposal.target.rpartition(".")[0]
     if not wanted or not owner:
         return
@@ -266,7 +266,7 @@ def _find_current(proposal: Proposal, found: dict[str, Proposal]) -> None:
 
 
 def _with_axes(guesses: Mapping[str, Guess], told: Mapping[str, str]) -> set[tuple[str, str]]:
-    """The descriptions of quantities, each with an axis."""
+    """Return the descriptions of quantities, each with an axis."""
     return {
         (told[guess.table["kind"]], axis)
         for guess in guesses.values()
@@ -289,7 +289,7 @@ def _find_opposite(proposal: Proposal, found: dict[str, Proposal]) -> None:
 
 
 def _swapped(text: str) -> Iterator[str]:
-    """The text with each of its words that has an opposite replaced by that."""
+    """Yield the text with each of its words that has an opposite replaced by that."""
     for pair in OPPOSITES:
         for one, other in (pair, pair[::-1]):
             for word, opposite in ((one, other), (one.title(), other.title()), (one.upper(), other.upper())):
@@ -319,7 +319,7 @@ def _setting(call: WatchedCallable, part: WatchedPart, annotation: str) -> NameC
 
 
 def _said(name: str, call: WatchedCallable) -> frozenset[bool]:
-    """What an argument with this name said that is true or false."""
+    """Return the truth values that an argument with this name had."""
     parts = call.arguments[name].parts.values() if name in call.arguments else ()
     return frozenset(value for part in parts for value in part.values if isinstance(value, bool))
 
@@ -337,7 +337,7 @@ _MOST_VALUES = 5
 
 
 def patterns_of(texts: Sequence[str]) -> list[tuple[str, Guess]]:
-    """Notations that take these texts, each with what its only field means (empty without a field)."""
+    """Return notations that match these texts, each with the meaning of its only field, if it has one."""
     notations: dict[str, list[float]] = {}
     for text in filter(str.strip, texts):
         numbers = [float(number) for number in _NUMBER.findall(text)]
@@ -368,19 +368,19 @@ def _notation(text: str) -> str:
 
 
 def tells_commands(call: WatchedCallable) -> bool:
-    """Whether there are commands, and their texts look like names of something."""
+    """Return whether there are commands, and their texts look like names."""
     if not call.commands:
         return False
     return call.told_by != "self" or len(call.commands) > 1 or "=" in next(iter(call.commands))
 
 
 def is_read(call: WatchedCallable) -> bool:
-    """Whether its commands read."""
+    """Return whether a callable's commands read."""
     return _READS.search(call.name) is not None
 
 
 def commands_of(call: WatchedCallable, groups: Sequence[Sequence[Any]] = ()) -> list[tuple[str, Guess]]:
-    """Each command as a notation, with what is written beside it or read.
+    """Return each command as a notation, with the meaning of the value written with it, or read.
 
     ``groups``: constants that the program compares one and the same thing with.
     """
@@ -403,7 +403,7 @@ def _written(text: str, command: Command) -> dict[str, Any]:
 
 
 def _value(text: str, part: WatchedPart) -> dict[str, Any]:
-    """What a written value means: as the node is called, else as its values look."""
+    """Return what a written value means: by the node's name, else by its values."""
     values = list(part.values)
     if part.length is not None or not values or any(isinstance(value, str) for value in values):
         return {}

@@ -1,4 +1,4 @@
-"""``mutabot init``: look at a project, write a configuration and a vocabulary, say what comes next."""
+"""``mutabot init``: inspects a project, writes a configuration and a vocabulary, and says what comes next."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _BEHIND = {"metaworld": "gymnasium"}
 
 @dataclass(frozen=True)
 class ShippedVocabulary:
-    """A shipped vocabulary that describes calls of the program.
+    """A vocabulary of an installed package that describes calls of the program.
 
     Attributes:
         name: as the configuration names it.
@@ -53,7 +53,7 @@ class ShippedVocabulary:
     packages: frozenset[str]
 
     def describes(self, call: WatchedCallable) -> bool:
-        """Whether it has this callable, as an operation or as its clock; wrappers and subclasses included."""
+        """Return whether it has this callable, or what that wraps or overrides, as operation or clock."""
         clock = self.vocabulary.clock
         if call.name in self.overridden and call.package in self.packages:
             return True
@@ -61,18 +61,18 @@ class ShippedVocabulary:
         return call.target in targets
 
     def knows_arguments(self, call: WatchedCallable) -> bool:
-        """Whether it says what arguments of such a call mean."""
+        """Return whether it says what the arguments of such a call mean."""
         return self.describes(call) and any(
             one.arguments for one in self.vocabulary.operations if one.target.endswith(f".{call.name}")
         )
 
     def reads(self, call: WatchedCallable) -> bool:
-        """Whether it has this callable as a reading."""
+        """Return whether it describes this callable as a reading."""
         return any(one.target == call.target and not one.command for one in self.vocabulary.operations)
 
 
 def known_vocabularies(layout: Layout, calls: Sequence[WatchedCallable]) -> list[ShippedVocabulary]:
-    """The shipped vocabularies with calls that were seen; without any calls, those that the text imports."""
+    """Return shipped vocabularies with observed calls; without any calls, those that the text imports."""
     files = (*layout.program, *layout.tests)
     imported = {name.partition(".")[0] for path in files for name in imported_modules(path)}
     every: dict[str, ShippedVocabulary] = {}
@@ -96,7 +96,7 @@ def known_vocabularies(layout: Layout, calls: Sequence[WatchedCallable]) -> list
 
 
 class _Look:
-    """What was found out about a project.
+    """The findings about a project.
 
     Attributes:
         layout: where what lies.
@@ -140,32 +140,32 @@ class _Look:
 
     @property
     def drafts(self) -> list[Proposal | MessageEntry]:
-        """All that the vocabulary is to say, be it as comments."""
+        """Everything that the vocabulary is to contain, even if only as comments."""
         return [*self.named, *self.operations]
 
     @property
     def taken(self) -> int:
-        """How many operations are proposed."""
+        """The number of proposed operations."""
         return sum(one.is_taken for one in self.drafts)
 
     @property
     def is_empty(self) -> bool:
-        """Whether nothing is known of what the program does."""
+        """Whether nothing is known about the program's calls."""
         return not (self.taken or self.known)
 
     @property
     def vocabulary(self) -> list[str]:
-        """Names for the configuration."""
+        """The vocabularies' names for the configuration."""
         names = [one.name for one in self.known]
         return [*names, VOCABULARY] if self.taken or not names else names
 
     @property
     def needs_vocabulary(self) -> bool:
-        """Whether there is anything to say that no shipped vocabulary says."""
+        """Whether there is anything to describe that no shipped vocabulary describes."""
         return bool(self.drafts or not self.known)
 
     def text(self) -> str:
-        """The vocabulary's text; what would not load, by a wrong guess, is a comment."""
+        """Return the vocabulary's text; what a wrong guess would keep from loading is a comment."""
         text = vocabulary_text(self.drafts, self.program)
         if not self.taken or _loads(text):
             return text
@@ -176,7 +176,7 @@ class _Look:
         return vocabulary_text(self.drafts, self.program)
 
     def _new(self, calls: Sequence[WatchedCallable]) -> list[WatchedCallable]:
-        """Calls to be described here: those of shipped vocabularies only where the program tells more."""
+        """Return the calls to describe; known ones only where the program shows more about them."""
         return [
             call
             for call in calls
@@ -207,7 +207,7 @@ def propose(
     limit: float = LIMIT,
     tell: Callable[[str], None] = lambda text: None,
 ) -> list[str]:
-    """Write ``mutabot.toml`` and ``robot.toml``; the lines say what was found and what to do next.
+    """Write ``mutabot.toml`` and ``robot.toml``; return lines on what was found and what to do next.
 
     ``program`` are files or folders of the robot program, relative to the working folder or to ``root``;
     without any they are guessed. The tests are run once, for ``limit`` seconds at most, to see what the
@@ -229,7 +229,7 @@ def propose(
 
 
 def without_doubles(calls: Sequence[WatchedCallable]) -> list[WatchedCallable]:
-    """Remove methods of any object where the robot's own method was seen, as a mock is one."""
+    """Remove methods of arbitrary objects, such as mocks, if the robot's own method was observed."""
     owned = {
         call.name
         for call in calls
@@ -243,12 +243,12 @@ def _nodes_tell(call: WatchedCallable) -> bool:
 
 
 def _has_limits(call: WatchedCallable) -> bool:
-    """Whether it takes an action of which the environment tells least and greatest values."""
+    """Return whether it takes an action with limits given by the environment."""
     return any(part.limits for values in call.arguments.values() for part in values.parts.values())
 
 
 def _by_side(calls: Sequence[WatchedCallable]) -> tuple[list[WatchedCallable], list[WatchedCallable]]:
-    """What the program calls, and what only the tests do."""
+    """Return the calls of the program, and those that only the tests make."""
     mine = [call for call in calls if not call.of_tests]
     targets = {call.target for call in mine}
     return mine, [call for call in calls if call.target not in targets]
@@ -263,7 +263,7 @@ def _write(path: Path, text: str) -> None:
 
 
 def refuse_existing(root: Path) -> None:
-    """Raise UsageError if the project has a configuration, or is not there."""
+    """Raise UsageError if the project has a configuration, or does not exist."""
     if not root.is_dir():
         raise UsageError(f"{root}: there is no such folder")
     for name in (CONFIGURATION, VOCABULARY):

@@ -1,4 +1,4 @@
-"""``mutabot init --TEMPLATE VALUE``: a project to start from, as a package beside the core writes it."""
+"""``mutabot init --TEMPLATE VALUE``: starts a project from another package's template."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from mutabot.api.reports import UsageError
 
 
 def start(root: Path, program: Sequence[Path], name: str, files: Mapping[str, str]) -> list[str]:
-    """Write the project that a template makes; the lines say what was written and what comes next.
+    """Write the project of a template; return lines on what was written and what comes next.
 
     Args:
         root: the project's folder; made if it is not there.

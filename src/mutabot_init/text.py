@@ -1,4 +1,4 @@
-"""Proposed operations as the text of a vocabulary file: lines that hold, and comments with questions."""
+"""Writes proposed operations as a vocabulary file: valid lines, and comments with questions."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _DONE = {
 
 
 def vocabulary_text(drafts: Sequence[Proposal | MessageEntry], program: Sequence[str]) -> str:
-    """The vocabulary file; what it cannot take as it is stands at its end, as comments."""
+    """Return the text of the vocabulary file; what would not load is at its end, as comments."""
     head = (
         f"# Drafted by `mutabot init` from {', '.join(program)}. Lines follow from names, docstrings and\n"
         "# values that were seen. To answer a question, correct the line and take its number sign away."
@@ -54,7 +54,7 @@ def _clock_line(target: str) -> str:
 
 
 def _with_notes_once(text: str) -> str:
-    """The text in which each general note stands at its first line alone."""
+    """Return the text with each general note only at its first line."""
     for note in (_ON_MOCK, _PLAIN):
         first, found, rest = text.partition(note)
         text = f"{first}{found}{rest.replace(note, '')}"
@@ -62,17 +62,17 @@ def _with_notes_once(text: str) -> str:
 
 
 def questions_in(text: str) -> int:
-    """How many questions a draft asks."""
+    """Return how many questions a draft asks."""
     return len(re.findall(r"# question: ", text))
 
 
 def key_text(path: str) -> str:
-    """A key, in quotes if it needs any."""
+    """Return a TOML key, in quotes if necessary."""
     return path if _BARE.fullmatch(path) else value_text(path)
 
 
 def value_text(value: Any) -> str:
-    """A value."""
+    """Return a TOML value."""
     if isinstance(value, dict):
         return "{ " + ", ".join(f"{key_text(key)} = {value_text(item)}" for key, item in value.items()) + " }"
     if isinstance(value, list | tuple):
@@ -81,7 +81,7 @@ def value_text(value: Any) -> str:
 
 
 def short(value: Any) -> str:
-    """A value as an example."""
+    """Return a value as a short example."""
     if isinstance(value, list):
         return f"[{', '.join(map(short, value[:8]))}{', …' if len(value) > 8 else ''}]"
     if isinstance(value, float):
@@ -91,7 +91,7 @@ def short(value: Any) -> str:
 
 
 def _line(table: str, path: str, part: WatchedPart, guess: Guess | None) -> str:
-    """A quantity, or as a comment the question that it depends on, or that nothing tells what it means."""
+    """Return the line of a quantity, or a comment with the question that remains."""
     key, seen = f"{table}.{key_text(path)}" if path else table, _examples(part, path)
     if guess is None:
         return f"# {key}  # seen: {seen or part.type or 'nothing'}"
@@ -102,7 +102,7 @@ def _line(table: str, path: str, part: WatchedPart, guess: Guess | None) -> str:
 
 
 def operation_text(proposal: Proposal) -> str:
-    """One ``[[operation]]``, with what is not known as comments."""
+    """Return an ``[[operation]]``, with what is unknown as comments."""
     call = proposal.call
     done = "assignment" if call.is_set or call.name == "__setitem__" else "call"
     lines = [f"[[operation]]  # seen: {counted(call.count, done)}, first at {next(iter(call.sites), '?')}"]
@@ -131,7 +131,7 @@ def operation_text(proposal: Proposal) -> str:
 
 
 def _subject(proposal: Proposal) -> Iterator[str]:
-    """What is called."""
+    """Yield the lines that say what is called."""
     call = proposal.call
     is_any = call.target.startswith(ANY)
     why = _ON_MOCK if call.stands_in and not is_any else ""
@@ -152,7 +152,7 @@ def _commented(text: str) -> str:
 
 
 def counted(count: int, noun: str) -> str:
-    """``1 call``, ``2 calls``."""
+    """Return a number with its noun: ``1 call``, ``2 calls``."""
     return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
@@ -173,7 +173,7 @@ def _arguments(proposal: Proposal) -> Iterator[str]:
 
 
 def _lines(table: str, part: WatchedPart, guesses: dict[str, Guess]) -> Iterator[str]:
-    """The lines of a part: its guesses, else a comment with what was seen."""
+    """Yield the lines of a part: its guesses, else a comment with the observed values."""
     mine = {path: guess for path, guess in guesses.items() if _belongs(path, part)}
     for path, guess in mine.items():
         yield _line(table, path, part, guess)
@@ -182,12 +182,12 @@ def _lines(table: str, part: WatchedPart, guesses: dict[str, Guess]) -> Iterator
 
 
 def _belongs(path: str, part: WatchedPart) -> bool:
-    """Whether a guess is about this part, or about elements of it."""
+    """Return whether a guess is about this part, or about elements of it."""
     return path == part.path or (part.length is not None and path.rpartition("[")[0] == part.path)
 
 
 def _examples(part: WatchedPart, path: str = "") -> str:
-    """Values that were seen, of the elements that the path names."""
+    """Return the observed values of the elements that the path names."""
     step = re.search(r"\[(\d+)(?::(\d+))?\]$", path) if part.length is not None else None
     values = part.values[:_EXAMPLES]
     if step is not None and path != part.path:
@@ -220,7 +220,7 @@ def _pattern_lines(proposal: Proposal) -> list[str]:
 
 
 def entry_text(entry: MessageEntry) -> str:
-    """One ``[[operation]]`` of a middleware, with what nothing tells as a comment."""
+    """Return an ``[[operation]]`` of a middleware, with what is unknown as a comment."""
     count = sum(sum(use.sites.values()) for use in entry.uses)
     where = f"{counted(count, _DONE[entry.key])}, first at {next(iter(entry.uses[0].sites))}"
     lines = [

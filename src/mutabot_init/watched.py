@@ -1,4 +1,4 @@
-"""What ``mutabot init`` learns from one plain run of the tests: the processes that run write it."""
+"""The observations of one plain run of the tests, as its processes write them."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class WatchedPart:
 
 @dataclass(slots=True)
 class Values:
-    """One argument, result or message over all calls.
+    """The values of one argument, result or message over all calls.
 
     Attributes:
         times: how many values were looked at.
@@ -53,13 +53,13 @@ class Values:
     parts: dict[str, WatchedPart] = field(default_factory=dict)
 
     def always(self, part: WatchedPart) -> bool:
-        """Whether every value had this part."""
+        """Return whether every value had this part."""
         return part.count >= self.times
 
 
 @dataclass(slots=True)
 class Command:
-    """What was seen of one of the commands of a callable, such as the writes to one node."""
+    """The observed uses of one of a callable's commands, such as the writes to one node."""
 
     arguments: dict[str, Values] = field(default_factory=dict)
     result: Values = field(default_factory=Values)
@@ -123,23 +123,23 @@ class WatchedCallable:
 
     @property
     def name(self) -> str:
-        """Its own name."""
+        """The callable's own name."""
         return self.target.rpartition(":")[2].rpartition(".")[2]
 
     @property
     def package(self) -> str:
-        """The top-level package it comes from."""
+        """The top-level package of the callable."""
         return self.target.partition(":")[0].partition(".")[0]
 
     @property
     def count(self) -> int:
-        """How many calls were seen."""
+        """How many calls were observed."""
         return sum(self.sites.values())
 
 
 @dataclass(slots=True)
 class Use:
-    """What was done under a name of a middleware, on one side.
+    """The uses of a name of a middleware, on one side (program or tests).
 
     Attributes:
         form, name: what, and under which resolved name.
@@ -160,7 +160,7 @@ class Use:
 
 @dataclass(slots=True)
 class WatchedCalls:
-    """What one process saw, or all of them together.
+    """The observations of one process, or of all processes together.
 
     Attributes:
         calls: callables in the order in which they were first used.

@@ -1,4 +1,4 @@
-"""What words mean in the names of robot libraries: one table of verbs, one of nouns, one of units."""
+"""The meanings of words in the names of robot libraries: a table of verbs, one of nouns, one of units."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ _WORD = re.compile(r"(?<![A-Za-z])[A-Za-z]{1,2}\d+|[A-Z]+(?![a-z])|[A-Z]?[a-z]+|
 
 
 def words_of(name: str) -> tuple[str, ...]:
-    """The words of a name in lower case: ``set``, ``digital``, ``out``; ``move``, ``j``."""
+    """Return the words of a name in lower case: ``set``, ``digital``, ``out``; ``move``, ``j``."""
     return tuple(word.lower() for word in _WORD.findall(name))
 
 
@@ -184,17 +184,17 @@ UNITS: Mapping[str, tuple[str, ...]] = {
 
 
 def units_in(text: str, dimension: str) -> list[str]:
-    """The different units of a dimension that a text names, in their order."""
+    """Return the different units of a dimension that a text names, in order."""
     names = list(_SPELT)
     found = [names[int(str(match.lastgroup)[1:])] for match in _UNIT.finditer(text)]
     return [unit for unit in dict.fromkeys(found) if unit in UNITS[dimension]]
 
 
 def noun_of(words: Sequence[str]) -> str:
-    """What a value with such a name is: the last noun tells; empty for one that no table has."""
+    """Return what a value with such a name is, by its last known noun; empty without one."""
     return next((NOUNS[word] for word in reversed(words) if word in NOUNS), "")
 
 
 def first(table: Mapping[str, str], words: Iterable[str]) -> str | None:
-    """The meaning of the first word that a table has."""
+    """Return the meaning of the first word that a table contains."""
     return next((table[word] for word in words if word in table), None)

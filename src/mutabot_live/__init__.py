@@ -1,1 +1,1 @@
-"""The report of a campaign that runs, served to browsers on this machine, with a button to stop."""
+"""Serves the report of a running campaign to browsers on this machine, with a button to stop."""

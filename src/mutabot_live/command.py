@@ -1,4 +1,4 @@
-"""``mutabot live``: a campaign with a page.
+"""``mutabot live``: runs a campaign with a live page.
 
 What it tells goes to the terminal and to browsers, which can stop it.
 """
@@ -27,7 +27,7 @@ _TICK = 0.1
 
 
 class Live:
-    """Campaigns run by it have a page; use as a context manager, and ``run`` in the main thread.
+    """Runs campaigns with a page; use as a context manager, and ``run`` in the main thread.
 
     After a campaign that has run to its end it stays as long as a browser shows the page, or until Ctrl-C.
 
@@ -50,7 +50,7 @@ class Live:
 
     @property
     def address(self) -> str:
-        """Where a browser finds the page."""
+        """The address of the page."""
         return self._server.address
 
     def __enter__(self) -> Self:
@@ -93,7 +93,7 @@ class Live:
 
 
 def _stop() -> None:
-    """Like Ctrl-C, in the thread that Python tells of it; where that is ignored, like SIGTERM."""
+    """Stop like Ctrl-C, in the main thread; where SIGINT is ignored, like SIGTERM."""
     main = threading.main_thread().ident
     assert main is not None
     is_ignored = signal.getsignal(signal.SIGINT) is signal.SIG_IGN
@@ -101,7 +101,7 @@ def _stop() -> None:
 
 
 class _FeedProgress:
-    """A progress that also tells the feed.
+    """A progress that also updates the feed.
 
     Attributes:
         progress: what shows it on the terminal, once there is anything to show.
@@ -126,7 +126,7 @@ class _FeedProgress:
         self.mutant_ended = progress.mutant_ended  # of no use to the page, which has it from the journal
 
     def stage(self, text: str, total: int | None = None) -> None:
-        """A new stage begins."""
+        """Begin a new stage."""
         if self.progress is not None:
             self.progress.stage(text, total)
         self._stage, self._line = text, ""
@@ -145,11 +145,11 @@ class _FeedProgress:
 
     @property
     def left(self) -> float | None:
-        """Seconds that the rest of the stage will take; None if that is not known."""
+        """The seconds left in the stage; None if unknown."""
         return None if self.progress is None else self.progress.left
 
     def note(self, text: str) -> None:
-        """Something the user should know."""
+        """Show a note to the user."""
         if self.progress is not None:
             self.progress.note(text)
         self._feed.note(ReportPages.legible(text))

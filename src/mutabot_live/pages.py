@@ -1,4 +1,4 @@
-"""What a browser may ask for: the report's own page and scripts, with data as the journal has them now.
+"""The pages that browsers may request: the report's page and scripts, with current data of the journal.
 
 Names are looked up in tables and never become paths: what is not in them is not there.
 """
@@ -27,7 +27,7 @@ _SCRIPT = '<script src="assets/live.js"></script>\n<script src="data/campaign.js
 
 @dataclass(frozen=True, slots=True)
 class Page:
-    """Something to send: its type, and its bytes."""
+    """A response: its type, and its bytes."""
 
     kind: str
     data: bytes
@@ -54,7 +54,7 @@ class Pages:
         self.every = _LEAST
 
     def get(self, path: str) -> Page | None:
-        """What is at a path; None if there is nothing."""
+        """Return the page at a path; None if there is none."""
         if path in self._assets:
             return self._assets[path]
         whole = {"data/campaign.js": self._report.campaign, "data/sources.js": self._report.sources}
@@ -70,12 +70,12 @@ class Pages:
         return None if found is None else _script(found)
 
     def look_at_once(self) -> None:
-        """The campaign has ended: the next who asks gets all of it."""
+        """Let the next request get all data, since the campaign has ended."""
         with self._lock:
             self._next = 0.0
 
     def _look(self) -> None:
-        """Read the journal, as often as may be: reading must not take the time of those who do the work."""
+        """Read the journal at limited intervals, so that reading takes little time from the campaign."""
         version, now = self._version(), time.monotonic()
         if version == self._read or now < self._next:
             return
@@ -101,7 +101,7 @@ def _assets() -> Iterator[tuple[str, Page]]:
 
 
 def index(text: str) -> str:
-    """The report's page, with what keeps it up to date."""
+    """Return the report's page, with the script that updates it."""
     for old, new in (_POLICY, ("</head>", _STYLE), ('<script src="data/campaign.js">', _SCRIPT)):
         assert text.count(old) == 1, old
         text = text.replace(old, new)

@@ -1,4 +1,4 @@
-"""The server: to this machine alone, to who knows the address, and to no page of anybody else.
+"""The server: only for this machine, with a secret address, and for no page of another site.
 
 A page of another site cannot read anything here: it does not know the token, its name in ``Host`` is not
 this machine's (which also stops names that are made to lead here), and its ``Origin`` is not ours.
@@ -40,7 +40,7 @@ _MOST = 32
 
 @dataclass(frozen=True, slots=True)
 class LiveEvent:
-    """An event that is sent to browsers.
+    """An event sent to browsers.
 
     Attributes:
         number: later events have higher ones.
@@ -54,7 +54,7 @@ class LiveEvent:
 
 
 class LiveFeed:
-    """Events of one campaign; any thread may add and read."""
+    """The events of one campaign; any thread may add and read."""
 
     def __init__(self) -> None:
         self._changed = threading.Condition()
@@ -66,13 +66,13 @@ class LiveFeed:
         self._is_closed = False
 
     def put(self, state: Mapping[str, Any]) -> None:
-        """The state is another one now."""
+        """Add a new state."""
         with self._changed:
             self._state = self._next("state", dict(state))
             self._changed.notify_all()
 
     def note(self, text: str) -> None:
-        """Something the user should know."""
+        """Add a note to the user."""
         with self._changed:
             self._notes.append(self._next("note", text))
             self._changed.notify_all()
@@ -93,12 +93,12 @@ class LiveFeed:
 
     @property
     def is_closed(self) -> bool:
-        """Whether nothing more will come."""
+        """Whether no further events will come."""
         return self._is_closed
 
     @contextmanager
     def reader(self) -> Iterator[bool]:
-        """While a browser listens; False if there are too many."""
+        """Count a listening browser in this context; yield False if there are too many."""
         with self._changed:
             is_free = self._readers < _MOST
             self._readers += is_free
@@ -110,7 +110,7 @@ class LiveFeed:
                 self._left = time.monotonic()
 
     def is_listened_to(self, seconds: float) -> bool:
-        """Whether a browser listens, or did within the last ``seconds``: it may be reloading its page."""
+        """Return whether a browser listens, or did within the last ``seconds``: it may be reloading."""
         with self._changed:
             return self._readers > 0 or time.monotonic() - self._left < seconds
 
@@ -147,7 +147,7 @@ PageCommands = Mapping[str, Callable[[], None]]
 
 
 class Server:
-    """Serves pages and events, and takes commands, in threads of its own. Raises UsageError without its port.
+    """Serves pages and events, and takes commands, in its own threads. Raises UsageError without its port.
 
     Args:
         port: of this machine; 0 for any that is free.
@@ -179,7 +179,7 @@ class Server:
 
 
 class _Server(ThreadingHTTPServer):
-    """Connections beyond ``MOST`` are closed: they take descriptors and memory that the campaign needs."""
+    """The HTTP server; connections beyond ``MOST`` are closed to save descriptors and memory."""
 
     daemon_threads = True
     block_on_close = False  # a browser that does not read holds up nobody
@@ -191,7 +191,7 @@ class _Server(ThreadingHTTPServer):
         super().__init__((HOST, port), _PageHandler)
 
     def get_request(self) -> tuple[socket.socket, Any]:
-        """The next connection; if there can be none now, not at once again."""
+        """Return the next connection; if none can be accepted now, wait before the next attempt."""
         try:
             return super().get_request()
         except OSError:
@@ -199,7 +199,7 @@ class _Server(ThreadingHTTPServer):
             raise
 
     def process_request(self, request: Any, client_address: Any) -> None:
-        """Answer it in a thread of its own, or turn it away."""
+        """Answer a request in a thread of its own, or reject it."""
         if not self._places.acquire(blocking=False):
             self.shutdown_request(request)
             return
@@ -217,7 +217,7 @@ class _Server(ThreadingHTTPServer):
             self._places.release()
 
     def handle_error(self, request: Any, client_address: Any) -> None:
-        """A browser that has gone, or is too slow: nothing of it belongs on the terminal."""
+        """Ignore the error of a browser that has gone or is too slow; the terminal is the campaign's."""
 
 
 class _BoundedRequest(io.RawIOBase):
@@ -232,7 +232,7 @@ class _BoundedRequest(io.RawIOBase):
         return True
 
     def readinto(self, buffer: Any) -> int:
-        """Raises TimeoutError if its time is up, which ends the connection."""
+        """Read into a buffer. Raises TimeoutError if the time is up, which ends the connection."""
         left = self._until - time.monotonic()
         if left <= 0:
             raise TimeoutError
@@ -251,13 +251,13 @@ class _PageHandler(BaseHTTPRequestHandler):
     server_version, sys_version = "mutabot", ""
 
     def setup(self) -> None:
-        """Read no longer, and no more, than a request may take."""
+        """Limit the time and size of reading a request."""
         super().setup()
         self.rfile.close()
         self.rfile = io.BufferedReader(_BoundedRequest(self.connection))
 
     def do_GET(self) -> None:
-        """A page, data, or the stream of events."""
+        """Serve a page, data, or the stream of events."""
         path = self._path()
         if path is None:
             return
@@ -275,7 +275,7 @@ class _PageHandler(BaseHTTPRequestHandler):
             self._send(page)
 
     def do_POST(self) -> None:
-        """A command, from our own page alone."""
+        """Accept a command, only from our own page."""
         path = self._path()
         if path is None:
             return
@@ -289,7 +289,7 @@ class _PageHandler(BaseHTTPRequestHandler):
             self._begin(HTTPStatus.NO_CONTENT)
 
     def _path(self) -> str | None:
-        """What is asked for, without the token; None if the request was refused."""
+        """Return the requested path, without the token; None if the request was refused."""
         hosts = self.headers.get_all("Host") or []
         if len(hosts) != 1 or not _NAMES.fullmatch(hosts[0]):
             self._refuse(HTTPStatus.MISDIRECTED_REQUEST, "open this page as localhost or 127.0.0.1")
@@ -343,7 +343,7 @@ class _PageHandler(BaseHTTPRequestHandler):
                     written = time.monotonic()
 
     def _is_gone(self) -> bool:
-        """Whether the browser has closed the connection, or sends more, which this server does not serve."""
+        """Return whether the browser has closed the connection, or sends more, which is not supported."""
         poll = select.poll()
         poll.register(self.connection, select.POLLIN)
         return bool(poll.poll(0))

@@ -1,1 +1,1 @@
-"""What original and mutant did, to be looked at: one file per format or viewer."""
+"""Shows the motions of original and mutant: one file per format or viewer."""

@@ -1,4 +1,4 @@
-"""``mutabot motion``: one test of a mutant beside that of the original, as it was recorded, or filmed.
+"""``mutabot motion``: shows a test of a mutant beside that of the original, as recorded or filmed.
 
 Without --round and --test, the round and test with the largest deviation are shown.
 """
@@ -45,7 +45,7 @@ def choose(
     round: int | None = None,
     test: str | None = None,
 ) -> Shown:
-    """What is to be shown of a mutant, with what is recorded of it.
+    """Return the test, round and recordings of a mutant to show.
 
     Args:
         context: of the command.
@@ -86,7 +86,7 @@ def choose(
 
 
 def missing_in(shown: Shown) -> list[str]:
-    """What is missing in what was recorded, one line each. Raises UsageError if nothing was."""
+    """Return what is missing in the recordings, one line each. Raises UsageError if nothing was recorded."""
     which = f"{shown.test} in round {shown.round + 1}"
     if shown.original is None:
         raise UsageError(f"nothing is recorded of {which}: {_WHAT_TO_DO}")
@@ -103,7 +103,7 @@ def missing_in(shown: Shown) -> list[str]:
 
 
 def _telling_round(result: MutantResult) -> int:
-    """The round that is best to look at, from 0; of equal ones the first."""
+    """Return the round that shows the mutant's effect best, from 0; of equal ones the first."""
     ranks = []
     for one in result.outcomes:
         told = one.told
@@ -120,7 +120,7 @@ def _reached_by(results: Results, result: MutantResult) -> tuple[str, ...]:
 
 
 def _one_of(tests: list[str], wanted: str) -> str:
-    """The test of this node id, or the only one that has this in it."""
+    """Return the test with this node id, or the only one whose id contains it."""
     if wanted in tests:
         return wanted
     found = [test for test in tests if wanted in test]
@@ -194,7 +194,7 @@ def motion(
 def _film(
     request: Request, result: MutantResult, shown: Shown, file: Path, progress: Progress
 ) -> Iterator[str]:
-    """Film the test and the round that are shown. Returns what is to be said about it."""
+    """Film the test and round that are shown; yield lines on the result."""
     with TemporaryDirectory(prefix="mutabot-film-") as folder:
         with CampaignRun.open(replace(request, rounds=shown.round + 1), progress) as campaign:
             original, other = film(campaign, result, shown.round, shown.test, Path(folder))

@@ -1,4 +1,4 @@
-"""One test of the original and of a mutant, filmed: each in a fresh process, recorded, with pictures.
+"""Films a test of the original and of a mutant: each in a fresh process, recorded, with pictures.
 
 The pictures are the simulator's own, as ``Feed.camera`` gives them. No other run takes any.
 """
@@ -32,7 +32,7 @@ _GRAPHICS = (("egl", "EGL"), ("osmesa", "OSMesa"))
 
 @dataclass(frozen=True, slots=True)
 class Take:
-    """One test, filmed.
+    """A filmed test.
 
     Attributes:
         film: its pictures, if there are any.
@@ -48,7 +48,7 @@ class Take:
 
 
 def choose_graphics() -> None:
-    """Let simulators of processes that start from now on draw without a screen, if there is none.
+    """Let simulators of new processes render without a screen, if there is none.
 
     It changes the environment, which MuJoCo reads, and PyOpenGL; what the user has chosen himself stays.
     """
@@ -91,7 +91,7 @@ def film(
 
 @contextmanager
 def followed(progress: Progress, folder: Path, seconds: float) -> Iterator[None]:
-    """Let a step of the progress be each simulated second that is filmed, of both sides.
+    """Advance the progress by a step for each simulated second that is filmed, of both sides.
 
     What the pictures show is known here only from their files: these are looked at now and then.
     """
@@ -122,7 +122,7 @@ def followed(progress: Progress, folder: Path, seconds: float) -> Iterator[None]
 
 
 def _tasks(planned: Task, test: str, more: float, folder: Path) -> Iterator[Task]:
-    """Yield the mutant's task for both sides, with ``more`` seconds for the pictures of the test."""
+    """Yield the tasks of both sides, with ``more`` seconds for the pictures of the test."""
     limit = planned.deadlines[test].with_more(more, more)
     deadlines = {**planned.deadlines, test: limit}
     for name in _SIDES:

@@ -1,4 +1,4 @@
-"""Recordings for Foxglove and whatever else reads MCAP. Needs foxglove-sdk: ``mutabot[mcap]``.
+"""Writes recordings for Foxglove and other MCAP readers. Needs foxglove-sdk: ``mutabot[mcap]``.
 
 Foxglove's own library rather than a bare MCAP writer: it brings the schemas that its panels know.
 """
@@ -23,7 +23,7 @@ _LINE, _DOT = 0.006, 0.024
 
 
 def write(file: Path, shown: Shown) -> None:
-    """Write what is recorded; the times are those of the clock of the recording, from 0 on."""
+    """Write a recording to a file; its times are those of the recording's clock, from 0."""
     context = foxglove.Context()
     file.unlink(missing_ok=True)
     with foxglove.open_mcap(str(file), context=context) as writer:
@@ -32,19 +32,19 @@ def write(file: Path, shown: Shown) -> None:
 
 
 class _FileTopics:
-    """All topics of a file."""
+    """The topics of a file."""
 
     def __init__(self, shown: Shown, context: Any) -> None:
         self._shown, self._context = shown, context
 
     def log(self) -> None:
-        """Write messages in the order of their times."""
+        """Write the messages in the order of their times."""
         found = [line for side, recorded in self._shown.sides for line in self._lines(side, recorded)]
         for time, channel, message in [*self._scene(), *sorted(found, key=lambda line: line[0])]:
             channel.log(message, log_time=round(time * 1e9))
 
     def _scene(self) -> Iterator[tuple[float, Any, Any]]:
-        """What stands around, and the paths: there from the beginning."""
+        """Yield the surroundings and the paths, which exist from the start."""
         yield self._shapes("/blocks", [_block(one) for one in self._shown.blocks])
         for side, recorded in self._shown.sides:
             paths = [_path(recorded, name, _colour(side)) for name in things_in(recorded)]
@@ -62,7 +62,7 @@ class _FileTopics:
         yield from self._events(side, recorded)
 
     def _poses(self, side: str, name: str, recorded: RecordedPaths) -> Iterator[tuple[float, Any, Any]]:
-        """Each thing is a frame of its own, in which its shape is at rest."""
+        """Yield the poses of things; each thing has a frame of its own, in which its shape is at rest."""
         frame, path = f"{side}/{name}", recorded.paths[name]
         shape = _shape(frame, path.track.size, _colour(side))
         yield self._shapes(_topic(side, name, "shape"), [shape])
@@ -119,7 +119,7 @@ def _block(block: DrawnBlock) -> Any:
 
 
 def _shape(frame: str, size: Coordinates | None, colour: Any) -> Any:
-    """A box, or a small ball for what has no size."""
+    """Return a box, or a small sphere for a thing without a size."""
     about: dict[str, Any] = {"frame_id": frame, "id": frame, "frame_locked": True}
     pose = _pose((0.0, 0.0, 0.0))
     if size is not None:
@@ -141,7 +141,7 @@ def _pose(row: Sequence[float]) -> Any:
 
 
 def _turn(row: Sequence[float]) -> Any:
-    """The orientation in it; a mere position is not turned."""
+    """Return the orientation in a row; identity if the row is only a position."""
     w, x, y, z = row[3:7] if len(row) == 7 else (1.0, 0.0, 0.0, 0.0)
     return messages.Quaternion(x=x, y=y, z=z, w=w)
 

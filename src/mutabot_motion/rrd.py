@@ -1,4 +1,4 @@
-"""Recordings for Rerun: a file that its viewer opens. Needs rerun-sdk: ``mutabot[rerun]``.
+"""Writes recordings for Rerun's viewer. Needs rerun-sdk: ``mutabot[rerun]``.
 
 Writing sends nothing anywhere. The viewer would send its maker how it is used; the one that is opened here is
 told not to, by Rerun's own command, in a folder of its own: what the user has set for himself stays.
@@ -29,7 +29,7 @@ _LINE, _DOT, _AXIS = 0.003, 0.012, 0.06
 
 
 def write(file: Path, shown: Shown) -> None:
-    """Write what is recorded, with the layout in which it is to be seen."""
+    """Write a recording to a file, with the layout of the viewer."""
     about = "\n\n".join(f"**{name}** {text}" for name, text in shown.about.items())
     name = f"mutant {shown.number}, round {shown.round + 1}: {shown.test}"
     with rerun.RecordingStream("mutabot", recording_id=f"{shown.id} {shown.round} {shown.test}") as stream:
@@ -48,7 +48,7 @@ def write(file: Path, shown: Shown) -> None:
 
 
 class _Side:
-    """One side of what is shown."""
+    """Original or mutant in a recording for Rerun."""
 
     def __init__(
         self, stream: rerun.RecordingStream, shown: Shown, name: str, recorded: RecordedPaths
@@ -87,7 +87,7 @@ class _Side:
         self._stream.log(self._path("paths", name), line, static=True)
 
     def _log_line(self, name: str) -> None:
-        """Log an arm at each moment; Rerun draws a strip as thick all along."""
+        """Log an arm at each time; in Rerun a strip has one thickness."""
         line = self._recorded.lines[name]
         path, strips = self._path("robot", name), [_points(row) for row in line.rows]
         radius = sum(line.track.radii) / len(line.track.radii)
@@ -150,7 +150,7 @@ def _layout(shown: Shown) -> Any:
 
 
 def open_viewer(file: Path, home: Path) -> str:
-    """Open Rerun's viewer, which outlives this process. Returns a description of the result.
+    """Open Rerun's viewer, which outlives this process. Return a description of the result.
 
     Without a screen it is not opened. Raises UsageError if it does not begin.
     """

@@ -1,4 +1,4 @@
-"""What is shown: one test, of the original and of a mutant, what is said of it, and what happened in it."""
+"""The data that are shown: one test of the original and of a mutant, with descriptions and events."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ BLOCK = (150, 156, 164)
 
 @dataclass(frozen=True, slots=True)
 class Shown:
-    """One test in one round.
+    """A test in one round.
 
     Attributes:
         number: the mutant's number.
@@ -50,33 +50,33 @@ class Shown:
 
     @property
     def name(self) -> str:
-        """What a file of it is called."""
+        """The base name of its files."""
         return f"mutant-{self.number}-round-{self.round + 1}"
 
     @property
     def title(self) -> str:
-        """Which mutant it is and what it changes."""
+        """The mutant's number, and what it changes."""
         return f"mutant {self.number} · {self.place} · {self.what}"
 
     @property
     def fault(self) -> float | None:
-        """When the mutant changed something for the first time, s; None if it did not."""
+        """The time when the mutant first changed something, s; None if it did not."""
         return self.mutant.recording.fault if self.mutant is not None else None
 
     @property
     def sides(self) -> tuple[tuple[str, RecordedPaths], ...]:
-        """The recordings that there are, with the names of their sides."""
+        """The existing recordings, with the names of their sides."""
         both = ("original", self.original), ("mutant", self.mutant)
         return tuple((name, found) for name, found in both if found is not None)
 
     @property
     def blocks(self) -> list[DrawnBlock]:
-        """What stands around on either side, each once."""
+        """The surroundings on both sides, each block once."""
         return list(dict.fromkeys(block for _, found in self.sides for block in found.recording.blocks))
 
     @property
     def about(self) -> dict[str, str]:
-        """What there is to say of it as a whole, by what that is."""
+        """The general facts about it, each with a label."""
         found = {
             "mutant": str(self.number),
             "id": self.id,
@@ -91,14 +91,14 @@ class Shown:
 
     @property
     def clock(self) -> str:
-        """What the times are of."""
+        """The description of the clock of all times."""
         return (
             "simulated time" if all(found.recording.is_simulated for _, found in self.sides) else "wall clock"
         )
 
 
 def end_of(recorded: RecordedPaths) -> float:
-    """The last moment of a recording, s."""
+    """Return the last time in a recording, s."""
     recording = recorded.recording
     calls = (one.ended for one in recording.calls if one.ended is not None)
     moments = (one.time for one in recording.moments)
@@ -106,12 +106,12 @@ def end_of(recorded: RecordedPaths) -> float:
 
 
 def things_in(recorded: RecordedPaths) -> list[str]:
-    """The names of what moves in space."""
+    """Return the names of the things that move."""
     return [name for name, path in recorded.paths.items() if path.track.kind != "value"]
 
 
 def values_in(recorded: RecordedPaths) -> list[str]:
-    """The names of what has a value over time."""
+    """Return the names of the values over time."""
     return [name for name, path in recorded.paths.items() if path.track.kind == "value"]
 
 
@@ -119,7 +119,7 @@ _TOUCH = {"touch": "{} touch", "part": "{} no longer touch"}
 
 
 class Weight(IntEnum):
-    """How much a line says."""
+    """The importance of a line."""
 
     READING = 0
     COMMAND = 1
@@ -128,7 +128,7 @@ class Weight(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class ShownEvent:
-    """One line.
+    """A line about an event.
 
     Attributes:
         time: s.
@@ -145,7 +145,7 @@ class ShownEvent:
 
 
 def events(shown: Shown, recorded: RecordedPaths) -> list[ShownEvent]:
-    """All of one side, in the order of their times; calls without a time are left out."""
+    """Return all events of one side, in order of time; calls without a time are left out."""
     recording, found = recorded.recording, []
     for call in recording.calls:
         if call.began is None:
@@ -163,7 +163,7 @@ def events(shown: Shown, recorded: RecordedPaths) -> list[ShownEvent]:
 
 
 def _said(name: str, written: Mapping[str, Any], read: Mapping[str, Any]) -> str:
-    """A call with its values: of those written, such as differ from 0, if there are any."""
+    """Return a call with its values: the non-zero written ones, if any."""
     wrote = {part: value for part, value in written.items() if value != 0} or written
     return " ".join(filter(None, (name, _values(wrote), f"reads {_values(read)}" if read else "")))
 

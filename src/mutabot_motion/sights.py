@@ -1,4 +1,4 @@
-"""The ways to look at what is recorded, as they are asked for. Each needs an extra of its own.
+"""The ways to view a recording, as options request them. Each needs its own extra.
 
 A file is refused before anything runs, and there only when it is whole.
 """
@@ -56,7 +56,7 @@ def sights_of(home: Path, *, rerun: bool, rrd: Path | None, mcap: Path | None) -
 
 
 def written(target: Any, file: Path, shown: Shown, opened: Callable[[Path], str] | None = None) -> str:
-    """Write a recording by a module of this package, and open what shows it; says what there is now."""
+    """Write a recording by a module of this package, open it, and return a description of the result."""
     with written_whole(file) as part:
         target.write(part, shown)
     said = f"{file}: {file.stat().st_size / 1e3:.0f} kB for {target.READER}"
@@ -64,7 +64,7 @@ def written(target: Any, file: Path, shown: Shown, opened: Callable[[Path], str]
 
 
 def module(name: str) -> Any:
-    """A module of this package. Raises UsageError if the library that it needs is not installed."""
+    """Return a module of this package. Raises UsageError if the library that it needs is not installed."""
     library, needs, extra = _NEEDS[name]
     try:
         return import_module(f"{__package__}.{name}")
@@ -74,7 +74,7 @@ def module(name: str) -> Any:
 
 
 def check(file: Path, *suffixes: str) -> None:
-    """Raise UsageError if a file of these kinds cannot be written there; no other file is written over."""
+    """Raise UsageError if a file with these suffixes cannot be written there, or would be overwritten."""
     suffix = file.suffix.lower()
     what, at, magic = _FILES[suffix if suffix in suffixes else suffixes[0]]
     cannot = f"the {what} {file} cannot be written"
@@ -97,7 +97,7 @@ def _begins(file: Path, magic: bytes, at: int) -> bool:
 
 @contextmanager
 def written_whole(file: Path) -> Iterator[Path]:
-    """Where to write: beside the file, whose place it takes when all is written; else nothing is left."""
+    """Yield a path beside the file; when all is written, it replaces the file, else nothing is left."""
     part = file.with_name(f".{file.stem}.part{file.suffix}")
     try:
         yield part
@@ -109,5 +109,5 @@ def written_whole(file: Path) -> Iterator[Path]:
 
 
 def has_screen() -> bool:
-    """Whether a window can be opened."""
+    """Return whether a window can be opened."""
     return sys.platform != "linux" or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))

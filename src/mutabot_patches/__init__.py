@@ -1,1 +1,1 @@
-"""Patches as mutants: each unified diff of a folder, such as a fix that was reverted, is a fault."""
+"""Patches as mutants: each unified diff in a folder, such as a reverted fix, is a fault."""

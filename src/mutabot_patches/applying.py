@@ -1,4 +1,4 @@
-"""Applies the hunks of a patch to the content of a file as ``git apply`` does.
+"""Applies the hunks of a patch to a file's content as ``git apply`` does.
 
 Every line of context must be there as the patch has it; a hunk may stand some lines further up or down than
 it says, and goes to the nearest place.
@@ -17,7 +17,7 @@ HunkExtent = tuple[int, int, int, int]
 
 @dataclass(frozen=True, slots=True)
 class Applied:
-    """A file with its hunks applied.
+    """The result of applying hunks to a file.
 
     Attributes:
         content: what it holds then.
@@ -60,7 +60,7 @@ class _PatchedLines:
         return b"".join(line for line, _ in self._now)
 
     def find(self, hunk: Hunk, expected: int) -> int | None:
-        """Return where a hunk fits: the nearest place, first below and then above; None if there is none."""
+        """Return where a hunk fits: the nearest place, below before above; None if there is none."""
         last = len(self._now) - len(hunk.before)
         if not hunk.leading and not hunk.trailing and hunk.old > 1:  # without context nothing says where else
             places: Iterator[int] = iter((expected,))
@@ -81,7 +81,7 @@ class _PatchedLines:
         return is_whole and all(line == wanted and n is not None for (line, n), wanted in pairs)
 
     def replace(self, hunk: Hunk, at: int) -> HunkExtent:
-        """Put the lines of a hunk in place; return where that is in the file before."""
+        """Put the lines of a hunk in place; return the position in the original file."""
         end = at + len(hunk.before)
         changed = [n for _, n in self._now[at + hunk.leading : end - hunk.trailing] if n is not None]
         if not changed:
@@ -92,7 +92,7 @@ class _PatchedLines:
         return changed[0] + 1, 0, changed[-1] + 1, len(text.rstrip(b"\r\n"))
 
     def why_not(self, hunk: Hunk, expected: int, path: str) -> str:
-        """Return why a hunk does not apply: the first line that is another one, or what is the same."""
+        """Return why a hunk does not apply: the first line that differs, or that it is already applied."""
         begin = f"hunk {hunk.number} does not apply to {path}"
         now = [line for line, _ in self._now]
         if now[expected : expected + len(hunk.after)] == [*hunk.after] and hunk.after != hunk.before:
@@ -110,7 +110,7 @@ class _PatchedLines:
 
 
 def _around(start: int, last: int) -> Iterator[int]:
-    """Places from 0 to the last, the nearest first, of two equally near that below first."""
+    """Yield places from 0 to the last, the nearest first; of two equally near, the one below first."""
     for distance in range(max(start, last - start, 0) + 1):
         yield from (one for one in dict.fromkeys((start + distance, start - distance)) if 0 <= one <= last)
 

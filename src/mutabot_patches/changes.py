@@ -1,4 +1,4 @@
-"""What a patch makes of the files of a project, or why it makes no mutant."""
+"""Applies a patch to the files of a project, or finds out why it makes no mutant."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Patch:
 
 
 def read_patch(content: bytes, root: Path, is_of_suite: Callable[[str], bool]) -> Patch:
-    """Read a patch and apply it to the files of a project, of which none is written.
+    """Read a patch and apply it to the files of a project, in memory.
 
     Args:
         content: the unified diff.
@@ -72,7 +72,7 @@ def read_patch(content: bytes, root: Path, is_of_suite: Callable[[str], bool]) -
 
 
 def _path_in(root: Path, one: FileDiff) -> str:
-    """The file in the project: without the first folder, which git adds, or as it is written."""
+    """Return the path in the project: without the first folder, which git adds, or as it is written."""
     names = [name for name in (one.old, one.new) if name]
     candidates = [part for name in names for part in (name.partition("/")[2], name) if part]
     path = next((name for name in candidates if _is_file(root, name)), candidates[0] if candidates else "")
@@ -109,14 +109,14 @@ def _changed(root: Path, path: str, one: FileDiff) -> tuple[ChangedFile, Sequenc
 
 
 def _check(files: Iterable[ChangedFile]) -> None:
-    """Refuse what is no program, or the same one."""
+    """Refuse files that are no valid program, or the same program."""
     is_same = [_is_same_program(one) for one in files]  # each is looked at: any may be no Python
     if all(is_same):
         raise PatchError("it changes nothing but comments and layout")
 
 
 def _is_same_program(one: ChangedFile) -> bool:
-    """Whether a file of Python differs in comments and layout alone. Raises PatchError if it is none then."""
+    """Return whether a Python file differs only in comments and layout. Raises PatchError if invalid."""
     if not one.path.endswith(".py"):
         return one.before == one.after
     try:

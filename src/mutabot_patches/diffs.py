@@ -28,7 +28,7 @@ _OTHER_THAN_LINES = {
 
 
 class PatchError(MutabotError):
-    """A patch that cannot be a mutant; the text says why."""
+    """Raised for a patch that cannot be a mutant; the message says why."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +55,7 @@ class Hunk:
 
 @dataclass(frozen=True, slots=True)
 class FileDiff:
-    """What a patch does to a file.
+    """The changes of a patch to a file.
 
     Attributes:
         old, new: its path before and after, with the first folder that git adds; None if there is no file.
@@ -76,7 +76,7 @@ class FileDiff:
 
 @dataclass(frozen=True, slots=True)
 class Diff:
-    """A patch: its title, if it has one, and what it does to files."""
+    """A patch: its title, if it has one, and its changes to files."""
 
     title: str
     files: tuple[FileDiff, ...]
@@ -88,7 +88,7 @@ def read_diff(content: bytes) -> Diff:
 
 
 def lines_of(content: bytes) -> list[bytes]:
-    """Return lines with their ends; a carriage return alone ends none."""
+    """Return the lines of a content with their ends; a lone carriage return does not end a line."""
     *lines, last = content.split(b"\n")
     return [*(line + b"\n" for line in lines), *([last] if last else [])]
 
@@ -169,20 +169,20 @@ class _Reader:
 
 
 def _without_lines(git: tuple[str, str] | None, other: str) -> Iterator[FileDiff]:
-    """A file of which git names no line: it is binary, moved, empty, or its mode differs."""
+    """Yield a file for which git shows no lines: it is binary, moved, empty, or its mode differs."""
     if git is not None:
         yield FileDiff(*git, (), other)
 
 
 def _named(line: bytes) -> tuple[str, str]:
-    """The two paths of a line ``diff --git a/x b/x``."""
+    """Return the two paths of a line ``diff --git a/x b/x``."""
     words = line.split(b" ", 2)[2]
     middle = words.find(b" b/") if words.startswith(b"a/") else (len(words) - 1) // 2
     return _path(words[:middle]) or "", _path(words[middle + 1 :]) or ""
 
 
 def _path(words: bytes) -> str | None:
-    """A path as a patch writes it: in quotes if it has other than plain letters; a time may follow."""
+    """Return a path as a patch writes it: quoted if it has special characters; a time may follow."""
     if words.startswith(b'"'):
         quoted = words[1 : words.rfind(b'"')]
         words = _OCTAL.sub(lambda one: _unescaped(one[1]), quoted)
@@ -196,7 +196,7 @@ def _unescaped(sign: bytes) -> bytes:
 
 
 def _title(line: bytes) -> str:
-    """What a line before the diff says of it, in one line."""
+    """Return a title from a line before the diff, as a single line."""
     subject = _SUBJECT.match(line)
     if subject is None and _HEADER.match(line):
         return ""

@@ -1,4 +1,4 @@
-"""Which functions of a file differ, where nothing else does: a process that runs can take these on.
+"""Finds the functions of a file that differ, if nothing else does: a running process can replace these.
 
 Everything outside of functions is carried out while the file is imported; if that differs, a process that has
 imported the file cannot become the mutant any more. The same holds for what others may have looked at: a
@@ -33,7 +33,7 @@ class ChangedFunction:
 
 
 def changed_functions(before: bytes, after: bytes, path: str) -> tuple[ChangedFunction, ...] | None:
-    """Return the functions that differ; None if more than what functions do differs.
+    """Return the functions that differ; None if anything else differs.
 
     Raises SyntaxError or ValueError if one of the texts is no Python.
     """
@@ -51,7 +51,7 @@ def codes_of(code: CodeType) -> Iterator[CodeType]:
 
 
 def first_statement(tree: ast.Module, function: ChangedFunction) -> ast.stmt | None:
-    """Return the first statement that a function carries out; None if it cannot be told where that is."""
+    """Return the first statement that a function executes; None if it cannot be determined."""
     for node in ast.walk(tree):
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
             first = min([node.lineno, *(one.lineno for one in node.decorator_list)])
@@ -62,12 +62,12 @@ def first_statement(tree: ast.Module, function: ChangedFunction) -> ast.stmt | N
 
 
 def extent_of(node: ast.stmt) -> tuple[int, int, int, int]:
-    """Return where a statement stands."""
+    """Return the extent of a statement."""
     return node.lineno, node.col_offset, node.end_lineno or node.lineno, node.end_col_offset or 0
 
 
 def _compare(old: CodeType, new: CodeType, found: list[ChangedFunction]) -> bool:
-    """Compare code that an import carries out; note the functions in it that differ."""
+    """Compare code that an import executes, and collect the functions in it that differ."""
     if not _is_alike(old, new):
         return False
     for before, after in zip(_within(old), _within(new), strict=True):
@@ -82,13 +82,13 @@ def _compare(old: CodeType, new: CodeType, found: list[ChangedFunction]) -> bool
 
 
 def _is_same(old: CodeType, new: CodeType) -> bool:
-    """Whether two functions do the same, with all that is defined in them."""
+    """Return whether two functions do the same, with everything defined in them."""
     pairs = zip(_within(old), _within(new), strict=False)
     return _is_alike(old, new) and all(_is_same(before, after) for before, after in pairs)
 
 
 def _may_stand_for(old: CodeType, new: CodeType) -> bool:
-    """Whether a function may get the code of the other, and nobody who looked at it could have seen that."""
+    """Return whether a function may get the other's code without a difference that can be observed."""
     is_named = not old.co_name.startswith("<")
     is_plain = not old.co_flags & _SUSPENDED  # one that was made before goes on with the code that it has
     return is_named and is_plain and _head(old) == _head(new) and old.co_freevars == new.co_freevars
@@ -102,7 +102,7 @@ def _head(code: CodeType) -> tuple[object, ...]:
 
 
 def _is_alike(old: CodeType, new: CodeType) -> bool:
-    """Whether two pieces of code do the same, but for what is defined in them; lines do not count."""
+    """Return whether two pieces of code do the same, except for definitions in them; lines do not count."""
     return _content(old) == _content(new)
 
 
@@ -115,7 +115,7 @@ def _content(code: CodeType) -> tuple[object, ...]:
 
 
 def _typed(constant: object) -> tuple[str, str]:
-    """A constant so that 1, 1.0 and True differ, and 0.0 and -0.0."""
+    """Return a constant so that 1, 1.0 and True differ, and 0.0 and -0.0."""
     if isinstance(constant, frozenset):
         return "frozenset", repr(sorted(map(_typed, constant)))
     if isinstance(constant, tuple):

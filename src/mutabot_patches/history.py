@@ -1,4 +1,4 @@
-"""Makes patches of a repository's history: each takes a commit back from the program as it is now.
+"""Makes patches from a repository's history: each reverts a commit in the present program.
 
 Only a commit's files of the program and its data are taken back; tests, documentation and what builds the
 project stay as they are. Git is asked by its own program, and nothing is written in the repository.
@@ -34,7 +34,7 @@ _DIFF = (
 
 @dataclass(frozen=True, slots=True)
 class Reverted:
-    """A commit that is taken back.
+    """A reverted commit.
 
     Attributes:
         commit: its hash.
@@ -55,7 +55,7 @@ class Reverted:
 
 
 def reverted(root: Path, commits: str, match: str, paths: Sequence[str]) -> Iterator[Reverted]:
-    """Yield the commits that mend something, the oldest first, each taken back from the program as it is.
+    """Yield the commits that fix something, oldest first, each reverted in the present program.
 
     Args:
         root: the project's folder.
@@ -97,7 +97,7 @@ def _reverted(root: Path, commit: str, subject: str, paths: Sequence[str]) -> Re
 
 
 def git(folder: Path, *command: str) -> bytes:
-    """Return what git says of the repository that a folder lies in. Raises UsageError if it fails."""
+    """Return git's output for the repository of a folder. Raises UsageError if it fails."""
     environment = {name: value for name, value in os.environ.items() if not name.startswith("GIT_")}
     environment |= {"GIT_OPTIONAL_LOCKS": "0", "LC_ALL": "C"}
     words = ["git", "-C", os.fspath(folder), "-c", "core.quotePath=true", *command]

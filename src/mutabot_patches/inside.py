@@ -1,4 +1,4 @@
-"""A patch in the processes of the tests."""
+"""A patch in the test processes."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from .functions import codes_of
 
 
 class PatchedFiles(ActiveFault):
-    """Files of the project as a patch makes them, and functions that are loaded as the files have them.
+    """The project's files after a patch, and loaded functions with the code of these files.
 
     ``data``: the new contents by path, in Latin-1, and by path the functions to change in a process that has
     imported the file: qualified name, first line before and after.
     """
 
     def prepare_process(self) -> None:
-        """Change the files; in a process that was forked, the functions as well."""
+        """Change the files; in a forked process, the loaded functions as well."""
         contents = {path: text.encode("latin-1") for path, text in self.data["files"].items()}
         for path, content in contents.items():
             self.context.change_file(path, content)
@@ -32,15 +32,15 @@ class PatchedFiles(ActiveFault):
         self.acts()  # whatever is imported from here on has the patch
 
     def start_test(self, test: str, random: Random) -> None:
-        """Note that the patch is there."""
+        """Note that the patch is active."""
         self.acts()
 
     def end_test(self) -> None:
-        """Leave it: it is there from the first test to the last."""
+        """Do nothing: the patch is active from the first test to the last."""
 
 
 def _take_on(path: str, content: bytes, functions: list[list[Any]]) -> None:
-    """Give the functions of a file that are loaded the code that the file has now."""
+    """Give the loaded functions of a file the code that the file has now."""
     wanted = {(name, old): (name, new) for name, old, new in functions}
     codes = dict[str, Mapping[tuple[str, int], CodeType]]()
     for function in list(_functions_of(path)):
@@ -62,7 +62,7 @@ def _functions_of(path: str) -> Iterator[FunctionType]:
 
 
 def _codes_in(file: str, content: bytes) -> Mapping[tuple[str, int], CodeType]:
-    """Return the code of a file by qualified name and first line; nothing if this is another file."""
+    """Return the code of a file by qualified name and first line; empty if its content is another one."""
     try:
         if Path(file).read_bytes() != content:
             return {}

@@ -68,7 +68,7 @@ class _PatchLooked:
 
     @classmethod
     def of(cls, name: str, patch: Patch) -> _PatchLooked:
-        """Look at what a patch changes."""
+        """Find out what a patch changes."""
         functions = _functions(patch)
         found = list[tuple[str, HunkExtent, str]]()
         for file in patch.files if functions else ():
@@ -82,25 +82,25 @@ class _PatchLooked:
 
 
 class PatchFaults(FaultProvider):
-    """Patches of the project's files."""
+    """Provides patches of the project's files."""
 
     name = PROVIDER
     families = (FAMILY,)
     location = "patch"
 
     def rules(self) -> Sequence[Rule]:
-        """The one operator, whatever the patch."""
+        """Return the only operator, which is used for every patch."""
         return [ApplyPatch()]
 
     def texts(self, project: Project, first: int, tell: Callable[[str], None]) -> Sequence[ProgramText]:
-        """Where the functions begin that patches change: which tests call them is looked at."""
+        """Return the places where changed functions begin, to find out which tests call them."""
         if not set(project.families) <= _BESIDE:
             return ()
         looked = [one for _, one in _read_all(project, ()) if isinstance(one, _PatchLooked)]
         return _places(looked, project.root, first)
 
     def plan(self, project: Project, original: Original) -> Planned:
-        """A mutant for each patch; those that do not apply are left out, with the reason."""
+        """Return a mutant for each patch; those that do not apply are left out, with the reason."""
         tests = [test for each in original.tests for test in each]
         planned = Planned()
         found = list(_read_all(project, tests))
@@ -142,7 +142,7 @@ class PatchFaults(FaultProvider):
 
 
 def _read_all(project: Project, tests: Iterable[str]) -> Iterator[tuple[str, _PatchLooked | PatchError]]:
-    """Yield the patches of a project by their names, or why they make no mutant."""
+    """Yield a project's patches by name; a PatchError for one that makes no mutant."""
     suite = FilesOfTests(tests, project.program_files())
     table = project.tables.get(TABLE)
     # who asks for several families need not have the usual folder
@@ -159,12 +159,12 @@ def _read_all(project: Project, tests: Iterable[str]) -> Iterator[tuple[str, _Pa
 
 
 def _has_folder(project: Project) -> bool:
-    """Whether the usual folder of patches is there."""
+    """Return whether the default folder of patches exists."""
     return (project.root / PatchesTable().files[0]).exists()
 
 
 def files_of(table: PatchesTable, root: Path) -> list[Path]:
-    """Return the files of patches, in their order. Raises UsageError if there are none."""
+    """Return the files of patches, in order. Raises UsageError if there are none."""
     found = dict[Path, None]()
     for pattern in table.files:
         if Path(pattern).is_absolute() or ".." in Path(pattern).parts:
@@ -183,7 +183,7 @@ def files_of(table: PatchesTable, root: Path) -> list[Path]:
 
 
 def _functions(patch: Patch) -> dict[str, tuple[ChangedFunction, ...]]:
-    """The functions that a patch changes, by path; empty if it changes anything else."""
+    """Return the functions that a patch changes, by path; empty if it changes anything else."""
     found = dict[str, tuple[ChangedFunction, ...]]()
     for file in patch.files:
         functions = None
@@ -197,7 +197,7 @@ def _functions(patch: Patch) -> dict[str, tuple[ChangedFunction, ...]]:
 
 
 def _places(looked: Sequence[_PatchLooked], root: Path, first: int) -> list[ProgramText]:
-    """The texts with a place where each function begins."""
+    """Return the texts with a place where each function begins."""
     found = dict[str, dict[HunkExtent, str]]()
     for one in looked:
         for file, extent, name in one.beginnings:
@@ -221,7 +221,7 @@ def _places(looked: Sequence[_PatchLooked], root: Path, first: int) -> list[Prog
 def _reaching(
     one: _PatchLooked, original: Original, known: Mapping[tuple[str, HunkExtent], int]
 ) -> list[list[str]] | None:
-    """The tests of each round that call what a patch changes, in this process or below it.
+    """Return the tests of each round that call what a patch changes, also in processes below the tests.
 
     None if a process that runs cannot become the mutant, or if who calls it is not known.
     """

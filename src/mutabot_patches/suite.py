@@ -1,4 +1,4 @@
-"""Which files belong to the tests: a patch to the suite is no mutant of the program."""
+"""Determines which files belong to the tests: a patch to the suite is no mutant of the program."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class FilesOfTests:
         self._folders = folders - of_program - {PurePosixPath()}
 
     def has(self, file: str) -> bool:
-        """Whether a file belongs to the tests, given by its path in the project."""
+        """Return whether a file belongs to the tests, given by its path in the project."""
         path = PurePosixPath(file)
         return (
             file in self._files
@@ -39,7 +39,7 @@ class FilesOfTests:
 
 
 def looks_like_tests(file: str) -> bool:
-    """Whether a file belongs to the tests by its name and folder alone."""
+    """Return whether a file belongs to the tests by its name and folder alone."""
     path = PurePosixPath(file)
     is_named = path.suffix == ".py" and (path.stem.startswith("test_") or path.stem.endswith("_test"))
     in_tests = {"test", "tests", "testing"} & {one.lower() for one in path.parts[:-1]}

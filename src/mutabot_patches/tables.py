@@ -1,4 +1,4 @@
-"""What a user writes of patches in the configuration."""
+"""The configuration table of patches."""
 
 from __future__ import annotations
 

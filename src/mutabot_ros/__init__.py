@@ -1,1 +1,1 @@
-"""The middlewares of robots: where their messages, calls and parameters pass, one file each."""
+"""Interception of robot middlewares (ROS 1 and ROS 2): messages, calls and parameters, one file each."""

@@ -1,4 +1,4 @@
-"""Asking whether a master of ROS 1 is there; apart, since its imports take time that only ROS 1 is worth."""
+"""Checks whether a ROS 1 master answers; separate, since only ROS 1 is worth the time of its imports."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _PATIENCE = 2.0
 
 
 def pid_of_master(uri: str) -> int | None:
-    """The process of the master there; None if none answers."""
+    """Return the process id of the master at a URI; None if none answers."""
     try:
         with ServerProxy(uri, _Hasty()) as master:
             _, _, pid = cast(tuple[int, str, int], master.getPid("/mutabot"))
@@ -21,7 +21,7 @@ def pid_of_master(uri: str) -> int | None:
 
 
 class _Hasty(Transport):
-    """A connection to who may not answer."""
+    """A transport with a short timeout, for a master that may not answer."""
 
     def make_connection(self, host: Any) -> HTTPConnection:
         connection = super().make_connection(host)

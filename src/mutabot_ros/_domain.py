@@ -1,4 +1,4 @@
-"""A domain of ROS 2 for the nodes of one worker, so that workers do not meet and nothing of theirs is left.
+"""Assigns each worker's nodes a ROS 2 domain of their own, so that workers do not interfere.
 
 It is on this machine alone, with logs in the worker's home. Fast DDS speaks over the loopback device and
 leaves nothing in shared memory. Its nodes say ten times a second that they are there: nodes of tests come and
@@ -43,12 +43,12 @@ _held: list[socket.socket] = []
 
 
 def is_wanted(operations: Sequence[Operation]) -> bool:
-    """Whether operations are those of nodes, which may be those of ROS 2."""
+    """Return whether operations are those of nodes, which may be ROS 2 nodes."""
     return any(map(_is_of_nodes, operations))
 
 
 def take(home: str) -> None:
-    """Give this process, and all that it starts, a domain of its own."""
+    """Assign a domain to this process and all processes that it starts."""
     domain = _claim(os.environ.get(DOMAIN))
     if domain is not None:
         os.environ[DOMAIN] = str(domain)
@@ -70,7 +70,7 @@ def _is_of_nodes(operation: Operation) -> bool:
 
 
 def _claim(theirs: str | None) -> int | None:
-    """A domain that no other worker has, nor any node that is running; None if there is none left."""
+    """Return a domain that no other worker or running node uses; None if none is left."""
     while _held:  # of a process that this one was forked from
         _held.pop().close()
     taken = {theirs, *_running()}
@@ -89,7 +89,7 @@ def _claim(theirs: str | None) -> int | None:
 
 
 def _running() -> Iterator[str]:
-    """Domains that running processes were started with.
+    """Yield the domains with which running processes were started.
 
     Of a campaign that was killed nodes may be left, which nobody holds a domain for any more.
     """

@@ -1,4 +1,4 @@
-"""A master of ROS 1 for the nodes of one worker.
+"""Starts a ROS 1 master for the nodes of one worker.
 
 Workers that shared a master would meet in its names. One alone takes 0.1 s and 30 MB, so each worker has its
 own: on a port that nobody uses, of this machine only, with its logs in the worker's home. It ends with the
@@ -45,7 +45,7 @@ class MasterError(MutabotError):
 
 @dataclass(frozen=True, slots=True)
 class Master:
-    """A master that runs.
+    """A running master.
 
     Attributes:
         uri: where nodes find it.
@@ -56,13 +56,13 @@ class Master:
     process: subprocess.Popen[bytes]
 
     def stop(self) -> None:
-        """End it."""
+        """Stop the master."""
         self.process.kill()
         self.process.wait()
 
 
 def is_wanted(root: str, operations: Sequence[Operation] | None) -> bool:
-    """Whether the program uses ROS 1, as far as its operations and files tell, and it is installed."""
+    """Return whether ROS 1 is installed and the program uses it, as far as its operations and files show."""
     if operations is not None and not any(map(_is_of_nodes, operations)):
         return False
     if not _is_installed("rospy") or not _is_installed("rosmaster"):
@@ -81,7 +81,7 @@ def _is_installed(module: str) -> bool:
 
 
 def start(home: str) -> Master:
-    """Start a master and let this process, and all that it starts, find it. Raises MasterError."""
+    """Start a master for this process and all that it starts. Raises MasterError."""
     folder = os.path.join(home, "ros")
     os.makedirs(os.path.join(folder, "log"), exist_ok=True)
     os.environ.update({ADDRESS: _LOCAL, LOGS: os.path.join(folder, "log"), HOME: folder})

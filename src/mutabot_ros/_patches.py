@@ -1,4 +1,4 @@
-"""Functions of a client library with ours in their place, and the way back."""
+"""Replaces functions of a client library, and restores them."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from typing import Any
 
 
 class Patches:
-    """What was put in place; ``undo`` takes it away again, last one first."""
+    """The replaced functions; ``undo`` restores them, the last first."""
 
     def __init__(self) -> None:
         self._undo: list[Callable[[], None]] = []
 
     def put(self, owner: Any, name: str, ours: Callable[..., Any]) -> None:
-        """Let ``ours(original, *args, **kwargs)`` be called in the place of a function or method."""
+        """Replace a function or method by ``ours(original, *args, **kwargs)``."""
         original = getattr(owner, name)
 
         @functools.wraps(original)
@@ -31,17 +31,17 @@ class Patches:
         )
 
     def then(self, undo: Callable[[], None]) -> None:
-        """Have something else undone too."""
+        """Register another function that ``undo`` calls."""
         self._undo.append(undo)
 
     def undo(self) -> None:
-        """Take all of it away."""
+        """Restore everything."""
         while self._undo:
             self._undo.pop()()
 
 
 def code_of(callback: Any) -> CodeType | None:
-    """The function of the program's that a callback leads to; None for one that is no Python."""
+    """Return the code of the program's function behind a callback; None if it is not Python."""
     while isinstance(callback, functools.partial):
         callback = callback.func
     callback = getattr(callback, "__wrapped__", callback)

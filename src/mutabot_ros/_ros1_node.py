@@ -1,4 +1,4 @@
-"""A node of ROS 1: its name, its names, its clock, and the arguments it gives."""
+"""A ROS 1 node: its name, its resolved names, its clock, and the arguments of its calls."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ _MODULE = "rospy"
 
 
 def name() -> str:
-    """Resolved name of the node of this process."""
+    """Return the resolved name of this process's node."""
     found: str = sys.modules[_MODULE].get_name()
     return found
 
 
 def resolved(given: Any) -> str | None:
-    """A name as the master knows it; None for one that rospy will refuse."""
+    """Return a name as the master knows it; None if rospy will refuse it."""
     rospy: Any = sys.modules[_MODULE]
     try:
         if rospy.core.is_initialized():
@@ -37,12 +37,12 @@ def resolved(given: Any) -> str | None:
 
 
 def message_of(kind: Any, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
-    """The message or request that the arguments of a call make; raises what rospy raises."""
+    """Return the message or request that a call's arguments make. Raises what rospy raises."""
     return sys.modules[_MODULE].msg.args_kwds_to_message(kind, args, kwargs)
 
 
 def with_sender(copied: Any, message: Any) -> Any:
-    """A copy of a message that says who sent it, which rospy does not copy, and tf2 asks for."""
+    """Return the copy of a message with its sender, which rospy does not copy and tf2 needs."""
     if (header := getattr(message, "_connection_header", None)) is not None:
         copied._connection_header = header
     return copied
@@ -60,7 +60,7 @@ class Given:
         self._bound = signature.bind(*args, **kwargs)
 
     def get(self, argument: str) -> Any:
-        """An argument; None if it is not given."""
+        """Return an argument; None if it is not given."""
         return self._bound.arguments.get(argument)
 
     def change(self, **values: Any) -> None:
@@ -74,17 +74,17 @@ class Given:
 
     @property
     def args(self) -> tuple[Any, ...]:
-        """What is given by position."""
+        """The positional arguments."""
         return self._bound.args
 
     @property
     def kwargs(self) -> dict[str, Any]:
-        """What is given by name."""
+        """The keyword arguments."""
         return self._bound.kwargs
 
 
 def bound(function: Callable[..., Any], *args: Any, **kwargs: Any) -> Given:
-    """The arguments of a call; raises TypeError, as the call would, if they do not fit."""
+    """Return the arguments of a call. Raises TypeError, as the call would, if they do not fit."""
     return Given(_signature(function), args, kwargs)
 
 
@@ -107,7 +107,7 @@ async def _sleep(seconds: float) -> None:
 
 
 def later(seconds: float, action: Callable[[], object]) -> None:
-    """Have something done later, in ROS's time; not at all once the node is shut down."""
+    """Call something later, in ROS time; not at all if the node has been shut down."""
 
     def wait() -> None:
         rospy: Any = sys.modules[_MODULE]
@@ -121,17 +121,17 @@ def later(seconds: float, action: Callable[[], object]) -> None:
 
 
 class NodeClock:
-    """What a node takes for the time, which may be moved."""
+    """The offset of a node's clock."""
 
     def __init__(self) -> None:
         self._moved = 0.0
 
     def jump(self, seconds: float) -> None:
-        """Move it; negative is back."""
+        """Move the clock by seconds; negative values move it back."""
         self._moved += seconds
 
     def hook(self, patches: Patches, rospy: Any) -> None:
-        """Stand around rospy's own clock."""
+        """Replace rospy's own clock."""
         for module in (rospy.rostime, rospy):
             patches.put(module, "get_rostime", self._now)
         patches.then(self._back)

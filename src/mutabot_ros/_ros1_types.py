@@ -1,4 +1,4 @@
-"""Types of ROS 1: a class for each message, and for each part of a service or an action."""
+"""The types of ROS 1: a class for each message, and for each part of a service or action."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _PARTS_OF_MOMENTS = ("secs", "nsecs")
 
 
 class Ros1Types(Types):
-    """See ``Types``; parts are how the names of classes end."""
+    """The message types of ROS 1 (see ``Types``); parts are suffixes of class names."""
 
     written: ClassVar[Mapping[Form, tuple[str, str]]] = {
         Form.PUBLISH: ("msg", ""),

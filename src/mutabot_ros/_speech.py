@@ -1,4 +1,4 @@
-"""Which middleware a project's files speak of."""
+"""Finds out which middleware a project's files mention."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ _FILES = 500
 
 
 def speaks_of(root: str, word: str) -> bool:
-    """Whether one of the first program files below a folder has a word in it."""
+    """Return whether one of the first program files below a folder contains a word."""
     return any(_has(file, word.encode()) for file in _files(root))
 
 
 def _files(root: str) -> Iterator[str]:
-    """The first program files below a folder."""
+    """Yield the texts of the first program files below a folder."""
     found = 0
     for folder, folders, files in os.walk(root):
         folders[:] = sorted(name for name in folders if not name.startswith((".", "__")))

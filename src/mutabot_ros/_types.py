@@ -1,4 +1,4 @@
-"""Types: whether those that a vocabulary names are installed, and have the fields that it describes."""
+"""Checks that the types in a vocabulary are installed and have the fields that it describes."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _KINDS = {"msg": "messages", "srv": "services", "action": "actions"}
 
 
 class Types(ABC):
-    """The types that programs give the names they use, and how a middleware keeps the definitions of types.
+    """The types that the program uses for its names, and access to a middleware's type definitions.
 
     Attributes:
         written, read: where the definition stands of what is written, and of what is read: the module of a
@@ -45,17 +45,17 @@ class Types(ABC):
         self._used: dict[tuple[Form, str], str] = {}
 
     def clear(self) -> None:
-        """Forget all that programs use."""
+        """Forget all types that the program uses."""
         self._used.clear()
 
     def note(self, form: Form, name: str, kind: Any) -> None:
-        """A name is used with a class of messages, of a service or an action."""
+        """Record that a name is used with a class of messages, of a service or of an action."""
         type_name = self.name_of(kind)
         if type_name is not None:
             self._used[form, name] = type_name
 
     def of(self, form: Form, names: str) -> dict[str, str]:
-        """The types of the names that programs use in a form, by name; ``*`` in ``names`` is any text."""
+        """Return the types used in a form, by name; ``*`` in ``names`` matches any text."""
         wanted = Form.GOAL if form in self.as_goal else form
         return {
             name: kind
@@ -64,7 +64,7 @@ class Types(ABC):
         }
 
     def look_at(self, operation: Operation) -> Iterator[Finding]:
-        """What of an operation does not fit the installed definition of its type.
+        """Yield what in an operation does not fit the installed definition of its type.
 
         Where the vocabulary names no type, it is the one that the program uses.
         """
@@ -81,26 +81,26 @@ class Types(ABC):
 
     @abstractmethod
     def name_of(self, kind: Any) -> str | None:
-        """``package/Name`` of a class; None for what is no class of the middleware."""
+        """Return ``package/Name`` of a class; None if it is not a class of the middleware."""
 
     @abstractmethod
     def part_of(self, module: ModuleType, name: str, part: str) -> Any:
-        """The class of a part of a type, or of all of it; None if the module has no such type."""
+        """Return the class of a part of a type, or of the whole type; None if the module has no such type."""
 
     @abstractmethod
     def names_in(self, module: ModuleType, part: str) -> Iterator[str]:
-        """The types in a module that have such a part."""
+        """Yield the types in a module that have such a part."""
 
     @abstractmethod
     def fields_of(self, message: Any) -> Mapping[str, str]:
-        """The types of the fields of a class of messages, by name."""
+        """Return the types of a message class's fields, by name."""
 
     def packages(self) -> Iterator[str]:
-        """Packages with definitions, as far as they can be known."""
+        """Yield the packages with type definitions, as far as they are known."""
         return iter(())
 
     def fields_of_basic(self, kind: str) -> Mapping[str, str]:
-        """Fields of a type that no package defines."""
+        """Return the fields of a type that no package defines."""
         return {}
 
     def _look_at_fields(self, operation: Operation, form: Form, kind: str) -> Iterator[Finding]:
@@ -123,7 +123,7 @@ class Types(ABC):
                     yield from self._look_at_steps(message, refused.parsed, "refused.path")
 
     def _look_at_told(self, operation: Operation) -> Iterator[Finding]:
-        """Look for refusals on topics whose types are known."""
+        """Check the vocabulary's refusals on topics whose types are known."""
         for refused in operation.all_refused:
             listened = {} if refused.topic is None else self.of(Form.RECEIVE, refused.topic)
             for name, kind in listened.items():
@@ -135,7 +135,7 @@ class Types(ABC):
                     yield replace(one, text=f"{name}: {one.text}")
 
     def _class_of(self, kind: str, module: str, part: str) -> Any:
-        """The class of a type. Raises LookupError: a sentence, the wrong name, and those there are."""
+        """Return the class of a type. Raises LookupError with a message, the wrong name and known names."""
         package, _, name = kind.partition("/")
         try:
             found = import_module(f"{package}.{module}")
@@ -149,7 +149,7 @@ class Types(ABC):
         return message
 
     def _look_at_steps(self, message: Any, path: Path, key: str) -> Iterator[Finding]:
-        """What of a path does not fit a class of messages."""
+        """Yield what in a path does not fit a message class."""
         kind, fields = self.name_of(message), self.fields_of(message)
         for step in path.steps:
             if step.attribute is None:

@@ -1,4 +1,4 @@
-"""Disturbances of what nodes of ROS hear, and of their clocks: what `ros1.toml` and `ros2.toml` name.
+"""Disturbances of the messages and clocks of ROS nodes: the functions that `ros1.toml` and `ros2.toml` name.
 
 Each is a function of a subscription, or of a node, as it was made, and of the change, which says what becomes
 of a number in SI units; and, by name, of `names` (topics, frames or nodes), `random`, `acts`, which is to be
@@ -27,7 +27,7 @@ _NANO = 1e9
 
 
 def bias(subscription: Any, change: Changed, *, names: str, random: Random, acts: Acts, axis: str) -> None:
-    """Where messages of topics say that something is along an axis, m: points, poses, transforms."""
+    """Shift positions in messages of topics along an axis, m: points, poses, transforms."""
 
     def biased(message: Any) -> bool:
         places = list(_places(message))
@@ -41,7 +41,7 @@ def bias(subscription: Any, change: Changed, *, names: str, random: Random, acts
 def frame_position(
     subscription: Any, change: Changed, *, names: str, random: Random, acts: Acts, axis: str
 ) -> None:
-    """Where frames are along an axis of their parents, m: in messages with transforms to them."""
+    """Shift frames along an axis of their parents, m, in messages with transforms to them."""
 
     def moved(message: Any) -> bool:
         found = [one.transform for one in _stamped(message) if _is_to(one, names)]
@@ -53,7 +53,7 @@ def frame_position(
 
 
 def frame_angle(subscription: Any, change: Changed, *, names: str, random: Random, acts: Acts) -> None:
-    """How frames are turned about the vertical of their parents, rad: in messages with transforms to them."""
+    """Turn frames about the vertical axis of their parents, rad, in messages with transforms to them."""
     half = change(0.0) / 2
 
     def turned(message: Any) -> bool:
@@ -69,7 +69,7 @@ def frame_angle(subscription: Any, change: Changed, *, names: str, random: Rando
 
 
 def frame_delay(subscription: Any, change: Changed, *, names: str, random: Random, acts: Acts) -> None:
-    """By how much later transforms to frames come, s, in the node's time; others of a message do not."""
+    """Delay transforms to frames, s, in the node's time, but not other transforms in a message."""
 
     def late(message: Any, deliver: Callable[[Any], Any]) -> Any:
         meant, others = _parted(message, names)
@@ -82,7 +82,7 @@ def frame_delay(subscription: Any, change: Changed, *, names: str, random: Rando
 
 
 def frame_loss(subscription: Any, change: Changed, *, names: str, random: Random, acts: Acts) -> None:
-    """Share of the messages whose transforms to frames never come; others of a message do."""
+    """Drop a share of the messages' transforms to frames, but not other transforms in a message."""
 
     def lost(message: Any, deliver: Callable[[Any], Any]) -> Any:
         meant, others = _parted(message, names)
@@ -95,7 +95,7 @@ def frame_loss(subscription: Any, change: Changed, *, names: str, random: Random
 
 
 def distance(subscription: Any, change: Changed, *, names: str, random: Random, acts: Acts) -> None:
-    """What messages of topics say of distances, m: `range`, or all that are finite of `ranges`."""
+    """Change distances in messages of topics, m: `range`, or all finite values of `ranges`."""
 
     def read(message: Any) -> bool:
         if hasattr(message, "range"):
@@ -108,7 +108,7 @@ def distance(subscription: Any, change: Changed, *, names: str, random: Random, 
 
 
 def delay(subscription: Any, change: Changed, *, names: str, random: Random, acts: Acts) -> None:
-    """By how much later messages of topics come, s, in the node's time."""
+    """Delay messages of topics, s, in the node's time."""
 
     def late(message: Any, deliver: Callable[[Any], Any]) -> None:
         acts()
@@ -118,7 +118,7 @@ def delay(subscription: Any, change: Changed, *, names: str, random: Random, act
 
 
 def loss(subscription: Any, change: Changed, *, names: str, random: Random, acts: Acts) -> None:
-    """Share of the messages of topics that never come."""
+    """Drop a share of the messages of topics."""
 
     def lost(message: Any, deliver: Callable[[Any], Any]) -> Any:
         if random.random() >= change(0.0):
@@ -130,12 +130,12 @@ def loss(subscription: Any, change: Changed, *, names: str, random: Random, acts
 
 
 def clock_offset(node: Any, change: Changed, *, names: str, random: Random, acts: Acts) -> None:
-    """By how much the clocks of nodes are ahead of others, s."""
+    """Set the clocks of nodes ahead of others, s."""
     _run_apart(node, names, acts, lambda nanoseconds: nanoseconds + change(0.0) * _NANO)
 
 
 def clock_rate(node: Any, change: Changed, *, names: str, random: Random, acts: Acts) -> None:
-    """How fast the clocks of nodes run, as a part of other clocks, from when they are first read."""
+    """Change the rate of nodes' clocks, relative to others, from when they are first read."""
     begin = list[int]()
 
     def read(nanoseconds: int) -> float:
@@ -147,12 +147,12 @@ def clock_rate(node: Any, change: Changed, *, names: str, random: Random, acts: 
 
 
 def _library(world: Any) -> Any:
-    """What stands before the callbacks and clocks of the client library that a world is of."""
+    """Return the module that intercepts callbacks and clocks of a world's client library."""
     return import_module(_LISTENING[type(world).__module__.partition(".")[0]])
 
 
 def _listen(subscription: Any, names: str, deliver: _Deliver) -> None:
-    """Let something stand before the callbacks of a subscription. Raises LookupError for other topics."""
+    """Intercept the callbacks of a subscription. Raises LookupError for other topics."""
     library = _library(subscription)
     topic = library.topic_of(subscription)
     if topic is None or not fnmatchcase(topic, names):
@@ -174,7 +174,7 @@ def _run_apart(node: Any, names: str, acts: Acts, read: Callable[[int], float]) 
 
 
 def _changing(change: Callable[[Any], bool], acts: Acts) -> _Deliver:
-    """Deliver a changed copy; `change` says whether it has changed anything."""
+    """Return a function that delivers a changed copy; `change` says whether it has changed anything."""
 
     def deliver(message: Any, callback: Callable[[Any], Any]) -> Any:
         copied = with_sender(copy.deepcopy(message), message)
@@ -187,7 +187,7 @@ def _changing(change: Callable[[Any], bool], acts: Acts) -> _Deliver:
 
 
 def _places(message: Any) -> Iterator[Any]:
-    """Yield what says where something is: a point or a vector, wherever it lies in a message."""
+    """Yield the positions in a message: points or vectors, however deeply nested."""
     for name in ("pose", "position", "point", "transform", "translation"):
         if (part := getattr(message, name, None)) is not None:
             yield from _places(part)
@@ -198,7 +198,7 @@ def _places(message: Any) -> Iterator[Any]:
 
 
 def _stamped(message: Any) -> list[Any]:
-    """The transforms with frames that a message has, or is."""
+    """Return the stamped transforms that a message contains or is."""
     found = getattr(message, "transforms", (message,))
     return [one for one in found if hasattr(one, "transform") and hasattr(one, "child_frame_id")]
 
@@ -208,7 +208,7 @@ def _is_to(transform: Any, names: str) -> bool:
 
 
 def _parted(message: Any, names: str) -> tuple[Any, Any]:
-    """A message in two: with the transforms to frames of these names, and with the others; None for none."""
+    """Split a message: transforms to frames of these names, and the others; None for an empty part."""
     meant = [one for one in _stamped(message) if _is_to(one, names)]
     others = [one for one in _stamped(message) if not _is_to(one, names)]
     if not meant or not others:

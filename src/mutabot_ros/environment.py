@@ -1,4 +1,4 @@
-"""What the nodes of one worker need around them, so that workers do not meet."""
+"""Sets up the environment of one worker's nodes, so that workers do not interfere."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What this package brings to mutabot: ROS 1 and ROS 2."""
+"""The extension by which mutabot finds this package's middlewares: ROS 1 and ROS 2."""
 
 from mutabot.api.faults import Extension
 

@@ -1,4 +1,4 @@
-"""ROS 1: what a node does through rospy.
+"""ROS 1: intercepts what a node does through rospy.
 
 Topics are published through ``Publisher.publish`` and received in callbacks or by ``wait_for_message``; one
 call of a service writes the request and reads the response. Fields that a program gives one by one are made a
@@ -27,7 +27,7 @@ _types = Ros1Types()
 
 
 def hook(messages: Names) -> Callable[[], None]:
-    """Let the messages of this process pass by; returns what takes the hooks away."""
+    """Intercept the messages of this process; return a function that removes the hooks."""
     patches = Patches()
     rospy: Any = sys.modules[MODULE]
     _PublishersAndSubscribers(messages).hook(patches, rospy)
@@ -42,18 +42,18 @@ def hook(messages: Names) -> Callable[[], None]:
 
 
 def check(operation: Operation) -> Iterator[Finding]:
-    """What of an operation does not fit the installed definition of its type, or the one the program uses."""
+    """Yield what in an operation does not fit the installed definition of its type, or the program's type."""
     return _types.look_at(operation)
 
 
 def _note(messages: Names, original: Any, *args: Any, **kwargs: Any) -> Any:
-    """A node begins: its process goes by its name."""
+    """Use the name of a node that starts as the name of its process."""
     original(*args, **kwargs)
     messages.note_node(node.name())
 
 
 class _PublishersAndSubscribers:
-    """Publishers and subscribers."""
+    """Hooks of publishers and subscribers."""
 
     def __init__(self, messages: Names) -> None:
         self._messages = messages
@@ -148,7 +148,7 @@ class _PublishersAndSubscribers:
 
 
 class _ServiceProxies:
-    """Proxies of services."""
+    """Hooks of service proxies."""
 
     def __init__(self, messages: Names) -> None:
         self._messages = messages
@@ -194,7 +194,7 @@ class _ServiceProxies:
 
 
 class _ParameterServerValues:
-    """Values of the parameter server."""
+    """Hooks of values on the parameter server."""
 
     def __init__(self, messages: Names) -> None:
         self._messages = messages
@@ -219,7 +219,7 @@ class _ParameterServerValues:
 
 
 class _TimersAndRates:
-    """Timers and rates. A timer is named after its callback, a rate after its node."""
+    """Hooks of timers and rates. A timer is named after its callback, a rate after its node."""
 
     def __init__(self, messages: Names) -> None:
         self._messages = messages
@@ -276,12 +276,12 @@ class _TimersAndRates:
         return handler(lambda: original(rate), rate, (), {}, node.where())
 
     def _is_timers(self) -> bool:
-        """Whether it is the rate inside a timer."""
+        """Return whether it is the rate inside a timer."""
         return sys._getframe(3).f_code is self._run
 
 
 def _is_latched(message: Any) -> bool:
-    """Whether the publisher keeps its last message for late subscribers."""
+    """Return whether the publisher keeps its last message for late subscribers."""
     header = getattr(message, "_connection_header", None) or {}
     return str(header.get("latching")) == "1"
 

@@ -1,4 +1,4 @@
-"""Actions of ROS 1: what a node does through actionlib's clients.
+"""Actions of ROS 1: intercepts what a node does through actionlib's clients.
 
 A simple client's goal is sent, its feedback and result received in callbacks or read afterwards. Clients
 without the word simple are not seen.
@@ -22,7 +22,7 @@ _ENDINGS = {2: "CANCELED", 4: "ABORTED", 5: "REJECTED", 8: "CANCELED"}
 
 
 def hook(messages: Names) -> Callable[[], None]:
-    """Let the goals of this process pass by; returns what takes the hooks away."""
+    """Intercept the goals of this process; return a function that removes the hooks."""
     patches = Patches()
     actionlib: Any = sys.modules[MODULE]
     simple, client = _Simple(messages), actionlib.SimpleActionClient
@@ -36,13 +36,13 @@ def hook(messages: Names) -> Callable[[], None]:
 
 
 class _Simple:
-    """Simple action clients."""
+    """Hooks of simple action clients."""
 
     def __init__(self, messages: Names) -> None:
         self._messages = messages
 
     def make(self, original: Any, client: Any, *args: Any, **kwargs: Any) -> None:
-        """A client is made."""
+        """Record a client that is created."""
         given = node.bound(original, client, *args, **kwargs)
         name = node.resolved(given.get("ns"))
         handler = self._messages.find(Form.CLIENT, name, node.name()) if name is not None else None
@@ -57,7 +57,7 @@ class _Simple:
         handler(make, client, (), {"name": given.get("ns")}, node.where())
 
     def send(self, original: Any, client: Any, goal: Any, *args: Any, **kwargs: Any) -> Any:
-        """A goal is sent; its callbacks will hear of it."""
+        """Send a goal, whose callbacks are intercepted."""
         name = _name(client)
         given = node.bound(original, client, goal, *args, **kwargs)
         feedback, done = given.get("feedback_cb"), given.get("done_cb")
@@ -82,14 +82,14 @@ class _Simple:
         return handler(send, client, (goal,), {}, node.where(lost=lost, cancel=cancel))
 
     def result(self, original: Any, client: Any) -> Any:
-        """The program asks for the result."""
+        """Return the result for which the program asks."""
         handler = self._messages.find(Form.RESULT, _name(client), node.name())
         if handler is None:
             return original(client)
         return handler(lambda: original(client), client, (), {}, node.where(lost=_nothing))
 
     def note_end(self, original: Any, client: Any, handle: Any) -> Any:
-        """The state of a goal has changed."""
+        """Record that the state of a goal has changed."""
         ended: Any = sys.modules["actionlib.action_client"].CommState.DONE
         if handle == client.gh and handle.get_comm_state() == ended:
             name, status = _name(client), handle.get_goal_status()
@@ -99,7 +99,7 @@ class _Simple:
         return original(client, handle)
 
     def cancel(self, original: Any, client: Any) -> Any:
-        """The program cancels its goal, or all goals."""
+        """Cancel the program's goal, or all goals."""
         handler = self._messages.find(Form.CANCEL, _name(client), node.name())
         if handler is None:
             return original(client)

@@ -1,4 +1,4 @@
-"""What stands before the callbacks and clocks of nodes of ROS 1 that are disturbed.
+"""Intercepts the callbacks and clocks of disturbed ROS 1 nodes.
 
 A subscription is what rospy shares among all subscribers of a topic in a process. A node is its process.
 """
@@ -14,7 +14,7 @@ from .ros1 import MODULE, OWN_TOPICS
 
 
 def topic_of(subscription: Any) -> str | None:
-    """The topic of a subscription; None for one of rospy's own. Raises LookupError for one that is closed."""
+    """Return the topic of a subscription; None for rospy's own. Raises LookupError if it is closed."""
     if subscription.closed:
         raise LookupError("the last one was closed")
     topic: str = subscription.resolved_name
@@ -22,7 +22,7 @@ def topic_of(subscription: Any) -> str | None:
 
 
 def listen(subscription: Any, deliver: Callable[[Any, Callable[[Any], Any]], Any]) -> None:
-    """Let something stand before the callbacks of a subscription."""
+    """Intercept the callbacks of a subscription."""
 
     def invoked(message: Any, callback: Any, more: Any) -> None:
         deliver(message, lambda one: type(subscription)._invoke_callback(subscription, one, callback, more))
@@ -31,18 +31,18 @@ def listen(subscription: Any, deliver: Callable[[Any, Callable[[Any], Any]], Any
 
 
 def later(subscription: Any, seconds: float, action: Callable[[], object]) -> None:
-    """Have something done later, in the time of the node."""
+    """Call something later, in the node's time."""
     node.later(seconds, action)
 
 
 def name_of(handler: Any) -> str:
-    """The resolved name of a node."""
+    """Return the resolved name of a node."""
     name: str = handler.name
     return name
 
 
 def run_apart(handler: Any, read: Callable[[int], int]) -> None:
-    """Let the clock of a node say another time, in nanoseconds."""
+    """Let a node's clock show another time, in nanoseconds."""
     rospy: Any = sys.modules[MODULE]
     now = rospy.rostime.get_rostime
 

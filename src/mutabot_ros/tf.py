@@ -1,4 +1,4 @@
-"""Transforms: what a node reads from the buffer of tf2, in ROS 1 and ROS 2 alike."""
+"""Intercepts transforms that a node reads from tf2's buffer, in ROS 1 and ROS 2."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ MODULE = "tf2_ros"
 
 
 def hook(messages: Names) -> Callable[[], None]:
-    """Let transforms pass by; returns what takes the hook away."""
+    """Intercept transforms; return a function that removes the hook."""
     patches = Patches()
 
     def look_up(

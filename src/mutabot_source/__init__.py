@@ -1,1 +1,1 @@
-"""Conventional mutation operators on program text: one file each, ``operator.py`` is the contract."""
+"""Conventional mutation operators on program text, one file each; ``operator.py`` defines their interface."""

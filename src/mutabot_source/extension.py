@@ -1,4 +1,4 @@
-"""What this package brings to mutabot: its provider of faults in the program text, and its families."""
+"""The extension by which mutabot finds this package's provider and families of faults in program text."""
 
 from __future__ import annotations
 

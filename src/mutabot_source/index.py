@@ -1,4 +1,4 @@
-"""What of a module is evaluated, where, and in which function: the ground that places stand on.
+"""An index of the nodes that a module evaluates, and of their scopes, in which places are found.
 
 Annotations, patterns of ``match``, docstrings and what is not run by a test (``if TYPE_CHECKING``,
 ``if __name__ == "__main__"``) are not in it, so nothing there can become a place.
@@ -18,7 +18,7 @@ Start = tuple[int, int]
 
 @dataclass(frozen=True, slots=True)
 class Scope:
-    """The function that a node belongs to.
+    """The function and class to which a node belongs.
 
     Attributes:
         name: qualified name, as in ``code.co_qualname``; ``<module>`` at the top level.
@@ -31,11 +31,11 @@ class Scope:
     is_class: bool = False
 
     def function(self, name: str) -> Scope:
-        """A function defined here."""
+        """Return the scope of a function that is defined in this scope."""
         return Scope(self._inner(name), at_import=False)
 
     def klass(self, name: str) -> Scope:
-        """A class defined here; its body runs where it stands."""
+        """Return the scope of a class that is defined in this scope; its body runs in place."""
         return Scope(self._inner(name), self.at_import, is_class=True)
 
     def _inner(self, name: str) -> str:
@@ -54,7 +54,7 @@ class ScopedNode:
 
 @dataclass(slots=True)
 class Index:
-    """Nodes of a module that are evaluated.
+    """The nodes of a module that are evaluated.
 
     Attributes:
         expressions: by extent; None where several stand at the same place, as inside old f-strings.
@@ -68,13 +68,13 @@ class Index:
 
     @classmethod
     def of(cls, tree: ast.Module) -> Index:
-        """The index of a module."""
+        """Return the index of a module."""
         index = cls()
         index._walk_all(tree.body, Scope())
         return index
 
     def read(self) -> Iterator[ScopedNode]:
-        """The expressions that are read."""
+        """Yield the expressions that are read."""
         for found in self.expressions.values():
             if found is not None and not isinstance(getattr(found.node, "ctx", None), ast.Store | ast.Del):
                 yield found
@@ -110,12 +110,12 @@ class Index:
 
 
 def extent_of(node: ast.expr | ast.stmt) -> TextExtent:
-    """Where a node stands."""
+    """Return the extent of a node in the text."""
     return (node.lineno, node.col_offset, node.end_lineno or node.lineno, node.end_col_offset or 0)
 
 
 def is_docstring(node: ast.AST) -> bool:
-    """Whether a statement is nothing but a text."""
+    """Return whether a statement consists of a string."""
     return (
         isinstance(node, ast.Expr)
         and isinstance(node.value, ast.Constant)
@@ -124,14 +124,14 @@ def is_docstring(node: ast.AST) -> bool:
 
 
 def _outer_of_function(node: _CallableNode) -> list[ast.AST]:
-    """What is evaluated where a function is defined."""
+    """Return the nodes that are evaluated where a function is defined."""
     defaults = [default for default in (*node.args.defaults, *node.args.kw_defaults) if default is not None]
     decorators = [] if isinstance(node, ast.Lambda) else node.decorator_list
     return [*decorators, *defaults]
 
 
 def _evaluated(node: ast.AST) -> Iterator[ast.AST]:
-    """Parts of a node that are evaluated in its own scope."""
+    """Yield the parts of a node that are evaluated in its own scope."""
     if isinstance(node, ast.AnnAssign):
         yield from (node.target, *([node.value] if node.value is not None else []))
     elif isinstance(node, ast.match_case):

@@ -1,4 +1,4 @@
-"""The values that stand at one and the same place of several calls: waypoints, names of poses, settings.
+"""Finds the values that several calls have at the same place: waypoints, names of poses, settings.
 
 What one call of a function gets, another call of it could get as well. So no types need to be known.
 """
@@ -18,7 +18,7 @@ _LONGEST = 40
 
 
 class Neighbours:
-    """What the calls and subscripts of a module have at the same place.
+    """The values that a module's calls and subscripts have at the same places.
 
     Args:
         tree: the tree of the module.
@@ -36,7 +36,7 @@ class Neighbours:
             found.sort(key=lambda one: (one.lineno, one.col_offset))
 
     def next_of(self, node: ast.AST) -> ast.expr | None:
-        """The next other value at this place in the text, for the last one the first; None if none."""
+        """Return the next different value at this place in the text, cyclically; None if there is none."""
         if not isinstance(node, ast.expr) or node not in self._places:
             return None
         place = self._places[node]
@@ -49,7 +49,7 @@ class Neighbours:
 
 
 def _given(node: ast.AST) -> Iterator[tuple[str, ast.expr]]:
-    """The values that a call or subscript gets, each with what tells its place from others."""
+    """Yield the values passed to a call or subscript, each with a key of its place."""
     if isinstance(node, ast.Subscript) and isinstance(node.value, ast.Name | ast.Attribute):
         yield f"{ast.unparse(node.value)}[]", node.slice
     elif isinstance(node, ast.Call):
@@ -63,7 +63,7 @@ def _given(node: ast.AST) -> Iterator[tuple[str, ast.expr]]:
 
 
 def _is_fixed(node: ast.expr) -> bool:
-    """Whether an expression means the same all over the module, and is no truth value and no message."""
+    """Return whether an expression is constant in the module, and neither a truth value nor a message."""
     match node:
         case ast.Constant(value=str() as text):
             return 0 < len(text) <= _LONGEST and " " not in text
@@ -81,7 +81,7 @@ def _is_fixed(node: ast.expr) -> bool:
 
 
 def _kind(node: ast.expr) -> str:
-    """What kind of value an expression is, as far as the text says."""
+    """Return the kind of an expression's value, as far as the text shows it."""
     match node:
         case ast.Constant(value=str()):
             return "text"

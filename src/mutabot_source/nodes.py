@@ -1,4 +1,4 @@
-"""Nodes of a syntax tree: where they stand, and alternatives to them as text.
+"""Nodes of a syntax tree: their extents and surroundings, and alternatives to them as text.
 
 Alternatives are text for the compiler with what is kept named, and for people as it would read.
 """
@@ -18,7 +18,7 @@ _DefinitionNode = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
 
 
 class ModuleTree:
-    """The syntax tree of a module and its text.
+    """The syntax tree of a module, with its text.
 
     Args:
         text: the program text, with ``\n`` at the ends of lines.
@@ -38,7 +38,7 @@ class ModuleTree:
                     self._formatted.add(child)
 
     def segment(self, extent: TextExtent) -> str:
-        """The program text at an extent; columns count bytes of UTF-8."""
+        """Return the program text at an extent; columns count bytes of UTF-8."""
         first, start, last, end = extent
         lines = self._lines[first - 1 : last]
         lines[-1] = lines[-1][:end]
@@ -46,7 +46,7 @@ class ModuleTree:
         return b"\n".join(lines).decode()
 
     def stands_there(self, node: SyntaxNode) -> bool:
-        """Whether a node stands where it says. Before Python 3.12 those within formatted texts may not."""
+        """Return whether a node's extent is right; before Python 3.12 it may be wrong within f-strings."""
         if node not in self._formatted:
             return True
         try:
@@ -56,11 +56,11 @@ class ModuleTree:
         return ast.dump(there) == ast.dump(node)
 
     def is_elif(self, node: SyntaxNode) -> bool:
-        """Whether a statement begins with ``elif``."""
+        """Return whether a statement begins with ``elif``."""
         return isinstance(node, ast.If) and self._lines[node.lineno - 1][node.col_offset :].startswith(b"el")
 
     def surroundings(self, node: SyntaxNode, scope: Scope) -> Surroundings:
-        """Where a node of this scope stands."""
+        """Return the surroundings of a node in this scope."""
         parent = self._parents[node]
         is_callee = _is_decorator(node, parent) or (isinstance(parent, ast.Call) and node is parent.func)
         return Surroundings(
@@ -87,7 +87,7 @@ class ModuleTree:
         return isinstance(parent, ast.While) and node is parent.test
 
     def _is_condition(self, node: SyntaxNode) -> bool:
-        """Whether only the truth of a value matters."""
+        """Return whether only the truth of a node's value matters."""
         match self._parents[node]:
             case ast.If() | ast.While() | ast.IfExp() | ast.Assert() as parent:
                 return node is parent.test
@@ -103,7 +103,7 @@ class ModuleTree:
 
 
 def is_variable(node: SyntaxNode, around: Surroundings) -> bool:
-    """Whether a node is a name that stands for a value, rather than for what is called."""
+    """Return whether a node is a name of a value, rather than of what is called."""
     return isinstance(node, ast.Name) and not around.is_callee
 
 
@@ -124,12 +124,12 @@ _ATOMS = ast.Name | ast.Attribute | ast.Subscript | ast.Call | ast.Constant
 
 
 def template(parts: TextParts, number_of: Callable[[ast.expr], int]) -> str:
-    """The parts with a name for each node that is kept."""
+    """Return the parts as text, with a name for each node that is kept."""
     return _joined(parts, lambda node: Alternative.kept_name(number_of(node)))
 
 
 def shown(parts: TextParts, text_of: Callable[[ast.expr], str]) -> str:
-    """The parts as program text, with parentheses only where they are needed."""
+    """Return the parts as program text, with parentheses only where they are needed."""
     bare = _joined(parts, text_of)
     if len(parts) == 1 or all(isinstance(part, str | _ATOMS) for part in parts):
         return bare
@@ -140,7 +140,7 @@ def shown(parts: TextParts, text_of: Callable[[ast.expr], str]) -> str:
 
 
 def same_program(one: str, other: str) -> bool:
-    """Whether two texts mean the same to the parser."""
+    """Return whether two texts parse to the same program."""
     try:
         return ast.dump(ast.parse(one)) == ast.dump(ast.parse(other))
     except SyntaxError:

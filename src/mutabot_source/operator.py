@@ -1,4 +1,4 @@
-"""The contract of an operator on program text.
+"""The interface of an operator on program text.
 
 An operator looks at one node of the syntax tree and says what could stand there instead. What it
 keeps of the original it hands on as nodes, so that these keep their place, their line and their meaning.
@@ -51,7 +51,7 @@ class Draft:
 
 @dataclass(frozen=True, slots=True)
 class Surroundings:
-    """What an operator may want to know about where a node stands.
+    """The context of a node that an operator may need to know.
 
     Attributes:
         is_value: whether the node's own value is used, rather than called or looked into.
@@ -77,7 +77,7 @@ class Surroundings:
 
 @dataclass(frozen=True, slots=True)
 class TextExample:
-    """One worked example: a program text, and all texts that the operator makes of it.
+    """A worked example: a program text, and all texts that the operator makes of it.
 
     Attributes:
         before: the text of a module.
@@ -95,12 +95,12 @@ class TextExample:
 
 
 def each(program: str, texts: str) -> tuple[str, ...]:
-    """Return a program with each of several texts, separated by commas, in place of ``{}``."""
+    """Return the text of a program once for each of several texts in place of ``{}``, comma-separated."""
     return tuple(program.format(text) for text in texts.split(", "))
 
 
 class ConventionalOperator(Rule):
-    """A rule that makes alternatives of program text.
+    """An operator that makes alternatives of program text.
 
     Class attributes, beside those of every ``Rule``:
         rank: its place in the documentation and among the alternatives of a place: smaller first.
@@ -118,27 +118,27 @@ class ConventionalOperator(Rule):
         """Yield the replacements of a node; none for nodes that the operator does not handle."""
 
     def with_variables(self, names: Iterable[str]) -> Iterable[Alternative]:
-        """For operators that ask: alternatives of a variable for which these names could stand."""
+        """Yield alternatives of a variable, for operators that use the names of variables of its type."""
         return ()
 
 
 def is_scalar(node: SyntaxNode, around: Surroundings) -> TypeGuard[ast.expr]:
-    """Whether a node may have a number or a truth value that the program goes on with."""
+    """Return whether a node's value may be a number or truth value that the program uses."""
     kinds = ast.Name | ast.Attribute | ast.Subscript | ast.Call | ast.BinOp
     return isinstance(node, kinds) and around.is_value
 
 
 def is_named_constant(node: ast.expr) -> bool:
-    """Whether a node is ``None``, ``True`` or ``False``."""
+    """Return whether a node is ``None``, ``True`` or ``False``."""
     return isinstance(node, ast.Constant) and (node.value is None or isinstance(node.value, bool))
 
 
 def is_text(node: ast.expr) -> bool:
-    """Whether a node is a text or bytes that stand there."""
+    """Return whether a node is a string or bytes literal."""
     is_plain = isinstance(node, ast.Constant) and isinstance(node.value, str | bytes)
     return is_plain or isinstance(node, ast.JoinedStr)
 
 
 def is_idle(node: ast.expr) -> bool:
-    """Whether a node does nothing where it stands alone: a text, or ``...``."""
+    """Return whether a node has no effect as a statement: a string, or ``...``."""
     return isinstance(node, ast.Constant) and isinstance(node.value, str | bytes | EllipsisType)

@@ -25,7 +25,7 @@ _NO_PYTHON = "it is not Python, the only language that has operators on its text
 
 
 class SourceFaults(FaultProvider):
-    """Conventional operators, and faults in the characters of command strings."""
+    """Provides the conventional operators, and faults in the characters of command strings."""
 
     name = PROVIDER
     families = OF_TEXT
@@ -33,13 +33,13 @@ class SourceFaults(FaultProvider):
     in_program = True
 
     def rules(self) -> Sequence[ConventionalOperator]:
-        """All operators on program text."""
+        """Return all operators on program text."""
         from .registry import load_all
 
         return load_all()
 
     def texts(self, project: Project, first: int, tell: Callable[[str], None]) -> Sequence[ProgramText]:
-        """The places of the program that the families asked for have to do with."""
+        """Return the program text with the places that the requested families change."""
         from .texts import find_texts
 
         wanted = self._operators(project)
@@ -58,7 +58,7 @@ class SourceFaults(FaultProvider):
         return texts
 
     def plan(self, project: Project, original: Original) -> Planned:
-        """The alternatives that can run and fit the types that were seen."""
+        """Return the mutants of the alternatives that can run and fit the observed types."""
         looked_at = original.texts.get(self.name, ())
         if not looked_at:
             return Planned()

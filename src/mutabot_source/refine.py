@@ -1,4 +1,4 @@
-"""Make mutants of alternatives, after the baseline only of those that fit the observed types."""
+"""Makes mutants of alternatives, after the baseline only of those that fit the observed types."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .operator import ConventionalOperator
 
 
 def plant(texts: Iterable[ProgramText]) -> list[PlannedMutant]:
-    """All mutants of these texts, in the order of the text."""
+    """Return all mutants of these texts, in the order of the text."""
     return [
         planted_of(place, index)
         for text in texts
@@ -24,7 +24,7 @@ def plant(texts: Iterable[ProgramText]) -> list[PlannedMutant]:
 
 
 def planted_of(place: TextPlace, index: int, reason: str | None = None) -> PlannedMutant:
-    """The mutant that an alternative at a place is, or would be were it not left out for a reason."""
+    """Return the mutant of an alternative at a place; ``reason`` says why it is left out, if it is."""
     description = f"{place.text} → {shortened(place.alternatives[index].text)}"
     return PlannedMutant.of_text(PROVIDER, place, index, description, reason)
 
@@ -34,7 +34,7 @@ def refine(
     original: Original,
     operators: Iterable[str] | None = None,
 ) -> tuple[tuple[ProgramText, ...], list[PlannedMutant]]:
-    """The texts with alternatives for variables added, and what does not fit the types left out.
+    """Return the texts with alternatives for variables, and the mutants left out as their types do not fit.
 
     ``operators``: names of those whose alternatives these are; all if left out. Of places that no test
     reaches the types are not known, so nothing is left out that could fit: what stands there is not covered.
@@ -79,7 +79,7 @@ def _variables(
 
 
 def _read_in_functions(text: ProgramText) -> dict[str, list[str]]:
-    """The names of the variables that each function reads."""
+    """Return the names of the variables that each function reads."""
     found: dict[str, set[str]] = {}
     for place in text.places:
         found.setdefault(place.span.function, set()).update([place.text] if place.variable else ())
@@ -87,7 +87,7 @@ def _read_in_functions(text: ProgramText) -> dict[str, list[str]]:
 
 
 def _reason(alternative: Alternative, kinds: Iterable[str]) -> str | None:
-    """Why an alternative does not fit a place with values of these kinds; None if it does."""
+    """Return why an alternative does not fit a place with values of these kinds; None if it does."""
     if alternative.fits(kinds):
         return None
     text = " or ".join(kinds)

@@ -1,4 +1,4 @@
-"""The operators on program text, by name: all that the files in ``operators/`` define."""
+"""The operators on program text, by name: all those defined by files in ``operators/``."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .operator import ConventionalOperator
 
 @cache
 def load_all() -> tuple[ConventionalOperator, ...]:
-    """All operators, in the order of the documentation and of the alternatives at a place."""
+    """Return all operators, in the order of the documentation and of the alternatives at a place."""
     found = [
         kind()
         for file in iter_modules(operators.__path__)
@@ -26,12 +26,12 @@ def load_all() -> tuple[ConventionalOperator, ...]:
 
 
 def names(family: str | None = None) -> list[str]:
-    """Names of the operators, of one family or of all."""
+    """Return the names of the operators of one family or of all."""
     return [each.name for each in load_all() if family in (None, each.family)]
 
 
 def operator(name: str) -> ConventionalOperator:
-    """The operator of this name. Raises LookupError if there is none."""
+    """Return the operator with this name. Raises LookupError if there is none."""
     for each in load_all():
         if each.name == name:
             return each
@@ -39,7 +39,7 @@ def operator(name: str) -> ConventionalOperator:
 
 
 def chosen(wanted: Iterable[str] | None) -> list[ConventionalOperator]:
-    """The operators of these names, in the usual order; all for None. Raises LookupError."""
+    """Return the operators with these names, in the usual order; all for None. Raises LookupError."""
     if wanted is None:
         return list(load_all())
     picked = {operator(name).name for name in wanted}

@@ -1,4 +1,4 @@
-"""Places in program text and what could stand there instead."""
+"""Finds the places in program text that operators can change, and their alternatives."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ LONGEST = 1000
 def find_texts(
     root: Path, files: Iterable[str], operators: Iterable[str] | None = None, *, first: int = 1
 ) -> tuple[ProgramText, ...]:
-    """The places of these files (relative to ``root``), numbered from ``first`` on over all of them.
+    """Return the places of these files (relative to ``root``), numbered consecutively from ``first``.
 
     ``operators``: names; all of family ``conventional`` if left out.
 
@@ -45,7 +45,7 @@ def find_texts(
 def find_places(
     source: bytes, file: str, rules: Iterable[ConventionalOperator], *, first: int = 1
 ) -> tuple[list[TextPlace], Index]:
-    """The places of one file that the rules have to do with, in the order of the text, and its index."""
+    """Return the places of one file that the rules can change, in the order of the text, and its index."""
     tree = ast.parse(source, file)
     index = Index.of(tree)
     finder = _TextFinder(ModuleTree(decode_source(source), tree), list(rules), index)
@@ -61,7 +61,7 @@ def find_places(
 
 @dataclass(slots=True)
 class _Seed:
-    """A place in the making."""
+    """A place that is being built."""
 
     found: ScopedNode
     extent: TextExtent
@@ -102,7 +102,7 @@ class _TextFinder:
         self._variables = any(rule.asks_variables for rule in rules)
 
     def seeds(self) -> Iterator[_Seed]:
-        """A statement comes before the expression that is all of it."""
+        """Yield the places; a statement comes before the expression that it consists of."""
         for found in chain(self._index.statements.values(), self._index.read()):
             seed = self._seed(found)
             if seed is not None:

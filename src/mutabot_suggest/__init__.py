@@ -1,1 +1,1 @@
-"""Suggesting checks that kill survivors, proven by running them."""
+"""Suggests checks that kill survivors, proven by running them."""

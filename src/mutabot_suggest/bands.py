@@ -1,4 +1,4 @@
-"""Bands: what a reading of the original stays within, and how a check of it is written."""
+"""The bands in which the original's readings stay, and the numbers with which to write a check of them."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Band:
 
 
 def band_of(values: Sequence[float], floor: float) -> Band:
-    """The range of the runs, widened by itself on both sides; ``floor`` is the least tolerance.
+    """Return the range of the runs' values, widened on both sides; ``floor`` is the least tolerance.
 
     No distribution is assumed. Of a normal one with 20 runs, fewer than 1 in 100 000 lie outside.
     """
@@ -36,7 +36,7 @@ def band_of(values: Sequence[float], floor: float) -> Band:
 
 
 def unseen(count: int) -> float:
-    """The share of runs in which something may happen that did not in ``count``, with ``CONFIDENCE``."""
+    """Return the frequency that an event unseen in ``count`` runs may still have, with ``CONFIDENCE``."""
     return 1 - (1 - CONFIDENCE) ** (1 / count) if count else 1.0
 
 
@@ -67,10 +67,10 @@ def _round_up(size: float) -> float:
 
 
 def digits_of(value: float) -> int:
-    """How many digits a person must read."""
+    """Return the number of digits of a value."""
     return len(f"{value!r}".partition("e")[0].replace(".", "").strip("-0")) if value else 1
 
 
 def precision_of(value: float, tolerance: float) -> int:
-    """How many digits of a value a check asks for, down to that of its tolerance; zero counts like 0.1."""
+    """Return how many digits of a value matter for a check with this tolerance; zero counts as 0.1."""
     return math.floor(math.log10(abs(value) or 0.1)) - math.floor(math.log10(tolerance) + 1e-9) + 1

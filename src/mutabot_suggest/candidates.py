@@ -1,4 +1,4 @@
-"""Find checks at the end of a test that would notice survivors: checks of other tests, and of readings."""
+"""Finds checks for a test's end that would notice survivors: other tests' checks, and checks of readings."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ _LAST_NAMES = re.compile(r"\.\w+(?=[,)\s])")
 def candidates(
     project: SuiteFiles, suite: SuiteChecks, measured: Measured
 ) -> tuple[list[CheckProposal], dict[str, str]]:
-    """Return the checks that would notice a survivor and that a person would merge.
+    """Return the checks that would notice a survivor and are written as a person would write them.
 
     Beside them, by mutant, what would notice it and is no such check.
     """
@@ -85,7 +85,7 @@ def _of_suite(
     runs: Sequence[ValuesRead],
     mutants: MutantReadings,
 ) -> Iterator[CheckOfSuite]:
-    """Checks of other tests that hold in every run of the original; those of one thing stand together."""
+    """Yield other tests' checks that hold in every run of the original; checks of the same thing together."""
     groups: dict[str, list[tuple[Transplant, str]]] = {}
     for one in transplants:
         if not all(read.get(one.key) is True for read in runs):
@@ -113,7 +113,7 @@ def _of_suite(
 
 
 def _is_given(text: str, originals: Mapping[tuple[int, str], ValuesRead], mutants: MutantReadings) -> bool:
-    """Whether a reading belongs to the round and the test, and is nothing that a program did."""
+    """Return whether a reading equals the original's in all mutants: an input of the round or the test."""
     return all(
         read.get(text) == originals.get(key, {}).get(text)
         for reads in mutants.values()
@@ -144,7 +144,7 @@ class _ReadAtEnd:
     suite: SuiteChecks | None = None
 
     def limit(self, text: str) -> StatedTolerance:
-        """How far a reading may be off; lengths of lists are counts and may not."""
+        """Return the tolerance stated for a reading; lengths of lists are counts, which have none."""
         if text.startswith("len("):
             return StatedTolerance()
         limit = self.limits.of(text)
@@ -153,7 +153,7 @@ class _ReadAtEnd:
         return limit
 
     def checks(self, reading: ReadExpression) -> Iterator[CheckAtEnd]:
-        """The checks of a reading: that it equals what the test was given, or a value."""
+        """Yield the checks of a reading: that it equals an input of the test, or a value."""
         text = reading.text
         partners = [one for one in self.given if _are_related(one, reading, self.runs[0])]
         for other in [*partners[:_PARTNERS], None]:
@@ -167,7 +167,7 @@ class _ReadAtEnd:
                 yield check
 
     def allowed(self, reading: ReadExpression) -> Iterator[tuple[str, str]]:
-        """The mutants that differ in a reading by less than the suite allows, each with the reason."""
+        """Yield the mutants that differ in a reading by less than the suite allows, each with the reason."""
         limit = self.limit(reading.text).tolerance
         values = [read[reading.text] for read in self.runs]
         if limit == 0.0 or not all(is_number(value) for value in values) or is_clock(reading.text):
@@ -183,7 +183,7 @@ class _ReadAtEnd:
                 yield mutant, f"{reading.text} differs by {size:.2g}, within your tolerance of {limit!r}"
 
     def _near(self, reading: ReadExpression, other: ReadExpression | None) -> CheckAtEnd | None:
-        """The check that a number is near another reading, or near a value."""
+        """Return the check that a number is near another reading, or near a value."""
 
         def apart(read: ValuesRead) -> float:
             value, beside = read.get(reading.text), read.get(other.text) if other is not None else 0.0
@@ -211,7 +211,7 @@ class _ReadAtEnd:
             return digits > DIGITS and not 0 < stated <= wide
 
         def is_fine(size: float) -> bool:
-            """Whether it is nothing that the suite has any tolerance for, and not far off."""
+            """Return whether the suite states no tolerance and the difference is small."""
             return stated == 0.0 and size < _CLEARLY * band.tolerance
 
         # let through what only many digits would notice, or less than the tests allow, if there are others
@@ -240,7 +240,7 @@ class _ReadAtEnd:
         return replace(check, trials=_beyond(differing, wide) & noticed)
 
     def _in_form(self, check: CheckAtEnd, limit: StatedTolerance) -> CheckAtEnd:
-        """The check in the suite's form, with its constant for the tolerance if it has one."""
+        """Return the check in the suite's form, with the suite's constant for the tolerance if any."""
         assert self.suite is not None
         needs = None if limit.check is None else self.suite.needs_of_form(self.place, limit.check)
         if limit.check is None or needs is None:
@@ -252,7 +252,7 @@ class _ReadAtEnd:
         return check
 
     def _with_constant(self, check: CheckAtEnd, band: Band, middle: float) -> tuple[CheckAtEnd, float]:
-        """The check with the suite's constant for its value, and that value, if one fits."""
+        """Return the check with the suite's constant for its value, and that value, if one fits."""
         assert self.suite is not None
         if isinstance(check.value, ReadExpression) or check.tolerance is None:
             return check, middle
@@ -264,7 +264,7 @@ class _ReadAtEnd:
         return check, middle
 
     def _constants(self, reading: str) -> Iterator[tuple[str, float, str]]:
-        """The suite's expressions for values of this name or this item, with their values and files."""
+        """Yield the suite's expressions for values of this name or item, with their values and files."""
         assert self.suite is not None
         name = last_name(reading)
         for check in self.suite.checks:
@@ -278,7 +278,7 @@ class _ReadAtEnd:
                 yield text, value, self.place.file
 
     def _equal(self, reading: ReadExpression, other: ReadExpression | None) -> CheckAtEnd | None:
-        """The check that something equals another reading, or a value; None if it does not always do so."""
+        """Return the check that a reading equals another one, or a value; None if it does not always."""
         text, first = reading.text, self.runs[0][reading.text]
 
         def expected(read: ValuesRead) -> Any:
@@ -297,7 +297,7 @@ class _ReadAtEnd:
         )
 
     def _furthest(self, away: Callable[[ValuesRead], float]) -> dict[tuple[str, int], float]:
-        """By mutant and round, how far its readings are from what is expected at most."""
+        """Return how far each mutant's readings are from the expected value at most, by mutant and round."""
         found: dict[tuple[str, int], float] = {}
         for mutant, reads in self.mutants.items():
             for (round, _), read in reads.items():
@@ -311,7 +311,7 @@ def _beyond(sizes: Mapping[tuple[str, int], float], tolerance: float) -> Trials:
 
 
 def _why_not(check: CheckAtEnd, own: float) -> str | None:
-    """Why a person would not merge it, if the tests state the tolerance ``own`` for it; None if one may."""
+    """Return why a person would not merge the check; None if they might. ``own``: the suite's tolerance."""
     text = check.reading.text
     if is_clock(text):
         return ONLY_TIME
@@ -327,7 +327,7 @@ ONLY_TIME = "only times differ: add a deadline if the task has one"
 
 
 def _are_related(one: ReadExpression, other: ReadExpression, read: ValuesRead) -> bool:
-    """Whether two readings are the same part of two things: of one name, or of lists that are all equal."""
+    """Return whether two readings are the same part of two things: by name, or of lists with equal values."""
     if _LAST.findall(one.text) != _LAST.findall(other.text):
         return False
     first, second = _NAME.findall(one.text), _NAME.findall(other.text)

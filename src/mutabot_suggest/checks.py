@@ -1,4 +1,4 @@
-"""Proposed checks: where each stands, what it says, and which survivors it notices."""
+"""Proposed checks: where each is placed, its statement, and the survivors that it notices."""
 
 from __future__ import annotations
 
@@ -64,26 +64,26 @@ class CheckProposal:
 
     @property
     def worth(self) -> tuple[float, ...]:
-        """Highest for what a person would rather write."""
+        """Sort key: the highest is the check that a person would most likely write."""
         raise NotImplementedError
 
     @property
     def looks_at(self) -> str:
-        """The expressions that it reads."""
+        """The expressions that the check reads."""
         raise NotImplementedError
 
     @property
     def after(self) -> str:
-        """The name behind whose binding it stands; empty at the end of the test."""
+        """The name after whose assignment the check is placed; empty for the end of the test."""
         return ""
 
     @property
     def statement(self) -> str:
-        """Its statements as one text."""
+        """The check's statements as one text."""
         return "\n".join(self.lines)
 
     def addition(self) -> Addition:
-        """The check as an addition to a test."""
+        """Return the check as an addition to a test."""
         names = set(_NAME.findall(self.statement))
         approx = ["import pytest"] if "pytest.approx" in self.statement else []
         used = tuple(name for name in self.place.names if name in names)
@@ -96,7 +96,7 @@ class CheckProposal:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class CheckOfSuite(CheckProposal):
-    """Checks that the suite has in another test or step.
+    """Checks that the suite already has, in another test or step.
 
     Attributes:
         statements: as they stand there.
@@ -106,23 +106,23 @@ class CheckOfSuite(CheckProposal):
 
     @property
     def lines(self) -> tuple[str, ...]:
-        """As they stand there."""
+        """The statements as they are in the suite."""
         return self.statements
 
     @property
     def worth(self) -> tuple[float, ...]:
-        """Few statements with few names first."""
+        """Sort key: few statements with few names come first."""
         return _ELSEWHERE, len(self.trials), -len(self.statements), -len(self.statement)
 
     @property
     def looks_at(self) -> str:
-        """The whole check."""
+        """The text of the whole check."""
         return self.statements[0].removeprefix("assert ")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Monitor(CheckProposal):
-    """A condition that an object of the test watches from the beginning on.
+    """A condition that an object of the test monitors from its creation on.
 
     Attributes:
         owner: the name of the object.
@@ -140,7 +140,7 @@ class Monitor(CheckProposal):
 
     @property
     def lines(self) -> tuple[str, ...]:
-        """The call that watches it."""
+        """The call that adds the condition to the object's monitors."""
         line = f'{self.owner}.always(lambda: {self.condition}, "{self.name}")'
         if len(line) <= _LONG:
             return (line,)
@@ -148,7 +148,7 @@ class Monitor(CheckProposal):
 
     @property
     def worth(self) -> tuple[float, ...]:
-        """Those of what is let go first, then those that many survivors break, and with one bound."""
+        """Sort key: conditions on releases first, then those many survivors break, then single bounds."""
         kills = len({mutant for mutant, _ in self.trials})
         return _ON_THE_WAY, self.is_release, kills, " or " not in self.condition, self.distance
 
@@ -189,12 +189,12 @@ class CheckAtEnd(CheckProposal):
 
     @property
     def looks_at(self) -> str:
-        """What it reads."""
+        """The reading's expression."""
         return self.reading.text
 
     @property
     def worth(self) -> tuple[float, ...]:
-        """The suite's reader, its constant or a relation, its form, a place, few digits."""
+        """Sort key: a reader of the suite, its constant or a relation, its form, a position, few digits."""
         rank = rank_of(self.reading.text)
         is_named = isinstance(self.value, ReadExpression) or bool(self.expected)
         digits = digits_of(self.value) if is_number(self.value) and not is_named else 1
@@ -208,7 +208,7 @@ class CheckAtEnd(CheckProposal):
 
     @property
     def lines(self) -> tuple[str, ...]:
-        """The assertion, in the form that the suite has for it."""
+        """The assertion, in the suite's form if there is one."""
         style, text = self.place.style, self.reading.text
         other = self.value.text if isinstance(self.value, ReadExpression) else self.expected
         if self.tolerance is None:
@@ -220,7 +220,7 @@ class CheckAtEnd(CheckProposal):
 
 
 def rank_of(text: str) -> int:
-    """What a reading is, by its name: ``PLACE``, ``ANGLE``, or something else."""
+    """Return the rank of a reading by its name: ``PLACE``, ``ANGLE`` or other."""
     name = last_name(text)
     if ANGLES.search(name):
         return ANGLE
@@ -228,10 +228,10 @@ def rank_of(text: str) -> int:
 
 
 def is_clock(text: str) -> bool:
-    """Whether a reading is a time, by its name: where it differs, the same may only have happened later."""
+    """Return whether a reading is a time, by its name; a difference in it may only mean a delay."""
     return _CLOCK.search(last_name(text)) is not None
 
 
 def last_name(text: str) -> str:
-    """The last name in it, of what may be a list: ``places`` of ``places[0][2]``."""
+    """Return the last name in an expression, without indices: ``places`` for ``places[0][2]``."""
     return str([text, *_NAME.findall(text)][-1])

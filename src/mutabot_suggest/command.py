@@ -1,4 +1,4 @@
-"""``mutabot suggest``: checks for the survivors of the last campaign."""
+"""``mutabot suggest``: proposes checks for the survivors of the last campaign."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def suggest(
 
 
 def _chosen(results: Results, only: Sequence[str], skip: Sequence[str]) -> list[MutantResult]:
-    """Return the survivors that were asked for. Raises NothingToSuggestError if there is none, saying why."""
+    """Return the requested survivors. Raises NothingToSuggestError, with the reason, if there is none."""
     if results.graded and not results.mutants:
         raise NothingToSuggestError("graded mutants have no survivors but thresholds: `mutabot thresholds`")
     if not results.mutants:

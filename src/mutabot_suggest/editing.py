@@ -1,4 +1,4 @@
-"""Statements that are added to tests: the new texts of their files.
+"""Adds statements to tests and returns the new texts of their files.
 
 Nothing is ever written to the project itself.
 """
@@ -34,7 +34,7 @@ class Addition:
 
 
 def within(style: str, text: str, value: str, tolerance: str) -> str:
-    """The statement that ``text`` reads ``value`` within ``tolerance``."""
+    """Return the statement that checks that ``text`` is ``value`` within ``tolerance``."""
     if style == UNITTEST:
         return f"self.assertAlmostEqual({text}, {value}, delta={tolerance})"
     return f"assert {text} == pytest.approx({value}, abs={tolerance})"
@@ -49,7 +49,7 @@ _PLAIN = {
 
 
 def equal(style: str, text: str, value: str) -> str:
-    """The statement that ``text`` reads ``value`` exactly."""
+    """Return the statement that checks that ``text`` equals ``value``."""
     if value in _PLAIN:
         method, expression = _PLAIN[value]
         return f"self.{method}({text})" if style == UNITTEST else f"assert {expression.format(text)}"
@@ -62,7 +62,7 @@ _AROUND = "from mutabot_suggest.noted import around as _mutabot_around"
 def edited(
     project: SuiteFiles, additions: Iterable[Addition], texts: Mapping[str, str] | None = None
 ) -> dict[str, str]:
-    """The new texts of the files with these additions, by file.
+    """Return the new texts of the files with these additions, by file.
 
     What is added to tests that another tool makes runs beside mutabot alone. ``texts``: what files have
     already instead of their own.
@@ -97,7 +97,7 @@ def _edited(project: SuiteFiles, file: str, text: str, additions: Sequence[Addit
 def _around(
     place: PlaceInTest, additions: Sequence[Addition], number: int, early: Mapping[str, str]
 ) -> list[str]:
-    """The statements for a test without a function of its own in the file."""
+    """Return the statements for a test without a function of its own in the file."""
     (test,) = place.path
     first = [one for one in additions if one.after]
     watched = {name: early[name] for one in first for name in one.uses if name in early}
@@ -124,7 +124,7 @@ def _function(name: str, additions: Sequence[Addition]) -> list[str]:
 def _with_ends(
     body: Sequence[cst.CSTNode], additions: Sequence[Addition], path: tuple[str, ...] = ()
 ) -> list[cst.CSTNode]:
-    """The statements of a module or class, with additions at the ends of its functions."""
+    """Return the statements of a module or class, with additions at the ends of its functions."""
     found: list[cst.CSTNode] = []
     for one in body:
         changed = one
@@ -155,7 +155,7 @@ def _statements(additions: Iterable[Addition]) -> Sequence[cst.CSTNode]:
 
 
 def _bound_at(body: Sequence[cst.CSTNode], name: str) -> int:
-    """The number of the statement behind the one that binds a name; of an argument the first one."""
+    """Return the index of the statement after the one that binds a name; 0 for an argument."""
     for number, one in enumerate(body):
         match one:
             case cst.SimpleStatementLine(body=[cst.Assign(targets=[cst.AssignTarget(cst.Name(value))])]) if (

@@ -1,4 +1,4 @@
-"""Forms of checks: what a statement looks at, what that must be near to, and how near."""
+"""Recognises the forms of the suite's checks: the value checked, the expected value, and the tolerance."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ LOOKED, EXPECTED, TOLERANCE = "_looked", "_expected", "_tolerance"
 
 @dataclass(frozen=True, slots=True)
 class SuiteCheck:
-    """A check that is near something.
+    """A check that a value is near another one.
 
     Attributes:
         key: under which its values are noted.
@@ -43,11 +43,11 @@ class SuiteCheck:
     function: str = ""
 
     def names(self, number: int) -> tuple[str, str]:
-        """The expressions of one of several values: what is looked at, and what is expected."""
+        """Return the expressions of one of several values: the value checked, and the expected one."""
         return _item(self.looked, number), _item(self.expected, number)
 
     def parts_in(self, read: Mapping[str, Any]) -> Iterator[tuple[int, float, float, float]]:
-        """Each value with its number, what was expected, and how far apart they might be, as noted."""
+        """Yield each recorded value's index, the value, the expected value and the tolerance."""
         tolerance = read.get(f"{self.key}.tolerance")
         if not is_number(tolerance):
             return
@@ -58,7 +58,7 @@ class SuiteCheck:
                 yield number, looked, expected, tolerance
 
     def statement(self, looked: str, expected: str, tolerance: str) -> str:
-        """A check of the same form."""
+        """Return a check of the same form with other expressions."""
         parts = {LOOKED: looked, EXPECTED: expected, TOLERANCE: tolerance}
         tree = _Renaming(parts).visit(ast.parse(self.form))
         return text_of(tree)
@@ -71,7 +71,7 @@ def _item(texts: tuple[str, ...], number: int) -> str:
 
 
 def is_number(value: Any) -> TypeGuard[float]:
-    """Whether a value is a number, which can be near another."""
+    """Return whether a value is a number that can be compared with a tolerance."""
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
@@ -85,7 +85,7 @@ class _Renaming(ast.NodeTransformer):
 
 
 def rename(statement: str, name: str, text: str) -> str:
-    """A statement with an expression in the place of a name."""
+    """Return a statement in which an expression replaces a name."""
     return text_of(_Renaming({name: text}).visit(ast.parse(statement)))
 
 
@@ -108,7 +108,7 @@ class _FormMaker(ast.NodeTransformer):
         return self.generic_copy(node) if name is None else ast.Name(name, ast.Load())
 
     def generic_copy(self, node: ast.AST) -> ast.AST:
-        """A copy with other parts: the file's own tree must stay as it is."""
+        """Return a copy with other parts, since the file's own tree must not change."""
         parts: dict[str, Any] = {}
         for key, value in ast.iter_fields(node):
             if isinstance(value, list):
@@ -125,7 +125,7 @@ def _parts_of(node: ast.expr) -> tuple[str, ...]:
 
 
 def near_of(node: ast.stmt) -> tuple[ast.expr, ast.expr, ast.expr] | None:
-    """What a statement looks at, what that must be near to, and how near; None if it says no such thing."""
+    """Return what a statement checks, the expected value and the tolerance; None for other statements."""
     test = node.test if isinstance(node, ast.Assert) else node.value if isinstance(node, ast.Expr) else None
     match test:
         case ast.Compare(left=looked, ops=[ast.Eq()], comparators=[ast.Call() as call]) if _is_approx(call):
@@ -159,12 +159,12 @@ def _with_keyword(call: ast.Call, looked: ast.expr) -> tuple[ast.expr, ast.expr,
 
 
 def _ordered(one: ast.expr, other: ast.expr, tolerance: ast.expr) -> tuple[ast.expr, ast.expr, ast.expr]:
-    """Which of two is looked at: the one that reads something, where the other one does not."""
+    """Return the operands as value checked and expected value: the one that reads something comes first."""
     return (other, one, tolerance) if _reads(other) > _reads(one) else (one, other, tolerance)
 
 
 def _reads(node: ast.expr) -> int:
-    """2 for what calls something, 1 for what has names other than those of constants, 0 for constants."""
+    """Return 2 for an expression with calls, 1 for one with names other than constants, 0 for constants."""
     if any(isinstance(one, ast.Call) for one in ast.walk(node)):
         return 2
     names = [one.id for one in ast.walk(node) if isinstance(one, ast.Name)]

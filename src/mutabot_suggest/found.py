@@ -1,4 +1,4 @@
-"""What ``mutabot suggest`` has found, as plain data."""
+"""The results of ``mutabot suggest`` as plain data."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from mutabot.api.reports import MutabotError
 
 
 class NothingToSuggestError(MutabotError):
-    """There is no survivor for which a check could be looked for, or no test that one can be added to."""
+    """Raised if no survivor can have a check suggested, or no test can have one added."""
 
     exit_code = 3
 
 
 @dataclass(frozen=True, slots=True)
 class ProvenCheck:
-    """One check, proven.
+    """One proven check.
 
     Attributes:
         test: node id of the test that it is added to, without parameters.
@@ -79,7 +79,7 @@ class Dropped:
 
 @dataclass(frozen=True, slots=True)
 class Suggestions:
-    """What ``mutabot suggest`` found.
+    """The results of ``mutabot suggest``.
 
     Attributes:
         checks: those first that kill most.

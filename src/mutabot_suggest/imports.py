@@ -1,4 +1,4 @@
-"""Imports that are added to a file, where and in the order in which isort and ruff would put them."""
+"""Adds imports to a file, placed and ordered as isort and ruff would."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _FUTURE, _STANDARD, _OTHERS, _OWN = range(4)
 
 
 def with_imports(text: str, lines: Iterable[str], own: Collection[str] = ()) -> str:
-    """A file's text with further imports, each ``import module`` or ``from module import name``.
+    """Return a file's text with further imports, each ``import module`` or ``from module import name``.
 
     ``own``: names of the project's own modules.
     """
@@ -55,7 +55,7 @@ def _has(one: ImportNode, wanted: ImportNode) -> bool:
 
 
 def _extended(node: ast.ImportFrom, name: str, lines: Sequence[str]) -> list[str]:
-    """The lines of an import with one name more."""
+    """Return the lines of an import with a name added."""
     texts = [ast.unparse(alias) for alias in node.names]
     for key in (_by_type, str.casefold, str):
         if _is_sorted([key(one) for one in texts]):
@@ -72,7 +72,7 @@ def _extended(node: ast.ImportFrom, name: str, lines: Sequence[str]) -> list[str
 
 
 def _by_type(name: str) -> tuple[int, str]:
-    """Constants, then classes, then all others: ``order-by-type`` of isort and ruff."""
+    """Return a sort key: constants, classes, then others, as ``order-by-type`` of isort and ruff."""
     kind = 0 if len(name) > 1 and name.isupper() else 1 if name[:1].isupper() else 2
     return kind, name
 
@@ -82,7 +82,7 @@ def _is_sorted(keys: Sequence[Any]) -> bool:
 
 
 def _leading(tree: ast.Module) -> list[ImportNode]:
-    """The imports at the beginning of a file."""
+    """Return the imports at the beginning of a file."""
     found: list[ImportNode] = []
     for node in tree.body:
         if isinstance(node, ImportNode):
@@ -100,7 +100,7 @@ def _insert(
     line: str,
     own: Collection[str],
 ) -> None:
-    """Put a new import into the block where its kind stands, in its order; else make a block."""
+    """Insert a new import into the block of its kind, in order, or into a new block."""
     blocks = _blocks(there)
     kind = _kind(wanted, own)
     fitting = [block for block in blocks if any(_root(one) == _root(wanted) for one in block)]
@@ -126,7 +126,7 @@ def _insert(
 
 
 def _blocks(nodes: Sequence[ImportNode]) -> list[list[ImportNode]]:
-    """Imports that stand together without an empty line."""
+    """Return the groups of imports without an empty line between them."""
     found: list[list[ImportNode]] = []
     for node in nodes:
         if found and node.lineno == (found[-1][-1].end_lineno or 0) + 1:
@@ -143,7 +143,7 @@ def _module(node: ImportNode) -> str:
 
 
 def _import_first(node: ImportNode) -> tuple[bool, str]:
-    """``import a`` before ``from b import c``, which is how isort sorts if nothing else is asked for."""
+    """Return a sort key: ``import a`` before ``from b import c``, isort's default."""
     return isinstance(node, ast.ImportFrom), _module(node)
 
 

@@ -67,7 +67,7 @@ class StatedTolerances:
         return self._found[text]
 
     def _of(self, text: str) -> StatedTolerance:
-        """The largest tolerance of this quantity, by its values or its name; else the least of its group."""
+        """Return the largest tolerance for this quantity, by values or name; else the least of its group."""
         found = [*self._by_value(text)]
         if found:
             best = max(found, key=lambda one: one.tolerance)
@@ -84,7 +84,7 @@ class StatedTolerances:
         return StatedTolerance()
 
     def _by_value(self, text: str) -> Iterator[StatedTolerance]:
-        """The checks that compared this very quantity, under whatever name."""
+        """Yield the tolerances of checks that compared the same values, under any name."""
         name = last_name(text)
         for check in self._suite.checks:
             numbers = {number for read in self._runs for number, *_ in check.parts_in(read)}
@@ -106,7 +106,7 @@ class StatedTolerances:
         return max((self._stated[name] for name in {*same, f"={text}"} if name in self._stated), default=0.0)
 
     def _of_name(self, name: str) -> float:
-        """The largest tolerance of checks of what has this name."""
+        """Return the largest tolerance of checks of anything with this name."""
         sizes = [self._stated.get(name, 0.0)]
         for read in (*self._reads, *self._elsewhere):
             for check in self._suite.checks:
@@ -116,7 +116,7 @@ class StatedTolerances:
         return max(sizes)
 
     def _form_of(self, names: set[str]) -> SuiteCheck | None:
-        """A check of something of this name."""
+        """Return a check of something with this name; None if there is none."""
         for check in self._suite.checks:
             looked = {last_name(one) for one in (*check.looked, *check.expected)}
             if looked & names:
@@ -125,7 +125,7 @@ class StatedTolerances:
 
 
 def stated_in(module: ast.AST | None) -> tuple[set[str], dict[str, float]]:
-    """What tests compare, and the largest tolerances that their text states.
+    """Return what tests compare, and the largest tolerances that their text states.
 
     By the last name of what they look at, and by all of it with an equals sign before it.
     """
@@ -146,7 +146,7 @@ def stated_in(module: ast.AST | None) -> tuple[set[str], dict[str, float]]:
 
 
 def _looked_at(node: ast.AST) -> tuple[ast.expr | None, list[ast.expr]]:
-    """What a comparison looks at, and how far it may be off."""
+    """Return the expression that a comparison checks, and its tolerances."""
     match node:
         case ast.Compare(left=looked, comparators=[compared]):
             calls = [one for one in ast.walk(compared) if isinstance(one, ast.Call)]

@@ -1,4 +1,4 @@
-"""Readings in a test, noted by lines that ``mutabot suggest`` adds to a copy of it.
+"""Records readings in a test, by lines that ``mutabot suggest`` adds to a copy of it.
 
 A probe on ``values`` carries it out of the process. Nothing here ever lets a test fail.
 """
@@ -33,7 +33,7 @@ def note(
     classes: Sequence[str] = (),
     checks: Sequence[tuple[str, Callable[[], Any]]] = (),
 ) -> None:
-    """Note all current readings.
+    """Record all current readings.
 
     Args:
         names: what is at hand in the test, by name.
@@ -67,7 +67,7 @@ def _held(key: str, holds: Callable[[], Any]) -> dict[str, bool]:
 
 
 def compared(key: str, role: str, value: Any) -> Any:
-    """Note what a check of the suite compares, and return it: ``role`` is a part of the check ``key``."""
+    """Record a value that a check of the suite compares, and return it; ``role`` is its part in ``key``."""
     try:
         parts = [(f"{key}.{role}{text}", one) for text, one in _parts("", value, 1)]
     except Exception:  # only plain values can be compared with readings
@@ -90,7 +90,7 @@ def around(
     end: Callable[[Callable[[str], Any]], None],
     early: Mapping[str, str],
 ) -> Callable[..., Any]:
-    """A test function with something before and behind it, which is given what knows the test's fixtures.
+    """Wrap a test function with calls before and after it, which get the values of the test's fixtures.
 
     For tests that another tool makes, which have no text to add to.
 
@@ -119,7 +119,7 @@ def around(
 
 
 def values() -> dict[str, Any]:
-    """The readings that the running test has noted: expression to number, text or boolean."""
+    """Return the readings recorded in the running test: expression to number, text or boolean."""
     return _noted.get(_test(), {})
 
 
@@ -136,7 +136,7 @@ def _at_hand(names: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
 
 
 def _attributes(value: Any) -> Iterator[tuple[str, Any]]:
-    """The public attributes that an object has itself: asking for them runs nothing of the user's."""
+    """Yield an object's own public attributes; reading these runs none of the user's code."""
     try:
         held = dict(vars(value))
     except TypeError:
@@ -145,7 +145,7 @@ def _attributes(value: Any) -> Iterator[tuple[str, Any]]:
 
 
 def _of_object(text: str, value: Any, targets: Sequence[str]) -> Iterator[tuple[str, Callable[[], Any]]]:
-    """Readings that the vocabulary names, of an object at hand or of one that it holds."""
+    """Yield readings that the vocabulary names, of an available object or of one that it holds."""
     for where, held in ((text, value), *((f"{text}.{name}", one) for name, one in _attributes(value))):
         for target in targets:
             module, _, qualname = target.partition(":")
@@ -178,7 +178,7 @@ def _parts_of(text: str, read: Callable[[], Any]) -> dict[str, Any]:
 
 
 def _parts(text: str, value: Any, depth: int) -> Iterator[tuple[str, Any]]:
-    """Plain values below a value, each with the expression that reads it."""
+    """Yield plain values within a value, each with the expression that reads it."""
     if isinstance(value, _PLAIN) and type(value) in _PLAIN:
         if not isinstance(value, str) or len(value) <= _LABEL:
             yield text, value

@@ -1,4 +1,4 @@
-"""Choose the tests to look at: as few as show how each survivor differs."""
+"""Chooses the fewest tests that show how each survivor differs."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _ALSO = 0.5
 
 
 def chosen_places(project: SuiteFiles, survivors: Sequence[MutantResult]) -> list[PlaceInTest]:
-    """The fewest tests with which every survivor has one that shows it, each with all of its parameters.
+    """Return the fewest tests that show every survivor's difference, each with all of its parameters.
 
     Where ends differ and where only the way does are looked for apart. A test whose end the original itself
     scatters counts only where no other shows a survivor.
@@ -46,7 +46,7 @@ def chosen_places(project: SuiteFiles, survivors: Sequence[MutantResult]) -> lis
 
 
 def _weights(survivor: MutantResult) -> list[Mapping[str, float]]:
-    """How far each test is from the original: at its end, and on its way."""
+    """Return how far a survivor is from the original in each test: at the end, and on the way."""
     found = [one for out in survivor.survived for one in out.diverged]
     stable = [one for one in found if not one.scatters] or found
     ends = {one.test: max((part.of_end for part in one.apart), default=0.0) for one in stable}

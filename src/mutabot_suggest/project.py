@@ -1,4 +1,4 @@
-"""A project's test files: places where a check can stand, and private copies.
+"""A project's test files: the places where a check can be added, and private copies of the project.
 
 Three styles: test functions of pytest, methods of ``TestCase``, and tests that another tool makes of
 something else, as pytest-bdd does of scenarios. No diff changes the last ones, but checks are tried in them.
@@ -47,11 +47,11 @@ class SuiteFiles:
         return self.request.root
 
     def text(self, file: str) -> str:
-        """The text of a file, with its own ends of lines."""
+        """Return the text of a file, with its own line endings."""
         return (self.root / file).read_bytes().decode("utf-8")
 
     def module(self, file: str) -> ast.Module | None:
-        """The parsed file; None if it cannot be read."""
+        """Return the parsed file; None if it cannot be read."""
         if file not in self._modules:
             try:
                 self._modules[file] = ast.parse(self.text(file))
@@ -60,7 +60,7 @@ class SuiteFiles:
         return self._modules[file]
 
     def import_name(self, file: str) -> str:
-        """The name under which pytest and the tests import a file: with the packages that it is in."""
+        """Return the name under which pytest and the tests import a file, with its packages."""
         path = self.root / file
         parts = [path.stem]
         folder = path.parent
@@ -70,7 +70,7 @@ class SuiteFiles:
         return ".".join(parts)
 
     def python_files(self, folders: tuple[str, ...]) -> list[str]:
-        """The Python files that a list of files and folders names, relative to the root."""
+        """Return the Python files in a list of files and folders, relative to the root."""
         found: list[str] = []
         for name in folders:
             path = self.root / name
@@ -81,12 +81,12 @@ class SuiteFiles:
 
     @property
     def program_files(self) -> list[str]:
-        """The files of the program."""
+        """The program's files."""
         return self.python_files(self.request.configuration.program)
 
     @property
     def suite_files(self) -> list[str]:
-        """The files of the tests that are looked at, and those beside them that are not the program's."""
+        """The files of the tests considered, and the files beside them that are not the program's."""
         program = {*self.program_files}
         found = dict.fromkeys(self.tests)
         for folder in dict.fromkeys((self.root / file).parent for file in self.tests):
@@ -97,18 +97,18 @@ class SuiteFiles:
 
     @property
     def own_modules(self) -> set[str]:
-        """Names under which the project's files are imported."""
+        """The names under which the project's files are imported."""
         files = [*self.suite_files, *self.program_files]
         return {self.import_name(file).partition(".")[0] for file in files}
 
     def beside(self, file: str) -> Iterator[ast.Module]:
-        """A test file and the ``conftest.py`` files that hold for it, nearest first."""
+        """Yield a test file and the ``conftest.py`` files that apply to it, nearest first."""
         folders = [folder for folder in (self.root / file).parents if folder.is_relative_to(self.root)]
         conftests = [str((folder / "conftest.py").relative_to(self.root)) for folder in folders]
         return (module for one in (file, *conftests) if (module := self.module(one)) is not None)
 
     def classes_of(self, file: str) -> dict[str, str]:
-        """The classes that steps and fixtures say of their arguments, by the arguments' names."""
+        """Return the annotated classes of the arguments of steps and fixtures, by argument name."""
         return {
             one.arg: ast.unparse(one.annotation)
             for module in self.beside(file)
@@ -119,7 +119,7 @@ class SuiteFiles:
         }
 
     def diff(self, texts: Mapping[str, str]) -> str:
-        """One unified diff of all changed files, for ``git apply`` and ``patch -p1``."""
+        """Return a unified diff of all changed files, for ``git apply`` and ``patch -p1``."""
         parts: list[str] = []
         for file, text in sorted(texts.items()):
             before, after = self.text(file).splitlines(keepends=True), text.splitlines(keepends=True)
@@ -130,7 +130,7 @@ class SuiteFiles:
 def name_in(
     module: ast.Module, wanted: str, attribute: str, taken: Iterable[str] = ()
 ) -> tuple[str, tuple[str, ...]]:
-    """How a file can name ``attribute`` of the module ``wanted``, and the import that it lacks, if it does.
+    """Return how a file can refer to ``attribute`` of module ``wanted``, and the missing import if any.
 
     ``taken`` are names of other things.
     """
@@ -151,7 +151,7 @@ def name_in(
 
 
 def top_names(module: ast.Module) -> set[str]:
-    """The names that a file binds at its top level."""
+    """Return the names that a file binds at its top level."""
     found: set[str] = set()
     for node in module.body:
         if isinstance(node, ast.Import | ast.ImportFrom):
@@ -168,7 +168,7 @@ PYTEST, UNITTEST, OTHER = "pytest", "unittest", "other"
 
 @dataclass(frozen=True, slots=True)
 class PlaceInTest:
-    """A test at whose end something can be looked at; all parameters of it are one place.
+    """A test at whose end a check can be added; all of its parameters are one place.
 
     Attributes:
         style: name of its style.
@@ -184,18 +184,18 @@ class PlaceInTest:
 
     @property
     def path(self) -> tuple[str, ...]:
-        """Its name in its module, below that of its class."""
+        """Its name in its module, preceded by its class."""
         return tuple(self.node.split("::")[1:])
 
 
 def text_of(node: ast.AST) -> str:
-    """The text of an expression or a statement, with the quotes that formatters write."""
+    """Return the source text of an expression or statement, with quotes as formatters write them."""
     text = ast.unparse(node)
     return text if '"' in text or "\\" in text else text.replace("'", '"')
 
 
 def place_of(project: SuiteFiles, test: str) -> PlaceInTest | None:
-    """The place of a test by its node id; None if nothing can be added to it."""
+    """Return the place of a test by its node id; None if nothing can be added to it."""
     node = test.partition("[")[0]
     file, *path = node.split("::")
     module = project.module(file)
@@ -211,7 +211,7 @@ def place_of(project: SuiteFiles, test: str) -> PlaceInTest | None:
 
 
 def function_of(module: ast.Module | None, place: PlaceInTest) -> TestFunctionNode | None:
-    """The function of a place in its parsed file; None where it has none."""
+    """Return the function of a place in its parsed file; None if it has none."""
     found: ast.Module | Definition | None = module
     for name in place.path:
         found = _defined(found, name) if found is not None else None
@@ -219,13 +219,13 @@ def function_of(module: ast.Module | None, place: PlaceInTest) -> TestFunctionNo
 
 
 def _is_scenario(function: TestFunctionNode) -> bool:
-    """Whether it only stands for a scenario of pytest-bdd."""
+    """Return whether a function only stands for a scenario of pytest-bdd."""
     called = (ast.unparse(one).partition("(")[0] for one in function.decorator_list)
     return any(one.rpartition(".")[2] == "scenario" for one in called)
 
 
 def _given_around(project: SuiteFiles, file: str) -> tuple[str, ...]:
-    """What fixtures and steps of a test file are given: fixtures, as far as a test has asked for them."""
+    """Return the arguments of a test file's fixtures and steps: fixtures that a test may have requested."""
     functions = [
         node
         for module in project.beside(file)
@@ -236,12 +236,12 @@ def _given_around(project: SuiteFiles, file: str) -> tuple[str, ...]:
 
 
 def _has_end(function: TestFunctionNode) -> bool:
-    """Whether statements can follow: not in a body on the line of its ``def``, nor if it ends by raising."""
+    """Return whether statements can follow: not after a one-line body, nor after a final ``raise``."""
     return function.body[0].lineno != function.lineno and not isinstance(function.body[-1], ast.Raise)
 
 
 def _names(function: TestFunctionNode) -> tuple[str, ...]:
-    """Arguments, and what is assigned on the way."""
+    """Return the arguments of a function, and the names that it assigns."""
     assigned = [
         one.id
         for statement in function.body
@@ -252,7 +252,7 @@ def _names(function: TestFunctionNode) -> tuple[str, ...]:
 
 
 def bound_names(function: TestFunctionNode) -> tuple[str, ...]:
-    """Arguments, and names that a statement of the function's own body assigns alone."""
+    """Return a function's arguments, and the names that statements directly in its body assign."""
     targets = [
         target
         for one in function.body
@@ -272,14 +272,14 @@ def _is_test_case(module: ast.Module, name: str, depth: int = 5) -> bool:
 
 
 def _defined(owner: ast.Module | Definition, name: str) -> Definition | None:
-    """The class or function of this name in a module or class."""
+    """Return the class or function with this name in a module or class; None if there is none."""
     return next(
         (one for one in reversed(owner.body) if isinstance(one, Definition) and one.name == name), None
     )
 
 
 def arguments_of(function: TestFunctionNode) -> tuple[str, ...]:
-    """The names of its arguments."""
+    """Return the names of a function's arguments."""
     given = function.args
     return tuple(one.arg for one in (*given.posonlyargs, *given.args, *given.kwonlyargs))
 
@@ -292,7 +292,7 @@ _PATH = "PYTHONPATH"
 
 @contextmanager
 def copy_of(request: Request, texts: Mapping[str, str]) -> Iterator[Request]:
-    """The request for a private copy of the project in which files have these texts.
+    """Yield the request for a private copy of the project in which files have these texts.
 
     Raises UsageError if there is no place for it.
     """
@@ -316,7 +316,7 @@ def _ignored(left: Collection[str], folder: str, names: Sequence[str]) -> set[st
 
 
 def _paths(own: Path, copy: Path, before: str) -> list[str]:
-    """Where the copy's modules are found, before those of an installation that points to the project."""
+    """Return the copy's import paths, before those of an installation that points to the project."""
     found = [str(copy / "src")] if (copy / "src").is_dir() else []
     given = [entry for entry in before.split(os.pathsep) if entry]
     for entry in [*given, *sys.path[1:]]:  # the first is where this process was started

@@ -1,4 +1,4 @@
-"""The proof of checks: they are put into a copy of the project and run on the original and on survivors."""
+"""Proves checks: adds them to a copy of the project and runs it on the original and on survivors."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .project import SuiteFiles, copy_of
 
 @dataclass(slots=True)
 class Proof:
-    """The results of proving checks, by their statements and tests.
+    """The results of proving checks, by statement and test.
 
     Attributes:
         request: for the rounds of the campaign.
@@ -87,7 +87,7 @@ class Proof:
         self.kills.update({one: trials for one, trials in found.items() if trials})
 
     def _run(self, checks: Sequence[CheckProposal]) -> dict[CheckProposal, Trials]:
-        """What each of these checks kills where all of them stand."""
+        """Return what each of these checks kills if all of them are added."""
         only = tuple(dict.fromkeys(mutant for one in checks for mutant, _ in sorted(one.trials)))
         texts = texts_with(self.project, checks)
         with copy_of(self.request, texts) as copied:
@@ -104,7 +104,7 @@ class Proof:
 
 
 def texts_with(project: SuiteFiles, checks: Sequence[CheckProposal]) -> dict[str, str]:
-    """The texts of the files that change when checks stand in their tests, by path."""
+    """Return the changed texts of files to which checks are added, by path."""
     return edited(project, (one.addition() for one in checks))
 
 
@@ -116,7 +116,7 @@ def _only(request: Request, checks: Sequence[CheckProposal]) -> Request:
 def _blamed(
     checks: Sequence[CheckProposal], test: str, place: str, message: str, texts: Mapping[str, str]
 ) -> list[CheckProposal]:
-    """The checks that let a test fail: that at the place, ``file:line``, or of that name; else all of it."""
+    """Return the checks to blame for a test's failure: at the place ``file:line``, by name, or else all."""
     named = [one for one in checks if isinstance(one, Monitor) and one.name in message]
     if named:
         return [max(named, key=lambda one: len(one.name))]  # a short one may be part of a longer one

@@ -1,4 +1,4 @@
-"""What tests could read at their ends, and what they read there: the original in many rounds, and survivors.
+"""The readings available at the ends of tests, and their values in the original and in survivors.
 
 A test can read in three ways: by the functions by which the tests read already, by what the vocabulary's
 probes and readings name, and by what it has at hand.
@@ -55,7 +55,7 @@ class ReadExpression:
 
 
 def readings_at(project: SuiteFiles, place: PlaceInTest) -> list[ReadExpression]:
-    """The readings of a place, those first by which the tests read already."""
+    """Return the readings at a place; those that the tests already use come first."""
     module = project.module(place.file)
     assert module is not None
     vocabulary = project.request.vocabulary
@@ -75,12 +75,12 @@ def readings_at(project: SuiteFiles, place: PlaceInTest) -> list[ReadExpression]
 
 
 def _is_of_objects(target: str) -> bool:
-    """Whether ``module:qualified.name`` is read from objects of a class."""
+    """Return whether ``module:qualified.name`` is read from objects of a class."""
     return "." in target.partition(":")[2]
 
 
 def of_objects(project: SuiteFiles) -> list[tuple[str, float]]:
-    """Readings of objects, ``module:Class.name``, each with its tolerance."""
+    """Return the readings of objects, ``module:Class.name``, each with its tolerance."""
     vocabulary = project.request.vocabulary
     coarse = max((probe.tolerance for probe in vocabulary.probes), default=1e-6)
     found = {probe.target: probe.tolerance for probe in vocabulary.probes if _is_of_objects(probe.target)}
@@ -93,7 +93,7 @@ def of_objects(project: SuiteFiles) -> list[tuple[str, float]]:
 def _by_oracle(
     project: SuiteFiles, place: PlaceInTest, module: ast.Module, tolerance: float
 ) -> Iterator[ReadExpression]:
-    """The oracle's functions, where all that they need is at hand under the same name."""
+    """Yield calls of the oracle's functions whose arguments are all available under the same names."""
     for file in project.python_files(project.request.configuration.oracle):
         oracle = project.module(file)
         for node in oracle.body if oracle is not None and file != place.file else ():
@@ -110,7 +110,7 @@ def _by_oracle(
 
 
 def _by_tests(place: PlaceInTest, module: ast.Module) -> Iterator[str]:
-    """What the tests of a file compare and only ``len`` is called for, where all of its names are at hand."""
+    """Yield what a file's tests compare, calling at most ``len``, if all its names are available."""
     at_hand = {*place.names, *top_names(module)}
     for compared in (node for node in ast.walk(module) if isinstance(node, ast.Compare)):
         called = [node.func for node in ast.walk(compared) if isinstance(node, ast.Call)]
@@ -129,7 +129,7 @@ def _only_reads(operation: Operation) -> bool:
 
 
 def _calls(operation: Operation) -> Iterator[str]:
-    """What follows the name of a function that only reads: no argument, or a text that says what to read."""
+    """Yield the argument lists with which a function only reads: none, or a text that selects a value."""
     if not _only_reads(operation) or "." in operation.qualname:
         return
     if not operation.patterns:
@@ -180,7 +180,7 @@ class Measured:
 
 
 def is_reading(text: str) -> bool:
-    """Whether what is noted under this key is a reading, and nothing that checks compared or ways had."""
+    """Return whether a recorded key is a reading, and not a compared value or one recorded on the way."""
     return not text.startswith(_NO_READINGS)
 
 
@@ -192,7 +192,7 @@ def measure(
     survivors: Survivors,
     progress: Progress,
 ) -> Measured:
-    """Run a copy of the project whose tests note what they can read.
+    """Run a copy of the project whose tests record what they can read.
 
     Args:
         request: for all rounds, fresh ones included.
@@ -254,7 +254,7 @@ def _run_survivors(
 
 
 def _read_in(result: Result, places: Sequence[PlaceInTest]) -> Iterator[tuple[PlaceInTest, str, ValuesRead]]:
-    """What passed tests read, each with its place and node id."""
+    """Yield what passed tests read, each with its place and node id."""
     prefix, by_node = f"{_PROBE}.", {one.node: one for one in places}
     for end in result.ends:
         values = end.probes.items()
@@ -270,7 +270,7 @@ def _noting(
     objects: Sequence[tuple[str, float]],
     transplants: Sequence[Transplant],
 ) -> Addition:
-    """Make the lines that note readings; they are plain statements, and never fail."""
+    """Return the lines that record readings; they are plain statements, and never fail."""
     # what the oracle does when it reads must not be seen by what only looks
     ordered = sorted(readings, key=lambda one: one.way == ORACLE)
     pairs = ", ".join(f"({one.text!r}, lambda: {one.text})" for one in ordered)
@@ -286,7 +286,7 @@ def _noting(
 
 
 def _asked(one: Transplant) -> str:
-    """The expression that tells whether a check of another test holds."""
+    """Return the expression that tells whether a check of another test holds."""
     statement = one.statement
     if one.near is not None and one.lacks_tolerance:
         statement = rename(statement, one.near.tolerance, f"_mutabot_tolerance_of({one.near.key!r})")
@@ -296,7 +296,7 @@ def _asked(one: Transplant) -> str:
 def _watching(
     project: SuiteFiles, suite: SuiteChecks, place: PlaceInTest, watched: dict[str, tuple[str, ...]]
 ) -> Iterator[Addition]:
-    """What sees the way of a test, behind each name that may stand for something that can be watched."""
+    """Yield the additions that record a test's way, after each name that may be a watchable object."""
     names: Iterable[str] = project.classes_of(place.file)
     if place.style != OTHER:
         function = function_of(project.module(place.file), place)
@@ -314,7 +314,7 @@ def _watching(
 
 
 def known(measured: Measured, place: PlaceInTest, text: str) -> ReadExpression:
-    """What is known of a part; one that comes in steps may be a step off where it never was yet."""
+    """Return the reading of a part; a discrete one may be a step off values that it never had."""
     of = [
         one
         for one in measured.readings[place]
@@ -337,7 +337,7 @@ _DECIMALS = 4
 
 
 def _step_of(values: Iterable[float]) -> float | None:
-    """The power of ten of which all these are multiples, below 1; None if there is none, or all are whole."""
+    """Return the power of ten below 1 of which all values are multiples; None if none, or all are whole."""
     values = list(values)
     for decimals in range(_DECIMALS + 1):
         if all(abs(value - round(value, decimals)) <= 1e-9 * max(1.0, abs(value)) for value in values):

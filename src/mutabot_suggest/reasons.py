@@ -1,4 +1,4 @@
-"""Reasons why no check kills a survivor, each one sentence."""
+"""Explains in a sentence why no check kills a survivor."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def why_unsolved(
     failed: Mapping[CheckProposal, str],
     refused: Mapping[str, str],
 ) -> Unsolved:
-    """The reason for a survivor: what became of its checks, or how little of it differs."""
+    """Return the reason for a survivor: how its checks failed, or how little of it differs."""
     mutant = survivor.mutant.id
     recorded = _of_recordings(survivor, measured, suite)
     if recorded.startswith(_SO_LITTLE) or recorded == ONLY_TIME:
@@ -58,7 +58,7 @@ def _why_failed(check: CheckProposal, why: str) -> str:
 
 
 def _of_recordings(survivor: MutantResult, measured: Measured, suite: SuiteChecks) -> str:
-    """What was recorded of the world says more than readings; empty without recordings."""
+    """Describe the difference in recordings of the world; empty without any recordings."""
     stories = [told for out in survivor.survived if (told := out.told) is not None and told.apart]
     if not stories:
         return ""
@@ -87,7 +87,7 @@ def _of_recordings(survivor: MutantResult, measured: Measured, suite: SuiteCheck
 
 
 def _tolerance(measured: Measured, suite: SuiteChecks, names: set[str]) -> float:
-    """The least tolerance that the tests have for what has one of these names; 0 if they have none."""
+    """Return the least tolerance that the tests have for anything with one of these names; 0 without any."""
     sizes = [
         tolerance
         for reads in measured.originals.values()
@@ -100,7 +100,7 @@ def _tolerance(measured: Measured, suite: SuiteChecks, names: set[str]) -> float
 
 
 def _differences(mutant: str, measured: Measured) -> Iterator[tuple[float, str]]:
-    """Describe how far readings are from the original's, in units of its own spread."""
+    """Yield how far readings are from the original's, in units of its own spread."""
     for place, by_mutant in measured.mutants.items():
         originals = measured.originals.get(place, {})
         for key, read in by_mutant.get(mutant, {}).items():
@@ -126,5 +126,5 @@ def _short(value: float) -> str:
 
 
 def _amount(value: float, unit: str) -> str:
-    """``1.4 mm``, ``0.31 m``, ``12 deg``."""
+    """Return a value with its unit as text: ``1.4 mm``, ``0.31 m``, ``12 deg``."""
     return f"{1e3 * value:.2g} mm" if unit == "m" and value < 0.1 else f"{value:.2g} {unit}"

@@ -1,4 +1,4 @@
-"""Show suggestions: on the terminal, as JSON, and in reports of the campaign."""
+"""Prints suggestions to the terminal and as JSON, and keeps them for reports of the campaign."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _MOST = 10
 
 
 def print_suggestions(context: CommandContext, found: Suggestions) -> None:
-    """Print each check with what it kills and how sure it is, the survivors that are left, and the diff."""
+    """Print each check, the mutants it kills and how sure it is, the remaining survivors, and the diff."""
     killed = {mutant for one in found.checks for mutant in one.kills}
     survivors = plural(len(killed) + len(found.unsolved), "survivor")
     context.print(f"{plural(len(found.checks), 'check')} for {len(killed)} of {survivors}")
@@ -53,7 +53,7 @@ def check_lines(one: ProvenCheck, found: Suggestions) -> Iterator[str]:
 
 
 def _kills(one: ProvenCheck, found: Suggestions) -> str:
-    """The mutants by the rounds in which they are killed: ``#7, #9 in all rounds``."""
+    """Return the mutants by the rounds in which they are killed: ``#7, #9 in all rounds``."""
     by_rounds: dict[tuple[int, ...], list[int]] = {}
     for mutant, rounds in one.kills.items():
         by_rounds.setdefault(tuple(rounds), []).append(found.numbers.get(mutant, 0))
@@ -73,7 +73,7 @@ def plural(count: int, name: str) -> str:
 
 
 def _left(unsolved: Sequence[Unsolved], found: Suggestions) -> list[str]:
-    """Survivors by their reason, which is told once: those with most in common first."""
+    """Return lines on the survivors by reason, each reason once: the most frequent first."""
     by_reason: dict[str, list[Unsolved]] = {}
     for one in unsolved:
         by_reason.setdefault(one.reason, []).append(one)
@@ -89,7 +89,7 @@ def _named(those: Sequence[Unsolved], found: Suggestions) -> str:
 
 
 def keep(context: CommandContext, results: Results, found: Suggestions) -> None:
-    """Keep for reports, of each survivor, the first check that kills it, or why none does."""
+    """Keep each survivor's first killing check, or the reason why there is none, for reports."""
     checks: dict[str, tuple[str, str, tuple[str, ...]]] = {}
     for one in reversed(found.checks):
         notes = tuple(check_lines(one, found))[len(one.statement.splitlines()) :]
@@ -121,5 +121,5 @@ def data_of_suggestions(found: Suggestions) -> dict[str, Any]:
 
 
 def _facts(one: ProvenCheck | Unsolved | Dropped) -> dict[str, Any]:
-    """The fields of a dataclass that are not None."""
+    """Return the fields of a dataclass that are not None."""
     return {name: value for name, value in asdict(one).items() if value is not None}

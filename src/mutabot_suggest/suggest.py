@@ -27,7 +27,7 @@ _ATTEMPTS, _FAILURES = 8, 3
 
 
 def _sorted_out(chosen: Sequence[MutantResult]) -> tuple[Survivors, list[Unsolved]]:
-    """The survivors that may look other than the original with the rounds in which they do, and the others.
+    """Separate the survivors that may differ from the original, with the rounds in which they do.
 
     No check in these tests can kill the others.
     """
@@ -44,7 +44,7 @@ def _sorted_out(chosen: Sequence[MutantResult]) -> tuple[Survivors, list[Unsolve
 
 
 class Quiet:
-    """Progress without the remarks of campaigns that only serve."""
+    """Progress without the notes of auxiliary campaigns."""
 
     left: float | None = None
 
@@ -53,7 +53,7 @@ class Quiet:
         self.mutant_ended = progress.mutant_ended
 
     def note(self, text: str) -> None:
-        """Print nothing: the campaign itself has printed the note."""
+        """Print nothing: the user's campaign has already printed the note."""
 
 
 def suggest(
@@ -124,7 +124,7 @@ def _measured(
     survivors: Survivors,
     progress: Progress,
 ) -> Measured:
-    """What is read in these tests; if they cannot be run without the others, in a run of all tests."""
+    """Return what these tests read; if they cannot run without the others, run all tests."""
     tests = tuple(place.node for place in places)
     try:
         return measure(request.changed(tests=tests), project, suite, places, survivors, progress)
@@ -133,7 +133,7 @@ def _measured(
 
 
 def _proven(proof: Proof, found: Sequence[CheckProposal], rounds: Sequence[int]) -> list[CheckProposal]:
-    """Checks that all stand their proof and together kill what any would; those that kill most first."""
+    """Return proven checks that together kill all that any check kills, those that kill most first."""
     for _ in range(_ATTEMPTS):
         failures = Counter(one.place for one, why in proof.failed.items() if why.startswith("fails in"))
         left = [
@@ -151,7 +151,7 @@ def _proven(proof: Proof, found: Sequence[CheckProposal], rounds: Sequence[int])
 
 
 def chosen_of(checks: Sequence[CheckProposal], kills: Mapping[CheckProposal, Trials]) -> list[CheckProposal]:
-    """For all that any check kills, the one that a person would rather write; none that others replace.
+    """Return the fewest checks that kill all that any kills, preferring those that a person would write.
 
     ``kills``: what checks that were run killed; of the others counts what they would by what was measured.
     """

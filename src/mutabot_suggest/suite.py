@@ -1,4 +1,4 @@
-"""The suite's own checks: which value they compare with which, how, and with which tolerance.
+"""The suite's own checks: which values they compare, in which form, and with which tolerance.
 
 A check that is suggested takes its predicate, its constants and its tolerance from here.
 """
@@ -30,7 +30,7 @@ _MOST = 40
 
 @dataclass(frozen=True, slots=True)
 class Transplant:
-    """A check of another test, or of a step, that can be asked at the end of a test as well.
+    """A check of another test or step that can also be evaluated at the end of a test.
 
     Attributes:
         key: under which is noted whether it holds.
@@ -48,13 +48,13 @@ class Transplant:
 
     @property
     def lacks_tolerance(self) -> bool:
-        """Whether its tolerance is a name that only its own function knows."""
+        """Whether its tolerance is a local name of its own function."""
         return (
             self.near is not None and self.near.tolerance.isidentifier() and not self.near.tolerance.isupper()
         )
 
     def written(self, tolerance: float | None) -> str:
-        """The statement as it is added; ``tolerance`` is what it was there."""
+        """Return the statement as it is added; ``tolerance`` is its value in the original test."""
         if self.near is None or tolerance is None or not self.lacks_tolerance:
             return self.statement
         return rename(self.statement, self.near.tolerance, repr(tolerance))
@@ -69,7 +69,7 @@ class SuiteChecks:
 
     @classmethod
     def of(cls, project: SuiteFiles) -> SuiteChecks:
-        """Find the checks in all files but the program's."""
+        """Find the checks in all files except the program's."""
         suite = cls(project)
         for file in project.suite_files:
             for name, node in suite._statements(file):
@@ -79,7 +79,7 @@ class SuiteChecks:
         return suite
 
     def noting(self, file: str, text: str) -> str:
-        """The text of a file in which checks note what they compare."""
+        """Return the text of a file in which checks record what they compare."""
         marks: list[tuple[int, int, str]] = []
         starts = _starts(text)
         for one in self.checks:
@@ -96,14 +96,14 @@ class SuiteChecks:
         return data.decode()
 
     def constant(self, place: PlaceInTest, file: str, text: str) -> tuple[str, ...] | None:
-        """The imports that an expression of constants of a file needs at a place; None if it is none."""
+        """Return the imports that an expression of a file's constants needs at a place; else None."""
         names = {one.id for one in ast.walk(ast.parse(text)) if isinstance(one, ast.Name)} if text else set()
         if not names or not all(name.isupper() for name in names) or names & {*place.names}:
             return None
         return self._imports(place, file, names)
 
     def constants(self, file: str) -> Iterator[tuple[str, float]]:
-        """The items of constants that a file states, each with the expression for it."""
+        """Yield the expressions and values of the items of a file's constants."""
         module = self.project.module(file)
         for node in module.body if module is not None else ():
             targets = node.targets[0] if isinstance(node, ast.Assign) else None
@@ -118,7 +118,7 @@ class SuiteChecks:
                     )
 
     def needs_of_form(self, place: PlaceInTest, check: SuiteCheck) -> tuple[str, ...] | None:
-        """The imports that a check of this form needs at a place; None if it cannot stand there."""
+        """Return the imports that a check of this form needs at a place; None if it is not possible there."""
         names = {one.id for one in ast.walk(ast.parse(check.form)) if isinstance(one, ast.Name)}
         names -= {LOOKED, EXPECTED, TOLERANCE, *dir(builtins)}
         if ("self" in names) != (place.style == UNITTEST):
@@ -126,7 +126,7 @@ class SuiteChecks:
         return self._imports(place, check.file, names - {"self"})
 
     def _imports(self, place: PlaceInTest, file: str, names: Collection[str]) -> tuple[str, ...] | None:
-        """The imports by which a place has names that a file has; None if it cannot have one of them."""
+        """Return the imports that give a place these names of a file; None if one is impossible."""
         module, other = self.project.module(place.file), self.project.module(file)
         if module is None or other is None:
             return None
@@ -141,7 +141,7 @@ class SuiteChecks:
         return tuple(needs)
 
     def watched(self, place: PlaceInTest, name: str) -> list[tuple[str, tuple[str, ...]]]:
-        """The readings of conditions that the suite watches, of an object that a test calls ``name``.
+        """Return the readings in the suite's monitored conditions for an object that a test calls ``name``.
 
         Each is a call of a function with this object, with the imports that it needs.
         """
@@ -169,7 +169,7 @@ class SuiteChecks:
         return list(found.items())
 
     def transplants(self, place: PlaceInTest) -> list[Transplant]:
-        """The checks of other tests for which a test has all that they need."""
+        """Return the checks of other tests whose names are all available in a test."""
         module = self.project.module(place.file)
         own = function_of(module, place)
         there = {text_of(one) for one in ast.walk(own) if isinstance(one, ast.stmt)} if own else set()
@@ -190,7 +190,7 @@ class SuiteChecks:
         return list(found.values())[:_MOST]
 
     def _statements(self, file: str) -> Iterator[tuple[str, ast.stmt]]:
-        """The statements of a file's functions that check something, each with the function's name."""
+        """Yield the checking statements of a file's functions, each with the function's name."""
         module = self.project.module(file)
         if module is None:
             return
@@ -205,7 +205,7 @@ class SuiteChecks:
                         yield function.name, node
 
     def _imported(self, module: ast.Module) -> set[str]:
-        """The functions that check something and that a file imports from others of the suite."""
+        """Return the checking functions that a file imports from other files of the suite."""
         checking = {
             (self.project.import_name(file).rpartition(".")[2], name)
             for file in self.project.suite_files
@@ -223,7 +223,7 @@ class SuiteChecks:
     def _needs(
         self, place: PlaceInTest, file: str, node: ast.stmt, near: SuiteCheck | None
     ) -> tuple[str, ...] | None:
-        """The imports that a statement of a file needs at a place; None if it lacks a name there."""
+        """Return the imports that a statement of a file needs at a place; None if a name is unavailable."""
         module, other = self.project.module(place.file), self.project.module(file)
         if module is None or other is None:
             return None
@@ -241,7 +241,7 @@ class SuiteChecks:
         return needs if here or any(isinstance(one, ast.Call) for one in ast.walk(node)) else None
 
     def _acts(self, file: str, node: ast.AST, depth: int = 3) -> bool:
-        """Whether a statement runs the program or commands the robot."""
+        """Return whether a statement runs the program or commands the robot."""
         module = self.project.module(file)
         program = {self.project.import_name(one).rpartition(".")[2] for one in self.project.program_files}
         commands = {
@@ -266,7 +266,7 @@ class SuiteChecks:
 
 
 def _assigned(target: ast.expr | None, value: ast.expr | None) -> Iterator[tuple[str, ast.expr]]:
-    """What an assignment gives which name: ``A, B = 1, 2`` gives two."""
+    """Yield the names that an assignment binds, with their values: ``A, B = 1, 2`` gives two."""
     if isinstance(target, ast.Name) and value is not None:
         yield target.id, value
     elif isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple):
@@ -279,7 +279,7 @@ def _is_at(check: SuiteCheck, node: ast.stmt) -> bool:
 
 
 def _import_of(module: ast.Module, name: str) -> str | None:
-    """The import by which a file has a name, as a statement of its own."""
+    """Return the statement by which a file imports a name; None if it does not."""
     for node in module.body:
         if isinstance(node, ast.ImportFrom) and not node.level:
             for alias in node.names:
@@ -293,7 +293,7 @@ def _import_of(module: ast.Module, name: str) -> str | None:
 
 
 def _starts(text: str) -> list[int]:
-    """Where each line begins, in bytes."""
+    """Return the byte offset at which each line begins."""
     found = [0]
     for line in text.encode().splitlines(keepends=True):
         found.append(found[-1] + len(line))
@@ -301,7 +301,7 @@ def _starts(text: str) -> list[int]:
 
 
 def _checking(module: ast.Module) -> set[str]:
-    """The file's own functions that check something and that tests call: no tests, fixtures or steps."""
+    """Return a file's own checking functions that tests call: no tests, fixtures or steps."""
     return {
         one.name
         for one in module.body

@@ -1,4 +1,4 @@
-"""Record the way of a test: readings at ticks of an object that watches conditions.
+"""Records readings during a test, at ticks of an object that monitors conditions.
 
 Such an object has a method ``always(condition, name)``, which is asked at every tick of simulated time, and
 ``truth`` with readings that need no argument. Nothing here ever breaks a condition.
@@ -21,14 +21,14 @@ _ways: list[_Way] = []
 
 
 def is_watched(owner: Any) -> bool:
-    """Whether objects of a class, or an object, can be watched."""
+    """Return whether objects of a class, or an object, can be watched."""
     return callable(getattr(owner, "always", None)) and (
         isinstance(owner, type) or hasattr(owner, "truth") or hasattr(owner, "verify")
     )
 
 
 def watch(name: str, owner: Any, readings: Sequence[tuple[str, Callable[[], Any]]] = ()) -> None:
-    """Watch from now on what can be read of ``owner``, which the test calls ``name``.
+    """Start to record what can be read of ``owner``, which the test calls ``name``.
 
     ``readings``: further expressions, each with what evaluates it.
     """
@@ -42,14 +42,14 @@ def watch(name: str, owner: Any, readings: Sequence[tuple[str, Callable[[], Any]
 
 
 def noted() -> dict[str, str]:
-    """Return what was seen in the running test: by the name of what was watched, as JSON."""
+    """Return the recordings of the running test, as JSON by the watched object's name."""
     found = {f"{SIGN}{way.name}": json.dumps([way.texts, way.rows]) for way in _ways if way.rows}
     _ways.clear()
     return found
 
 
 class _Way:
-    """What was read at some of the ticks: ever fewer of them, the longer it takes.
+    """A recording of readings at some ticks; the longer the test, the fewer ticks are kept.
 
     Attributes:
         texts: the expressions of the numbers in ``rows``.
@@ -63,7 +63,7 @@ class _Way:
         self._ticks, self._every = 0, _EVERY
 
     def see(self) -> bool:
-        """Read all, if it is time to; a condition that always holds."""
+        """Take a reading if one is due; always return True, as a condition that holds."""
         self._ticks += 1
         if self._ticks % self._every == 0:
             try:
@@ -86,7 +86,7 @@ def _works(read: Callable[[], Any]) -> bool:
 
 
 def _of_truth(name: str, owner: Any) -> Iterator[tuple[str, Callable[[], Any]]]:
-    """The readings of its ``truth`` that need no argument."""
+    """Yield the readings of the object's ``truth`` that need no argument."""
     truth = getattr(owner, "truth", None)
     for one in dir(type(truth)) if truth is not None else ():
         read = getattr(truth, one, None) if not one.startswith("_") else None
@@ -100,7 +100,7 @@ def _needs_nothing(read: Callable[..., Any]) -> bool:
 
 
 def _numbers(text: str, value: Any) -> Iterator[tuple[str, float]]:
-    """The numbers of a reading: itself, or those of the fields of a plain object."""
+    """Yield the numbers of a reading: itself, or the fields of a plain object."""
     if isinstance(value, int | float) and not isinstance(value, bool):
         yield text, float(value)
     elif is_dataclass(value) and not isinstance(value, type):

@@ -1,4 +1,4 @@
-"""Monitors for survivors that go another way: zones that the original never enters, with room to spare.
+"""Monitors for survivors that take another path: zones that the original never enters, with a margin.
 
 A zone is all beyond one bound (``x < 0.67``), or the corner beyond two (``x < 0.67 or z > 0.4``). With the
 opening of a gripper it says from where something may be let go.
@@ -40,7 +40,7 @@ Columns = Mapping[str, Sequence[float]]
 
 @dataclass(frozen=True, slots=True)
 class _Bound:
-    """One bound: ``sign`` 1 for what lies above it, -1 for what lies below."""
+    """One bound of a zone: ``sign`` is 1 for values above it, -1 for values below."""
 
     text: str
     sign: int
@@ -49,14 +49,14 @@ class _Bound:
 
 @dataclass(frozen=True, slots=True)
 class _Zone:
-    """The moments at which all sides are beyond their bounds."""
+    """The moments at which all readings are beyond their bounds."""
 
     sides: tuple[_Bound, ...]
     bounds: tuple[float, ...]
     distance: float
 
     def has(self, columns: Columns) -> bool:
-        """Whether any moment lies in it."""
+        """Return whether any moment lies in the zone."""
         rows = zip(*(columns[side.text] for side in self.sides), strict=True)
         signs = [side.sign for side in self.sides]
         return any(
@@ -69,7 +69,7 @@ class _Zone:
 
 
 def monitors(suite: SuiteChecks, measured: Measured) -> Iterator[Monitor]:
-    """The conditions that survivors break on their ways."""
+    """Yield the conditions that survivors break on their paths."""
     everywhere = [read for reads in measured.originals.values() for read in reads.values()]
     for place, originals in measured.originals.items():
         mutants = measured.mutants.get(place, {})
@@ -129,7 +129,7 @@ def _of_ways(
 
 
 def _scale_of(text: str, ways: Sequence[Columns], limits: StatedTolerances) -> float | None:
-    """What counts as clear in a reading, never less than the tests allow; None for what has no bounds."""
+    """Return the margin of a reading, never less than the tests allow; None if it has no bounds."""
     if _GATE.search(text):
         values = [value for way in ways for value in way[text]]
         return (max(values) - min(values)) / 4 / _ROOM or None
@@ -144,7 +144,7 @@ def _scale_of(text: str, ways: Sequence[Columns], limits: StatedTolerances) -> f
 
 
 def _zones(columns: Columns, ways: Sequence[Columns], scales: Mapping[str, float]) -> Iterator[_Zone]:
-    """The zones of one survivor: where things are let go, with one bound; else the best with two."""
+    """Yield the zones of one survivor: at releases, with one bound; else the best with two bounds."""
     pairs = [*_pairs(scales)]
     gates = [pair for pair in pairs if _GATE.search(pair[1])]
     found = [*_beyond_two(columns, ways, scales, gates), *_beyond_one(columns, ways, scales)]
@@ -192,7 +192,7 @@ def _beyond_two(
 
 
 def _pairs(texts: Collection[str]) -> Iterator[tuple[str, str]]:
-    """Readings that say something together: of one thing, and of a thing and how far a gripper is open."""
+    """Yield pairs of related readings: of one thing, or of a thing and the gripper's opening."""
     gates = [text for text in texts if _GATE.search(text)]
     places = [text for text in texts if text not in gates and rank_of(text) == PLACE]
     for one, other in combinations(places, 2):
@@ -210,7 +210,7 @@ def _scaled(columns: Columns, sides: Sequence[_Bound]) -> list[tuple[float, floa
 
 
 def _between(rows: Sequence[tuple[float, float]]) -> Iterator[tuple[float, float]]:
-    """These moments and others between them: what is fast is far from one to the next."""
+    """Yield these moments with interpolated ones, since fast motions leave gaps between them."""
     for (a, b), (c, d) in pairwise(rows):
         for part in range(_STEPS):
             share = part / _STEPS
@@ -219,7 +219,7 @@ def _between(rows: Sequence[tuple[float, float]]) -> Iterator[tuple[float, float
 
 
 def _front(rows: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Those that no other one exceeds in both: the only ones that bound a corner."""
+    """Return the moments that no other exceeds in both readings: only these bound a corner."""
     found: list[tuple[float, float]] = []
     for a, b in sorted(rows, reverse=True):
         if not found or b > found[-1][1]:
@@ -228,7 +228,7 @@ def _front(rows: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
 
 
 def _readable(free: float, taken: float) -> float:
-    """The bound with the fewest digits in the middle third between what is free and what is not."""
+    """Return the bound with the fewest digits in the middle third between free and used values."""
     low, high = sorted((free + (taken - free) / 3, free + (taken - free) * 2 / 3))
     for digits in range(-2, 6):
         value = round((low + high) / 2, digits)
@@ -238,7 +238,7 @@ def _readable(free: float, taken: float) -> float:
 
 
 def _condition(zone: _Zone) -> str:
-    """That a moment lies outside: ``a < 0.6 or b > 0.2``."""
+    """Return the condition that a moment lies outside the zone: ``a < 0.6 or b > 0.2``."""
     return " or ".join(
         f"{side.text} {'<' if side.sign > 0 else '>'} {_number(bound)}"
         for side, bound in zip(zone.sides, zone.bounds, strict=True)
@@ -251,7 +251,7 @@ def _number(value: float) -> str:
 
 
 def _name(zone: _Zone) -> str:
-    """What must hold, in words."""
+    """Return a description of the condition for people."""
     (first, *more), (bound, *others) = zone.sides, zone.bounds
     word = "below" if first.sign > 0 else "above"
     text = f"{_thing(first.text)} stays {word} {_number(bound)}"
@@ -264,7 +264,7 @@ def _name(zone: _Zone) -> str:
 
 
 def _thing(text: str) -> str:
-    """``tool x`` of ``cell.truth.tool_position().x``."""
+    """Return a short name of a reading: ``tool x`` for ``cell.truth.tool_position().x``."""
     call, _, part = text.rpartition(").")
     name = (call or text).partition("(")[0].rpartition(".")[2]
     name = name.removesuffix("_position").removesuffix("_pose")

@@ -1,1 +1,1 @@
-"""Faults of the simulated world: parameters of it are disturbed, and the tests judge that."""
+"""Mutations of the simulated world: a parameter is disturbed, and the tests judge the disturbance."""

@@ -1,4 +1,4 @@
-"""A disturbance in the processes of the tests."""
+"""The disturbance of a simulated world, active in a test process."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _NEVER = "the test made no world, its moment did not come, or nothing came that 
 
 
 class WorldFault(ActiveFault):
-    """One parameter of the world, disturbed by one magnitude.
+    """A fault that disturbs one parameter of the world by one magnitude.
 
     A function of ``apply`` is called with the world and the change, and by name with ``names``, ``random``
     and the parameter's options. It raises LookupError if the world has nothing of these names. What it
@@ -27,7 +27,7 @@ class WorldFault(ActiveFault):
     """
 
     def start_test(self, test: str, random: Random) -> None:
-        """Wait for the worlds of the test, or for the moment in it."""
+        """Arrange to disturb the test's worlds when they are made, or at the disturbance's moment."""
         self._key, self._undo, self._missing = random.random(), list[Undo](), ""
         self._disturbed: dict[int, _Disturbed] = {}
         self._says_itself = False
@@ -55,12 +55,12 @@ class WorldFault(ActiveFault):
                 self._wrap(moment["call"], before=lambda *_, **__: self._follow(holds))
 
     def reach(self, key: tuple[Any, ...]) -> None:
-        """The moment has come."""
+        """Disturb all worlds: the simulated time of the disturbance has come."""
         if self.context.test == self.mutant.site.span.file:
             self._disturb_all()
 
     def end_test(self) -> None:
-        """Take everything away, the last first."""
+        """Undo the disturbance and remove all wrappers, the last first."""
         if self._earlier and not self._has_made and not self._says_itself:
             self.acts()
         self._earlier.clear()
@@ -89,7 +89,7 @@ class WorldFault(ActiveFault):
             self._disturb_all()
 
     def _follow(self, holds: Any) -> None:
-        """Disturb each world while the condition holds, and no longer."""
+        """Disturb each world while the condition holds, and undo that when it no longer does."""
         with suppress(LookupError):
             for world in live(self.data["of"]):
                 if holds(world):
@@ -98,7 +98,7 @@ class WorldFault(ActiveFault):
                     self._let_go(id(world))
 
     def _make_otherwise(self, reference: str, *arguments: Any, **named: Any) -> Any:
-        """Change what a world is made with: the function gets these arguments by name, instead of a world."""
+        """Change the arguments that a world is made with, which the function gets by name."""
         found = resolve(reference)[2]
         makes: Any = vars(found)["__init__"] if isinstance(found, type) else found
         bound = signature(makes).bind(*arguments, **named)
@@ -108,14 +108,14 @@ class WorldFault(ActiveFault):
         return None
 
     def _meet(self, world: Any) -> None:
-        """The test has made a world: those that were there before are of other tests."""
+        """Disturb a world that the test has made; forget earlier worlds, which belong to other tests."""
         self._earlier.clear()
         self._has_made = True
         self._disturbed.pop(id(world), None)  # of one that was there before, in the same place in memory
         self._disturb(world)
 
     def _disturb(self, world: Any, *, is_told: bool = True) -> bool:
-        """Disturb a world, once; return whether it is disturbed now."""
+        """Disturb a world once; return whether it is disturbed now."""
         known = self._disturbed.get(id(world))
         if known is not None and known.world() is world:
             return True
@@ -135,7 +135,7 @@ class WorldFault(ActiveFault):
         return True
 
     def _changed(self, world: Any, change: NumberChange) -> tuple[Any, Any, Undo | None]:
-        """Change the world; return the number before and after, if it is one, and what takes it away."""
+        """Change the world; return the number before and after, if it is one, and how to undo it."""
         if self.data["path"]:
             return change_at(world, self.data["path"], change)
         function = resolve(self.data["apply"])[2]
@@ -154,7 +154,7 @@ class WorldFault(ActiveFault):
 
 
 class _Disturbed(NamedTuple):
-    """A world that is disturbed, and what takes that away; to keep one alive would be a disturbance too."""
+    """A disturbed world, weakly referenced so that it is not kept alive, and how to undo the disturbance."""
 
     world: Callable[[], Any]
     undo: Undo | None
@@ -168,5 +168,5 @@ def _reference(world: Any) -> Callable[[], Any]:
 
 
 def _plain(value: Any) -> Any:
-    """A number for reports; of anything else nothing."""
+    """Return a number as a float, for reports; None for any other value."""
     return float(value) if isinstance(value, int | float) or getattr(value, "shape", None) == () else None

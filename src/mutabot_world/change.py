@@ -1,4 +1,4 @@
-"""What is done to a number, and to one at the end of a path of attributes and items."""
+"""Changes of numbers, also of a number at the end of a path of attributes and items."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ Undo = Callable[[], object]
 
 
 class NothingThereError(LookupError):
-    """The world has nothing of the name that a parameter means."""
+    """The world has nothing of the name that a parameter refers to."""
 
 
 @dataclass(frozen=True, slots=True)
 class NumberChange:
-    """What becomes of a number.
+    """A change of a number: an offset, a scale factor or a new value.
 
     Attributes:
         kind: ``offset``, ``scale`` or ``set``.
@@ -42,14 +42,14 @@ class NumberChange:
 
     @property
     def factor(self) -> float:
-        """By what a whole is multiplied. Raises ValueError for a change that is no scale."""
+        """The factor by which values are multiplied. Raises ValueError if the change is not a scale."""
         if self.kind != "scale":
             raise ValueError(f'only a change = "scale" has a factor, and this is {self.kind!r}')
         return 1.0 + self.amount
 
 
 def change_at(world: Any, path: str, change: NumberChange) -> tuple[Any, Any, Undo]:
-    """Change a number of a world.
+    """Change the number at a path of attributes and items.
 
     Args:
         world: where the path begins.

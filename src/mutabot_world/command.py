@@ -1,4 +1,4 @@
-"""``mutabot world``: what became of the disturbances of the last campaign."""
+"""``mutabot world``: shows how the disturbances of the last campaign ended."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def _tolerances(texts: Sequence[str]) -> Tolerances:
 
 
 def sections(found: Sequence[WorldLadder]) -> Iterator[tuple[str, list[str]]]:
-    """Yield both tables and what was suffered unseen, as titles with lines for a terminal."""
+    """Yield both tables and the disturbances suffered unseen, as titles with lines for a terminal."""
     whole = suites(found)
     known = [one for one in whole if one.ends]
     columns = ("parameter", "tried", "magnitudes", "unseen at", "noticed from", "by")
@@ -102,7 +102,7 @@ def _noticed(one: WorldLadder) -> str:
 
 
 def _by(one: WorldLadder) -> str:
-    """Who notices at the threshold: a check of the tests, or something that stopped the program."""
+    """Return what notices the threshold: a check of the tests, or an error that stops the program."""
     if one.noticed_from is None:
         return ""
     rounds = one.found[one.noticed_from].values()
@@ -117,7 +117,7 @@ def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
 
 
 def _data(found: Sequence[WorldLadder]) -> list[dict[str, Any]]:
-    """Return ladders as plain data."""
+    """Return the ladders as plain data for JSON."""
     return [
         {
             **{key: getattr(one, key) for key in ("parameter", "direction", "unit")},

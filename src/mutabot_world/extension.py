@@ -1,4 +1,4 @@
-"""What this package brings to mutabot."""
+"""The extension by which mutabot finds this package's features."""
 
 from __future__ import annotations
 

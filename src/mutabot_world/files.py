@@ -1,4 +1,4 @@
-"""Reads the parameters that a project has: those of its configuration, and those of files."""
+"""Reads the parameters of a project: those in its configuration, and those in separate files."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ NO_PARAMETER = '`mutabot init` proposes some, and files have some: parameters = 
 
 
 def parameters_of(table: WorldTable, root: Path) -> list[ParameterTable]:
-    """The parameters of a configuration, those of files first.
+    """Return the parameters of a configuration; those from files come first.
 
     Raises UsageError for a file that cannot be read, for two parameters of one name, and for a name that is
     to be taken and is none.
@@ -74,7 +74,7 @@ def _with_maker(
 
 
 def _path(name: str, root: Path) -> Path:
-    """The file that a name means: one of the project, or ``package:file`` of an installed package."""
+    """Return the path of a parameter file: in the project, or ``package:file`` of an installed package."""
     package, is_shipped, file = name.partition(":")
     if not is_shipped:
         return root / name

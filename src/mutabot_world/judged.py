@@ -1,4 +1,4 @@
-"""What became of disturbances: whether the tests noticed them, and whether the task was done nevertheless.
+"""How disturbances ended: whether the tests noticed them, and whether the task was done nevertheless.
 
 Two questions, which one number never answers together. A disturbance that no test notices is *lived with* if
 the world ended as it does without, and *suffered unseen* if it did not.
@@ -19,7 +19,7 @@ from .sizes import amount
 
 
 class WorldEnd(StrEnum):
-    """How a disturbance ended. Of several tests or rounds the first says how they ended together."""
+    """How a disturbance ended. For several tests or rounds the first of these values that occurs counts."""
 
     NOTICED = "noticed"
     UNSEEN = "suffered unseen"
@@ -36,7 +36,7 @@ Tolerances = Mapping[str, float]
 
 @dataclass(frozen=True, slots=True)
 class Judged:
-    """How a disturbance ended in a round, what happened, and whether no check, but a stop, noticed it."""
+    """How a disturbance ended in a round, what happened, and whether a stop, not a check, noticed it."""
 
     end: WorldEnd
     story: str = ""
@@ -44,7 +44,7 @@ class Judged:
 
 
 def judged(outcome: Any, tolerances: Tolerances) -> Judged:
-    """Return what became of a disturbance in a round, from its outcome."""
+    """Return how a disturbance ended in a round, derived from its outcome."""
     told = outcome.told.story if outcome.told is not None else ""
     if outcome.verdict.is_killed:
         said = f"{outcome.exception.rpartition(':')[2]}: {outcome.message}" if outcome.exception else ""
@@ -68,7 +68,7 @@ def judged(outcome: Any, tolerances: Tolerances) -> Judged:
 
 @dataclass(slots=True)
 class WorldLadder:
-    """One parameter disturbed in one direction, in one test or in all of them.
+    """The results of one parameter disturbed in one direction, in one test or in all tests.
 
     Attributes:
         parameter: its name.
@@ -89,7 +89,7 @@ class WorldLadder:
     numbers: dict[tuple[float, str], int] = field(default_factory=dict)
 
     def end(self, size: float) -> WorldEnd:
-        """How a magnitude ended: noticed only if it was in every round, unseen if it was in any."""
+        """Return how a magnitude ended: noticed only if so in every round, suffered unseen if so in any."""
         rounds = [of_tests(each.values()) for each in self.found[size].values()]
         known = [one for one in rounds if one is not WorldEnd.UNKNOWN]
         if not known:
@@ -98,41 +98,41 @@ class WorldLadder:
         return min(others, key=[*WorldEnd].index) if others else WorldEnd.NOTICED
 
     def is_sometimes_noticed(self, size: float) -> bool:
-        """Whether some rounds notice a magnitude, and others do not."""
+        """Return whether some rounds notice a magnitude and others do not."""
         ends = {of_tests(each.values()) for each in self.found[size].values()} - {WorldEnd.UNKNOWN}
         return WorldEnd.NOTICED in ends and len(ends) > 1
 
     @property
     def ends(self) -> dict[float, WorldEnd]:
-        """How each magnitude ended, rising; those of which nothing is known are left out."""
+        """How each magnitude ended, in ascending order; magnitudes without a result are left out."""
         ends = {size: self.end(size) for size in sorted(self.found)}
         return {size: end for size, end in ends.items() if end is not WorldEnd.UNKNOWN}
 
     @property
     def noticed_from(self) -> float | None:
-        """The magnitude from which on all are noticed in every round; None if there is none."""
+        """The magnitude from which all are noticed in every round; None if there is none."""
         noticed = takewhile(lambda pair: pair[1] is WorldEnd.NOTICED, reversed(self.ends.items()))
         return min((size for size, _ in noticed), default=None)
 
     @property
     def missed(self) -> list[float]:
-        """The magnitudes that some round does not notice."""
+        """The magnitudes that at least one round does not notice."""
         return [size for size, end in self.ends.items() if end is not WorldEnd.NOTICED]
 
     @property
     def unseen(self) -> list[float]:
-        """The magnitudes that are suffered unseen in some round."""
+        """The magnitudes that are suffered unseen in at least one round."""
         return [size for size, end in self.ends.items() if end is WorldEnd.UNSEEN]
 
     @property
     def robust_to(self) -> float | None:
-        """The magnitude up to which all are lived with; None if not even the smallest is."""
+        """The magnitude up to which all are lived with; None if the smallest is not."""
         lived = takewhile(lambda pair: pair[1] is WorldEnd.LIVED, self.ends.items())
         return max((size for size, _ in lived), default=None)
 
     @property
     def robust(self) -> str:
-        """This magnitude as a text, or why there is none."""
+        """The magnitude ``robust_to`` as text, or why there is none."""
         if self.robust_to is not None:
             return self._amount(self.robust_to)
         is_known = next(iter(self.ends.values()), WorldEnd.PASSED) is not WorldEnd.PASSED
@@ -140,13 +140,13 @@ class WorldLadder:
 
     @property
     def bar(self) -> str:
-        """One sign per magnitude."""
+        """The ladder as a string with one character per magnitude."""
         signs = dict(zip(WorldEnd, "█!?· ", strict=True))
         ends = ((size, self.end(size)) for size in sorted(self.found))
         return "".join("▒" if self.is_sometimes_noticed(size) else signs[end] for size, end in ends)
 
     def story(self, size: float, end: WorldEnd) -> tuple[str, str]:
-        """What happened at a magnitude where it ended so, and in which test; empty texts if nobody says."""
+        """Return what happened at a magnitude that ended so, and in which test; empty if not recorded."""
         for round in sorted(self.found[size]):
             for test, one in self.found[size][round].items():
                 if one.end is end and one.story:
@@ -155,7 +155,7 @@ class WorldLadder:
 
     @property
     def why_unknown(self) -> str:
-        """Why nothing is known of it; empty if something is."""
+        """Why no result is known for any magnitude; empty if one is."""
         if self.ends:
             return ""
         rounds = (tests for each in self.found.values() for tests in each.values())
@@ -163,7 +163,7 @@ class WorldLadder:
 
     @property
     def sentence(self) -> str:
-        """What the tests notice, in a sentence."""
+        """A sentence on what the tests notice."""
         if not self.ends:
             return f"nothing is known of {self.parameter}: {self.why_unknown}"
         first, largest, missed = self.noticed_from, max(self.ends), self.missed
@@ -177,7 +177,7 @@ class WorldLadder:
 
     @property
     def finding(self) -> str:
-        """What is suffered unseen, in a sentence; empty if nothing is."""
+        """A sentence on what is suffered unseen; empty if nothing is."""
         if not self.unseen:
             return ""
         story, test = self.story(self.unseen[-1], WorldEnd.UNSEEN)
@@ -185,7 +185,7 @@ class WorldLadder:
         return f"suffered unseen at {self.span(self.unseen)}{f': {story}' if story else ''}{where}"
 
     def span(self, sizes: Sequence[float]) -> str:
-        """Sizes from the first to the last: ``0.1 kg``, ``0.1 kg to 2 kg``."""
+        """Return the first and the last magnitude as text: ``0.1 kg``, ``0.1 kg to 2 kg``."""
         return " to ".join(map(self._amount, dict.fromkeys((sizes[0], sizes[-1]))))
 
     def _amount(self, size: float) -> str:
@@ -193,7 +193,7 @@ class WorldLadder:
 
 
 def of_tests(found: Iterable[Judged]) -> WorldEnd:
-    """How a disturbance ended in a round, from how it did in each test."""
+    """Return how a disturbance ended in a round, combined over the tests."""
     ends = {one.end for one in found}
     return next((end for end in WorldEnd if end in ends), WorldEnd.UNKNOWN)
 
@@ -218,7 +218,7 @@ def ladders(results: Results, tolerances: Tolerances) -> list[WorldLadder]:
 
 
 def suites(found: Sequence[WorldLadder]) -> list[WorldLadder]:
-    """Return a ladder for each parameter and direction: what all tests together notice.
+    """Return a ladder for each parameter and direction that combines all tests.
 
     Those come first that are suffered unseen, the loosest of them before others.
     """

@@ -1,4 +1,4 @@
-"""When a disturbance begins."""
+"""The moment at which a disturbance begins."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _FORMS = {
 
 @dataclass(frozen=True, slots=True)
 class Beginning:
-    """When a disturbance begins.
+    """The moment at which a disturbance begins.
 
     Attributes:
         kind: ``made``: as soon as the world is; ``making``: in what it is made with; ``time``: at a simulated
@@ -53,7 +53,7 @@ class Beginning:
 
     @property
     def text(self) -> str:
-        """How it stands behind a description; empty for a world that is disturbed from the beginning."""
+        """The moment as appended to a description; empty for a world that is disturbed from the beginning."""
         texts = {
             "time": f", from {self.number:g} s on",
             "call": f", from call {self.number:g} of {self.call.rpartition(':')[2]} on",

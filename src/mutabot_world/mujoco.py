@@ -1,4 +1,4 @@
-"""Disturbances of any program on MuJoCo: what ``mujoco.toml`` names.
+"""Disturbances for any program that uses MuJoCo: the functions that ``mujoco.toml`` names.
 
 Each is a function of a model as it was made, of the change in SI units and, by name, of ``names``, in which
 ``*`` stands for any text. A model that tests share stays changed as long as the process of the test lives.
@@ -23,7 +23,7 @@ _STEPS = ("mj_step", "mj_step1", "mj_forward")
 
 
 def mass(model: Any, change: NumberChange, *, names: str, random: Random) -> None:
-    """Mass of bodies, kg, with their inertia."""
+    """Change the mass of bodies, kg, with their inertia."""
     for body in _named(model, "body", names, lambda number: model.body_mass[number] > 0.0):
         before = float(model.body_mass[body])
         factor = max(float(change(before)), _LEAST) / before
@@ -33,7 +33,7 @@ def mass(model: Any, change: NumberChange, *, names: str, random: Random) -> Non
 
 
 def centre_of_mass(model: Any, change: NumberChange, *, names: str, random: Random, axis: str) -> None:
-    """Centre of mass of bodies along an axis of theirs, m."""
+    """Change the centre of mass of bodies along one of their axes, m."""
     bodies = list(_named(model, "body", names, lambda number: model.body_mass[number] > 0.0))
     if hasattr(model, "body_simple") and any(model.body_simple[body] for body in bodies):
         raise NothingThereError(
@@ -46,7 +46,7 @@ def centre_of_mass(model: Any, change: NumberChange, *, names: str, random: Rand
 
 
 def friction(model: Any, change: NumberChange, *, names: str, random: Random) -> None:
-    """Sliding friction of shapes, and of pairs with one of them, which goes before that of the shapes."""
+    """Change the sliding friction of shapes, and of explicit contact pairs, which take precedence."""
     geoms = set(_named(model, "geom", names))
     for geom in geoms:
         model.geom_friction[geom, 0] = max(float(change(float(model.geom_friction[geom, 0]))), 1e-5)
@@ -58,7 +58,7 @@ def friction(model: Any, change: NumberChange, *, names: str, random: Random) ->
 
 
 def position(model: Any, change: NumberChange, *, names: str, random: Random, axis: str) -> None:
-    """Where bodies are in the frame of the body above, m; also after a framework has put them elsewhere."""
+    """Change the position of bodies in their parent's frame, m; also after a framework has moved them."""
     number, written = _AXES.index(axis), dict[int, float]()
     bodies = list(_named(model, "body", names, lambda body: body > 0))
 
@@ -73,7 +73,7 @@ def position(model: Any, change: NumberChange, *, names: str, random: Random, ax
 
 
 def gain(model: Any, change: NumberChange, *, names: str, random: Random) -> None:
-    """Gain of actuators, with the stiffness of those that are servos."""
+    """Change the gain of actuators, and the stiffness of those that are servos."""
     for actuator in _named(model, "actuator", names):
         before = float(model.actuator_gainprm[actuator, 0])
         model.actuator_gainprm[actuator, 0] = change(before)
@@ -82,28 +82,28 @@ def gain(model: Any, change: NumberChange, *, names: str, random: Random) -> Non
 
 
 def strength(model: Any, change: NumberChange, *, names: str, random: Random) -> None:
-    """Largest force of actuators, N or Nm, of those that have a limit."""
+    """Change the largest force of actuators, N or Nm, of those that have a limit."""
     for actuator in _named(model, "actuator", names, lambda one: bool(model.actuator_forcelimited[one])):
         model.actuator_forcerange[actuator] = change(model.actuator_forcerange[actuator])
 
 
 def damping(model: Any, change: NumberChange, *, names: str, random: Random) -> None:
-    """Damping of joints, N·s/m or N·m·s/rad."""
+    """Change the damping of joints, N·s/m or N·m·s/rad."""
     _of_joints(model, change, names, model.dof_damping)
 
 
 def joint_friction(model: Any, change: NumberChange, *, names: str, random: Random) -> None:
-    """Dry friction of joints, N or Nm."""
+    """Change the dry friction of joints, N or Nm."""
     _of_joints(model, change, names, model.dof_frictionloss)
 
 
 def gravity(model: Any, change: NumberChange, *, names: str, random: Random) -> None:
-    """Gravity along the vertical, m/s²; more of it pulls harder."""
+    """Change the vertical gravity, m/s²; a positive change pulls harder."""
     model.opt.gravity[2] = -float(change(-float(model.opt.gravity[2])))
 
 
 def sensor(model: Any, change: NumberChange, *, names: str, random: Random) -> None:
-    """What sensors of a model read, in their own units."""
+    """Change what sensors of a model read, in their own units."""
     parts = [
         slice(int(model.sensor_adr[one]), int(model.sensor_adr[one] + model.sensor_dim[one]))
         for one in _named(model, "sensor", names)
@@ -117,7 +117,7 @@ def sensor(model: Any, change: NumberChange, *, names: str, random: Random) -> N
 
 
 def names_of(model: Any, kind: str) -> dict[int, str]:
-    """The names of the bodies, geoms, joints, actuators or sensors of a model, by their numbers.
+    """Return the names of a model's bodies, geoms, joints, actuators or sensors, by their numbers.
 
     A shape without a name is called like its body, an actuator like what it drives.
     """
@@ -132,7 +132,7 @@ def names_of(model: Any, kind: str) -> dict[int, str]:
 
 
 def things(model: Any) -> Iterator[tuple[str, list[str]]]:
-    """Yield the parameters that a model offers, and the names of what has them."""
+    """Yield the parameters that a model offers, and the names of the things that have them."""
     bodies, geoms, joints = names_of(model, "body"), names_of(model, "geom"), names_of(model, "joint")
     free = [int(model.jnt_bodyid[n]) for n in range(model.njnt) if int(model.jnt_type[n]) == 0]
     yield "mass", [bodies[n] for n in free]
@@ -153,7 +153,7 @@ def _of_joints(model: Any, change: NumberChange, names: str, values: Any) -> Non
 def _named(
     model: Any, kind: str, names: str, fits: Callable[[int], bool] = lambda number: True
 ) -> Iterator[int]:
-    """Yield the numbers of the things that are meant. Raises NothingThereError if there are none."""
+    """Yield the numbers of the things named. Raises NothingThereError if there are none."""
     known = names_of(model, kind)
     found = [number for number, name in known.items() if fnmatchcase(name, names) and fits(number)]
     if not found:
@@ -163,14 +163,14 @@ def _named(
 
 
 def _settle(model: Any) -> None:
-    """Let constants follow; with the program's own data its state would be thrown back."""
+    """Recompute the model's derived constants; the program's own data would lose its state."""
     import mujoco  # noqa: PLC0415  # the program's, which a project may not have
 
     mujoco.mj_setConst(model, mujoco.MjData(model))
 
 
 def _around_steps(model: Any, names: Iterable[str], *, before: Any = None, after: Any = None) -> None:
-    """Do something before functions of MuJoCo that are called for a model, or with its data after them."""
+    """Call functions before MuJoCo's stepping functions run on a model, and with its data after them."""
     import mujoco  # noqa: PLC0415  # the program's, which a project may not have
 
     def around(wrapped: Any, _: Any, arguments: tuple[Any, ...], named: dict[str, Any]) -> Any:

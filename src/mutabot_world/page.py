@@ -1,4 +1,4 @@
-"""The tables of disturbances as a page by itself, with the recordings of what was suffered unseen."""
+"""The tables of disturbances as an HTML page, with the recordings of those suffered unseen."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def page(results: Results, found: Sequence[WorldLadder], recordings: Any) -> str
 
 
 def _figures(results: Results, found: Sequence[WorldLadder], recordings: Any) -> Iterable[str]:
-    """Drawings of what was suffered unseen: for each ladder the largest magnitude."""
+    """Yield a drawing of each ladder's largest magnitude that was suffered unseen."""
     ids = {one.mutant.number: one.mutant.id for one in results.graded}
     drawn = [one for one in found if one.unseen][:_DRAWN]
     yield f"<h2>Recordings of what was suffered unseen</h2><p>{_KEY}</p>" if drawn else ""
@@ -94,7 +94,7 @@ def _figures(results: Results, found: Sequence[WorldLadder], recordings: Any) ->
 
 
 def _drawing(original: RecordedPaths, mutant: RecordedPaths) -> str:
-    """Both from above: the original grey, the disturbed one red; dots where things end."""
+    """Draw both recordings from above: the original grey, the disturbed one red, a dot at each path's end."""
     lines = [
         ([(x, y) for x, y, *_ in path.outline], colour)
         for paths, colour in ((original.paths, "#9aa4ae"), (mutant.paths, "#c8371b"))

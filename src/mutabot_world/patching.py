@@ -1,4 +1,4 @@
-"""Puts a function around another one, and finds the objects that it made."""
+"""Wraps functions and classes, and finds the objects that a class has made."""
 
 from __future__ import annotations
 
@@ -40,17 +40,17 @@ def resolve(reference: str) -> tuple[Any, str, Any]:
 
 
 def marked(error: BaseException) -> BaseException:
-    """Return an exception that a function raises itself, noted as none of the disturbance's."""
+    """Mark an exception that a function raises itself as not caused by the disturbance, and return it."""
     return _marks[-1](error) if _marks else error
 
 
 def mark_by(own: Own) -> None:
-    """Let a disturbance note what functions raise themselves; there is one in a process at a time."""
+    """Let a disturbance mark exceptions that functions raise themselves; only one is active in a process."""
     _marks[:] = [own]
 
 
 def rebind(old: Any, new: Any) -> None:
-    """Put a function in the place of another one, under all names that modules have for that."""
+    """Replace a function by another one, under every name by which a module refers to it."""
     for module in [*sys.modules.values()]:
         for name, found in [*(getattr(module, "__dict__", None) or {}).items()]:
             if found is old:
@@ -58,7 +58,7 @@ def rebind(old: Any, new: Any) -> None:
 
 
 def wrap(reference: str, *, before: Before | None = None, after: After | None = None) -> Undo:
-    """Let something be called before or after a function, a method, or the making of a class's objects.
+    """Call a function before or after another function or method, or when objects of a class are made.
 
     Of an object it is called after all that makes it, also where a subclass does more than the class.
     Returns what takes it away again. Raises LookupError.
@@ -82,7 +82,7 @@ def _below(kind: type) -> Iterator[type]:
 
 
 def _put_around(owner: Any, last: str, before: Before | None, after: After | None, running: set[Any]) -> Undo:
-    """Let something be called before or after ``owner.last``; not below itself, which ``running`` shows."""
+    """Call a function before or after ``owner.last``, but not in nested calls (see ``running``)."""
     found, kept = getattr(owner, last), inspect.getattr_static(owner, last)
     is_maker = isinstance(owner, type) and last == "__init__"
     is_inherited = isinstance(owner, type) and last not in vars(owner)
@@ -126,7 +126,7 @@ def _put_around(owner: Any, last: str, before: Before | None, after: After | Non
 
 
 def live(references: list[str]) -> Iterator[Any]:
-    """Yield the objects of these classes that are alive, each once; functions have none."""
+    """Yield the objects of these classes that are alive, each once; references to functions yield nothing."""
     kinds = tuple(found for one in references if isinstance(found := resolve(one)[2], type))
     if not kinds:
         return

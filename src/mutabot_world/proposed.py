@@ -1,4 +1,4 @@
-"""The parameters that ``mutabot init`` proposes: by name, those of the worlds that the tests have made."""
+"""The parameters that ``mutabot init`` proposes, by name, from the worlds that the tests have made."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ _Names: TypeAlias = dict[str, dict[str, list[str]]]
 
 
 class WorldProposer:
-    """Parameters of the simulated world."""
+    """Proposes parameters of the simulated world."""
 
     def watch(self) -> Callable[[], Any]:
-        """Note the names of things in each world of these libraries that this process makes."""
+        """Record the names of things in each world of these libraries that this process makes."""
         names: _Names = {}
 
         def note(library: str, _: Any, world: Any) -> None:
@@ -48,7 +48,7 @@ class WorldProposer:
         return lambda: {"names": names, "files": [*_files_of_packages()] if names else []}
 
     def lines(self, seen: Sequence[Any]) -> list[str]:
-        """The table ``world``: a file that a package ships for its world, or a parameter for each thing."""
+        """Return the lines of table ``world``: a package's parameter file, or one parameter per thing."""
         files = list(dict.fromkeys(name for one in seen for name in one["files"]))
         names: _Names = {}
         for one in seen:
@@ -74,7 +74,7 @@ def _add(names: _Names, library: str, things: Any) -> None:
 
 
 def _files_of_packages() -> Iterator[str]:
-    """Yield what packages ship as parameters of worlds of their own, if this process has made such ones."""
+    """Yield the parameter files that packages ship for their own worlds, if one was made here."""
     for name, module in sorted(sys.modules.items()):
         for folder in [] if "." in name else getattr(module, "__path__", ()):
             file = Path(folder, "world.toml")

@@ -41,18 +41,18 @@ class Disturb(Rule):
 
 
 class WorldFaults(FaultProvider):
-    """Disturbances of the simulated world."""
+    """Provides the disturbances of the simulated world."""
 
     name = PROVIDER
     families = (FAMILY,)
     location = "parameter"
 
     def rules(self) -> Sequence[Rule]:
-        """The one operator, whatever the parameter."""
+        """Return the only operator, which is used for every parameter."""
         return [Disturb()]
 
     def texts(self, project: Project, first: int, tell: Callable[[str], None]) -> Sequence[ProgramText]:
-        """None, but say what shows how disturbances end. Raises UsageError for wrong parameters."""
+        """Return nothing, but say how to see how disturbances end. Raises UsageError for wrong parameters."""
         if parameters_of(project.tables.get("world") or WorldTable(), project.root):
             tell("`mutabot world` shows which disturbances the tests notice, and which are suffered unseen")
         elif {*project.families} == {FAMILY}:
@@ -62,11 +62,11 @@ class WorldFaults(FaultProvider):
         return ()
 
     def is_monotone(self, operator: str) -> bool:
-        """False: less friction may let a box slip into place where a little less lets it fall."""
+        """Return False: less friction may let a box slip into place where a little less lets it fall."""
         return False
 
     def at_magnitude(self, planned: PlannedMutant, magnitude: float) -> PlannedMutant:
-        """The same disturbance by another magnitude."""
+        """Return the same disturbance with another magnitude."""
         made = super().at_magnitude(planned, magnitude)
         before, unit = planned.mutant.magnitude or 0.0, planned.mutant.unit
         text = planned.mutant.description.replace(amount(before, unit), amount(magnitude, unit), 1)
@@ -75,7 +75,7 @@ class WorldFaults(FaultProvider):
         return replace(made, mutant=replace(made.mutant, description=text), does=data, active=active)
 
     def plan(self, project: Project, original: Original) -> Planned:
-        """A mutant for each test, parameter, direction and magnitude."""
+        """Return a mutant for each test, parameter, direction and magnitude."""
         table = project.tables.get("world") or WorldTable()
         tests = dict.fromkeys(test for each in original.tests for test in each)
         planned = Planned()
@@ -110,7 +110,7 @@ class WorldFaults(FaultProvider):
 
 
 def _data(parameter: ParameterTable, size: float) -> dict[str, object]:
-    """What the disturbance gets in the processes of the tests; paths take sizes as they are written."""
+    """Return the data that test processes need for the disturbance; paths take sizes as they are written."""
     is_written = parameter.path is not None and parameter.change != "scale"
     told = {name: getattr(parameter, name) for name in ("path", "apply", "names", "options", "change")}
     return {
@@ -128,7 +128,7 @@ def _why_not(parameter: ParameterTable, project: Project, reached: Sequence[int]
 
 
 def _reaches(parameter: ParameterTable, project: Project, simulated: float) -> bool:
-    """Whether a test with so many simulated seconds gets to the moment; without any, it has no world."""
+    """Return whether a test with this simulated duration, s, reaches the moment; at 0 it has no world."""
     if project.vocabulary.clock is None:
         return True
     moment = parameter.moment

@@ -1,4 +1,4 @@
-"""Disturbances of any program on PyBullet: what ``pybullet.toml`` names.
+"""Disturbances for any program that uses PyBullet: the functions that ``pybullet.toml`` names.
 
 Importing this puts functions around those of PyBullet that load bodies, or say again what a disturbance
 changed: what a program sets itself, or after a reset of the simulation, is disturbed as well. Each
@@ -47,7 +47,7 @@ _worlds: dict[tuple[int, object], Body | Pull] = {}
 
 
 class Body:
-    """A body that was loaded.
+    """A body that the program has loaded.
 
     Attributes:
         client: of its simulation.
@@ -60,30 +60,30 @@ class Body:
         self.name = pybullet.getBodyInfo(number, physicsClientId=client)[1].decode() or f"body {number}"
 
     def links(self, names: str) -> list[int]:
-        """Its links that are meant; the base is -1, and has the body's own name. Raises NothingThereError."""
+        """Return its links with these names; the base is -1, named as the body. Raises NothingThereError."""
         return self._named(names, "body or link", {_BASE: self.name, **self._joints(12)})
 
     def bases(self, names: str) -> list[int]:
-        """Its base, if that is meant. Raises NothingThereError."""
+        """Return its base, if its name is among these. Raises NothingThereError."""
         return self._named(names, "body", {_BASE: self.name})
 
     def joints(self, names: str) -> list[int]:
-        """Its joints that are meant, of those that move. Raises NothingThereError."""
+        """Return its movable joints with these names. Raises NothingThereError."""
         return self._named(names, "joint", self.moving())
 
     def moving(self) -> dict[int, str]:
-        """The names of its joints that move, by their numbers."""
+        """Return the names of its movable joints, by their numbers."""
         fixed = [number for number, kind in self._joints(2).items() if kind == pybullet.JOINT_FIXED]
         return {n: name for n, name in self._joints(1).items() if n not in fixed}
 
     def is_of(self, named: dict[str, Any]) -> bool:
-        """Whether a call of one of PyBullet's functions is about it."""
+        """Return whether a call of a PyBullet function concerns this body."""
         key = named.get("physicsClientId", 0), named.get("bodyUniqueId")
         # another body may have the number after a reset of the simulation
         return key == (self.client, self.number) and _worlds.setdefault(key, self) is self
 
     def own(self, name: str, *arguments: Any, **named: Any) -> Any:
-        """Call a function of PyBullet itself for it."""
+        """Call PyBullet's unwrapped function for this body."""
         return _own.get(name, getattr(pybullet, name))(
             self.number, *arguments, **named, physicsClientId=self.client
         )
@@ -110,14 +110,14 @@ class Body:
 
 @dataclass(eq=False)
 class Pull:
-    """Gravity that a program has set in the simulation of a client: along x, y and z, m/s²."""
+    """The gravity that a program has set in a client's simulation: along x, y and z, m/s²."""
 
     client: int
     gravity: tuple[float, ...]
 
 
 def mass(world: Any, change: NumberChange, *, names: str, random: Random) -> None:
-    """Mass of links, kg, with their inertia; what has none stands still."""
+    """Change the mass of links, kg, with their inertia; a link without mass stays fixed."""
     body = _body(world)
     links = [link for link in body.links(names) if body.own("getDynamicsInfo", link)[0] > 0.0]
     if not links:
@@ -126,19 +126,19 @@ def mass(world: Any, change: NumberChange, *, names: str, random: Random) -> Non
 
 
 def friction(world: Any, change: NumberChange, *, names: str, random: Random) -> None:
-    """Sliding friction of links: of two that touch, PyBullet multiplies both."""
+    """Change the sliding friction of links; PyBullet multiplies the friction of two that touch."""
     body = _body(world)
     _of_links(body, body.links(names), "lateralFriction", change)
 
 
 def damping(world: Any, change: NumberChange, *, names: str, random: Random) -> None:
-    """Damping of joints, N·s/m or N·m·s/rad."""
+    """Change the damping of joints, N·s/m or N·m·s/rad."""
     body = _body(world)
     _of_links(body, body.joints(names), "jointDamping", change)
 
 
 def position(world: Any, change: NumberChange, *, names: str, random: Random, axis: str) -> None:
-    """Where bodies are put along an axis of the world, m, as they are loaded and whenever they are reset."""
+    """Change the position of bodies along a world axis, m, when they are loaded and reset."""
     body, number = _body(world), _AXES.index(axis)
     body.bases(names)
 
@@ -157,17 +157,17 @@ def position(world: Any, change: NumberChange, *, names: str, random: Random, ax
 
 
 def gain(world: Any, change: NumberChange, *, names: str, random: Random) -> None:
-    """Gain of the position control of joints."""
+    """Change the gain of the joints' position control."""
     _of_motors(_body(world), change, names, "positionGain")
 
 
 def strength(world: Any, change: NumberChange, *, names: str, random: Random) -> None:
-    """Largest force or torque of the motors of joints, N or Nm, as the program gives it."""
+    """Change the largest force or torque of joint motors, N or Nm, as the program sets it."""
     _of_motors(_body(world), change, names, "force")
 
 
 def gravity(world: Any, change: NumberChange, *, names: str, random: Random) -> None:
-    """Gravity along the vertical, m/s²; more of it pulls harder."""
+    """Change the vertical gravity, m/s²; a positive change pulls harder."""
     if not isinstance(world, Pull):
         raise NothingThereError("the program sets no gravity")
     x, y, z = world.gravity
@@ -175,7 +175,7 @@ def gravity(world: Any, change: NumberChange, *, names: str, random: Random) -> 
 
 
 def things(world: Any) -> Iterator[tuple[str, list[str]]]:
-    """Yield the parameters that a body, or gravity, offers, and the names of what has them."""
+    """Yield the parameters that a body, or gravity, offers, and the names of the things that have them."""
     if isinstance(world, Pull):
         yield "gravity", ["*"]
     elif isinstance(world, Body):
@@ -192,7 +192,7 @@ def _body(world: Any) -> Body:
 
 
 def _of_links(body: Body, links: Iterable[int], key: str, change: NumberChange, least: float = 0.0) -> None:
-    """Change a number of links now, and each time that the program says it anew."""
+    """Change a number of links now, and each time that the program sets it again."""
     meant = {*links}
 
     def say(named: dict[str, Any]) -> None:
@@ -233,7 +233,7 @@ def _of_motors(body: Body, change: NumberChange, names: str, key: str) -> None:
 
 
 def _around(name: str) -> Callable[..., Any]:
-    """What is called instead of a function: with changed arguments, and bodies and gravity noted."""
+    """Return a wrapper of a PyBullet function that changes arguments and records bodies and gravity."""
 
     def call(wrapped: Any, instance: Any, arguments: tuple[Any, ...], named: dict[str, Any]) -> Any:
         if name in _ORDER:
@@ -253,7 +253,7 @@ def _around(name: str) -> Callable[..., Any]:
 
 
 def _note(name: str, named: dict[str, Any]) -> None:
-    """Note what there is after a call."""
+    """Record the bodies and gravity that exist after a call."""
     client = named.get("physicsClientId", 0)
     if name in _REMOVING:
         for key in [key for key in _worlds if key[0] == client]:

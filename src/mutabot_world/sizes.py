@@ -1,4 +1,4 @@
-"""Magnitudes of disturbances: their units, and what they are in those of the SI."""
+"""Magnitudes of disturbances: their units, and their conversion to SI units."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ _SI = ("m", "rad", "s", "fraction", "m/s", "rad/s", "N", "Nm", "kg", "K", "Pa", 
 
 
 def in_si(size: float, unit: str | None) -> float:
-    """Return a magnitude in m, rad, s, kg, N and so on; a part of the whole for percent.
+    """Convert a magnitude to SI units (m, rad, s, kg, N and so on); percent to a fraction.
 
     Raises ValueError for a unit that does not exist.
     """
@@ -27,5 +27,5 @@ def in_si(size: float, unit: str | None) -> float:
 
 
 def amount(size: float, unit: str | None) -> str:
-    """``0.4 kg``, ``5 %``, ``3``."""
+    """Return a magnitude with its unit as text: ``0.4 kg``, ``5 %``, ``3``."""
     return f"{size:g} {'%' if unit == 'percent' else unit}" if unit else f"{size:g}"

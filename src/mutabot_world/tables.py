@@ -1,4 +1,4 @@
-"""What a user writes of parameters of a world: a table of the configuration, and files of the same tables."""
+"""The configuration tables for parameters of a world, in the project's configuration and in files."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _REFERENCE = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_][\w.]*")
 
 
 class ParameterTable(Table):
-    """One parameter of a world, and how it is disturbed.
+    """The table of one parameter of a world, and of how it is disturbed.
 
     Attributes:
         name: how reports call it.
@@ -89,12 +89,12 @@ class ParameterTable(Table):
 
     @property
     def ways(self) -> tuple[str, ...]:
-        """The directions in which it is disturbed; an empty one for what is set."""
+        """The directions in which the parameter is disturbed; one empty direction for a value that is set."""
         return ("",) if self.change == "set" else self.directions or ("+", "-")
 
     @property
     def moment(self) -> Beginning:
-        """When it is disturbed."""
+        """The moment at which the disturbance begins."""
         return Beginning.parse(self.when)
 
     @property

@@ -51,12 +51,12 @@ def start(roots: list[str], schedule: str = "first-in", seed: int = 0) -> None:
 
 
 def is_running() -> bool:
-    """Whether ROS is simulated in this process."""
+    """Return whether ROS is simulated in this process."""
     return _is_running
 
 
 def reasons() -> list[str]:
-    """Why what has run so far cannot be trusted without real ROS; empty if it can."""
+    """Return why what has run so far cannot be trusted without real ROS; empty if it can."""
     return list(REASONS)
 
 

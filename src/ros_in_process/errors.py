@@ -1,4 +1,4 @@
-"""What the simulation raises, and the reasons why a run needs real ROS."""
+"""The errors that the simulation raises, and the reasons why a run needs real ROS."""
 
 from __future__ import annotations
 
@@ -26,6 +26,6 @@ REASONS: list[str] = []
 
 
 def note(reason: str) -> None:
-    """Record once why this run cannot be trusted without real ROS, and go on."""
+    """Record once why this run cannot be trusted without real ROS, and continue."""
     if reason not in REASONS:
         REASONS.append(reason)

@@ -46,13 +46,13 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_report_header(config: pytest.Config) -> list[str]:
-    """Say which order is drawn: its seed gives it again."""
+    """Return a line with the random order's seed, which reproduces the order."""
     schedule, seed = config.getoption("ros_schedule"), config.getoption("ros_seed")
     return [f"simulated ROS: --ros-schedule random --ros-seed {seed}"] if schedule == "random" else []
 
 
 def _written_by_tests() -> str:
-    """Where the fixture `tmp_path` has its folders."""
+    """Return the folder that contains those of the fixture `tmp_path`."""
     try:
         user = getpass.getuser()
     except (ImportError, KeyError, OSError):  # a container may know no user; pytest has this word then
@@ -67,7 +67,7 @@ def pytest_load_initial_conftests(early_config: pytest.Config) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Start where a conftest names this plug-in: then nothing that it has imported may wait."""
+    """Start if a conftest names this plug-in; then nothing imported so far may wait."""
     if not ros_in_process.is_running():
         _start(config, config.option)
 
@@ -83,7 +83,7 @@ def _start(config: pytest.Config, options: argparse.Namespace) -> None:
 
 
 def pytest_collection_finish(session: pytest.Session) -> None:
-    """Let the collector of garbage pass over what is there before the first test."""
+    """Exclude existing objects from garbage collection before the first test."""
     if any(item.get_closest_marker(name) for item in session.items for name in ("asyncio", "anyio")):
         note("tests that are coroutines run in an event loop of a plug-in's, in real time")
     gc.collect()
@@ -92,7 +92,7 @@ def pytest_collection_finish(session: pytest.Session) -> None:
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)
 def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
-    """Let no test run for ever in simulated time, and free memory at the same moments in each run.
+    """Limit each test's simulated time, and free memory at the same moments in each run.
 
     Nodes and futures that are freed are told of: if that came at any moment, equal runs would differ.
     """
@@ -111,7 +111,7 @@ def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_call() -> Iterator[None]:
-    """Where it is strict, a test that met what is not simulated fails, even where the error was caught."""
+    """In strict mode, fail a test that met something not simulated, even if the error was caught."""
     known = len(ros_in_process.reasons())
     try:
         return (yield)
@@ -126,17 +126,17 @@ pytest_runtest_setup = pytest_runtest_teardown = pytest_runtest_call
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    """Say what the simulation could not do."""
+    """Report what the simulation could not do."""
     for reason in ros_in_process.reasons():
         terminalreporter.write_line(f"needs real ROS: {reason}", yellow=True)
 
 
 class SimulatedTime:
-    """Simulated time, for a test that waits for what nodes do."""
+    """Simulated time, for tests that wait for nodes."""
 
     @property
     def seconds(self) -> float:
-        """Simulated time, in seconds; it does not go back."""
+        """The simulated time, in seconds; it never goes back."""
         return SCHEDULER.advanced()
 
     def advance(self, seconds: float) -> None:
@@ -148,5 +148,5 @@ class SimulatedTime:
 
 @pytest.fixture
 def simulated_time() -> SimulatedTime:
-    """The time in which the nodes of this process live."""
+    """Return the time in which the nodes of this process run."""
     return SimulatedTime()

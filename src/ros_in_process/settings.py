@@ -1,4 +1,4 @@
-"""What a program that uses the simulation may decide, before or while it runs.
+"""Settings that a program may change before or while the simulation runs.
 
 This module imports nothing: it can be set in a process that may never simulate anything.
 """

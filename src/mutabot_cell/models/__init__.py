@@ -1,1 +1,1 @@
-"""Models: of the robot, the gripper, the whole cell as MuJoCo wants it, and of the noise of sensors."""
+"""Models of the robot, the gripper, the whole cell in MuJoCo, and the noise of sensors."""

@@ -1,4 +1,4 @@
-"""The physics' models: the cell with the robots attached to it, and an arm alone for the planner."""
+"""Builds MuJoCo models: the cell with the robots attached to it, and an arm alone for the planner."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def build_cell(scene: Scene, robots: Mapping[str, RobotModel]) -> mujoco.MjModel
 
 
 def cell_spec(scene: Scene, robots: Mapping[str, RobotModel]) -> mujoco.MjSpec:
-    """The whole cell, to be compiled; see `build_cell`."""
+    """Return the spec of the whole cell, to be compiled; see `build_cell`."""
     spec = mujoco.MjSpec.from_string(cell_xml(scene, robots))
     for index, (prefix, robot) in enumerate(robots.items()):
         part = _equipped(robot, robot.tool)
@@ -62,7 +62,7 @@ def cell_spec(scene: Scene, robots: Mapping[str, RobotModel]) -> mujoco.MjSpec:
 
 
 def _collide_with_others(part: mujoco.MjSpec, index: int) -> None:
-    """Classes of their own for arm and gripper of a further robot, so that robots touch each other."""
+    """Give a further robot's arm and gripper their own collision classes, so that robots touch each other."""
     for geom in part.geoms:
         if geom.contype in (ARM_CLASS, GRIPPER_CLASS):
             own = geom.contype << (_CLASSES_OF_A_ROBOT * index + 1)
@@ -80,7 +80,7 @@ def build_robot(robot: RobotModel) -> mujoco.MjModel:
 
 
 def _surfaces(scene: Scene, robots: Mapping[str, RobotModel]) -> list[tuple[str, float]]:
-    """Names of what parts may lie on, and its friction coefficient against a dry part."""
+    """Return the names of the surfaces that parts may lie on, with their friction against a dry part."""
     found = [(fixture.name, fixture.friction) for fixture in scene.fixtures]
     found.append(("floor", FRICTION_ON_STEEL))
     found += [(f"{prefix}pedestal", FRICTION_ON_STEEL) for prefix in robots if stands(robots[prefix])]
@@ -88,12 +88,12 @@ def _surfaces(scene: Scene, robots: Mapping[str, RobotModel]) -> list[tuple[str,
 
 
 def compensation_of(payload: float) -> float:
-    """The `gravcomp` of a robot's body "payload" that carries `payload` kg."""
+    """Return the `gravcomp` of a robot's body "payload" that carries `payload` kg."""
     return payload / _PAYLOAD_MARKER
 
 
 def _equipped(robot: RobotModel, tool: Tool | None) -> mujoco.MjSpec:
-    """The arm with this tool, its tool point, and what the controller needs for a payload."""
+    """Return the arm with this tool, its tool point, and what the controller needs for a payload."""
     spec = robot.spec.copy()
     flange = spec.site(robot.flange)
     if tool is not None:
@@ -111,13 +111,13 @@ def _equipped(robot: RobotModel, tool: Tool | None) -> mujoco.MjSpec:
 
 
 def _measure(spec: mujoco.MjSpec, servo: str) -> None:
-    """Let it sense what a gripper measures of the servo of its fingers."""
+    """Add the sensors by which a gripper measures its fingers' servo."""
     for name, sensor in zip(FINGER_SENSORS, _MEASURED, strict=True):
         spec.add_sensor(name=name, type=sensor, objtype=mujoco.mjtObj.mjOBJ_ACTUATOR, objname=servo)
 
 
 def keep_apart(spec: mujoco.MjSpec, link: mujoco.MjsBody, tool: Tool) -> None:
-    """A tool's mount may overlap the last two links, as flanges do."""
+    """Let a tool's mount overlap the last two links, as flanges do."""
     for body in (link, link.parent):
         for part in tool.spec.bodies:
             if part.name and part.name != "world" and body.name and body != spec.worldbody:
@@ -125,7 +125,7 @@ def keep_apart(spec: mujoco.MjSpec, link: mujoco.MjsBody, tool: Tool) -> None:
 
 
 def _tool_point(flange: mujoco.MjsSite, tool: Tool | None) -> tuple[Array, Array]:
-    """Place, shape (3,), m, and quaternion, shape (4,), of the tool point in the flange's body."""
+    """Return position, shape (3,), m, and quaternion, shape (4,), of the tool point in the flange's body."""
     point, turn = flange.pos.copy(), flange.quat.copy()
     mujoco.mju_normalize4(turn)
     if tool is not None:

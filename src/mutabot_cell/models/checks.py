@@ -1,4 +1,4 @@
-"""What a robot's file must have: errors that name what is missing, where, and what to add."""
+"""Checks a robot's file: errors name what is missing, where, and what to add."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ FilePath = str | PathLike[str]
 
 
 def compiled(spec: mujoco.MjSpec, path: FilePath) -> mujoco.MjModel:
-    """The model. Raises BadModel if MuJoCo refuses it."""
+    """Return the compiled model. Raises BadModel if MuJoCo refuses it."""
     try:
         return compile_quietly(spec)
     except (ValueError, mujoco.FatalError) as error:
@@ -38,7 +38,7 @@ def compiled(spec: mujoco.MjSpec, path: FilePath) -> mujoco.MjModel:
 
 
 def check_chain(chain: Sequence[mujoco.MjsBody], path: FilePath) -> list[mujoco.MjsJoint]:
-    """The joints of the chain from base to flange. Raises BadModel if they cannot be an arm's."""
+    """Return the joints of the chain from base to flange. Raises BadModel if they cannot be an arm's."""
     joints = []
     for body in chain:
         own = list(body.joints)
@@ -66,7 +66,7 @@ def check_chain(chain: Sequence[mujoco.MjsBody], path: FilePath) -> list[mujoco.
 
 
 def check_masses(model: mujoco.MjModel, joints: Sequence[str], path: FilePath) -> None:
-    """Raises BadModel if links weigh nothing."""
+    """Raise BadModel if links have no mass."""
     bodies = [int(model.joint(name).bodyid[0]) for name in joints]
     total = float(sum(model.body_mass[body] for body in bodies))
     if total < _LIGHTEST:
@@ -77,7 +77,7 @@ def check_masses(model: mujoco.MjModel, joints: Sequence[str], path: FilePath) -
 
 
 def check_touch(model: mujoco.MjModel, chain: Sequence[mujoco.MjsBody], path: FilePath) -> None:
-    """Raises BadModel if the arm goes through everything."""
+    """Raise BadModel if the arm collides with nothing."""
     bodies = {model.body(body.name).id for body in chain if body.name}
     for geom in range(model.ngeom):
         touches = model.geom_contype[geom] or model.geom_conaffinity[geom]
@@ -92,7 +92,7 @@ def check_touch(model: mujoco.MjModel, chain: Sequence[mujoco.MjsBody], path: Fi
 def check_size(
     model: mujoco.MjModel, joints: Sequence[str], home: Sequence[float], site: str, path: FilePath
 ) -> None:
-    """Raises BadModel if lengths are not in m."""
+    """Raise BadModel if lengths are not in m."""
     data = mujoco.MjData(model)
     for name, angle in zip(joints, home, strict=True):
         data.joint(name).qpos[0] = angle

@@ -1,4 +1,4 @@
-"""A suction cup with a flat lip on a spring plunger, as a tool; with usual measures, which are our choice."""
+"""A suction cup with a flat lip on a spring plunger, as a tool with typical dimensions, chosen by us."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def suction_cup(
     leak: float = 0.0,
     ejector: Ejector | None = None,
 ) -> Tool:
-    """A suction cup on a spring plunger.
+    """Return a suction cup on a spring plunger.
 
     Args:
         diameter: of its lip, m.

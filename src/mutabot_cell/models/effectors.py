@@ -1,4 +1,4 @@
-"""What a tool takes hold with, as plain data: fingers or a suction cup.
+"""The gripping part of a tool, as plain data: fingers or a suction cup.
 
 Lengths in m, forces in N.
 """
@@ -48,7 +48,7 @@ class Fingers:
 
 @dataclass(frozen=True, slots=True)
 class SuctionCup:
-    """A suction cup, its vacuum and the sensor for that.
+    """A suction cup, its vacuum and its vacuum sensor.
 
     Makers state the holding force as vacuum times area, at 60 kPa and without a safety factor (Schmalz's
     glossary): 42 N for 30 mm.
@@ -72,5 +72,5 @@ class SuctionCup:
 
     @property
     def area(self) -> float:
-        """On which the vacuum acts, m²."""
+        """The area on which the vacuum acts, m²."""
         return math.pi * self.diameter**2 / 4

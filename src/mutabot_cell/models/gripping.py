@@ -1,4 +1,4 @@
-"""Parallel grippers from MuJoCo's files: what their fingers do is measured by moving them."""
+"""Parallel grippers from MuJoCo files: the fingers' properties are measured by moving them."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _SPEED_RANGE, _SPEED = (0.001, 0.2), 0.1
 
 @dataclass(frozen=True, slots=True)
 class _RestingFingers:
-    """Fingers at rest: input and measure of the servo, the gap between the pads (m), their middle (m)."""
+    """Fingers at rest: input and measurement of the servo, the gap between the pads (m), their centre (m)."""
 
     control: float
     length: float
@@ -42,7 +42,7 @@ class _RestingFingers:
 
 @dataclass(frozen=True, slots=True)
 class GripperFile:
-    """What a file says of a gripper.
+    """The description of a gripper in a file.
 
     Attributes:
         spec, body, point: as in `Tool`.
@@ -150,7 +150,7 @@ def _check_names(
 def _moved(
     model: mujoco.MjModel, actuator: str, controls: Sequence[float], pads: tuple[str, ...]
 ) -> list[_RestingFingers]:
-    """The fingers at rest with these inputs one after the other, without gravity."""
+    """Return the fingers at rest for each of these inputs in turn, without gravity."""
     model.opt.gravity[:] = 0
     model.opt.timestep = PHYSICS_STEP
     data = mujoco.MjData(model)
@@ -169,7 +169,7 @@ def _moved(
 
 
 def _opposite(places: Sequence[Array], pads: Sequence[str]) -> list[str]:
-    """The pads of the other side than the first: those that are nearer to the one furthest away."""
+    """Return the pads on the other side than the first: those that are nearer to the one furthest away."""
     away = [float(np.linalg.norm(place - places[0])) for place in places]
     furthest = places[int(np.argmax(away))]
     return [
@@ -180,7 +180,7 @@ def _opposite(places: Sequence[Array], pads: Sequence[str]) -> list[str]:
 
 
 def distance_between(model: mujoco.MjModel, data: mujoco.MjData, one: str, other: str) -> float:
-    """Distance between two shapes, m, at most 1; negative where they overlap."""
+    """Return the distance between two shapes, m, at most 1; negative if they overlap."""
     between = np.zeros(6)
     numbers = model.geom(one).id, model.geom(other).id
     return float(mujoco.mj_geomDistance(model, data, *numbers, 1.0, between))

@@ -130,7 +130,7 @@ def _link_shape(number: int, end: tuple[float, float, float]) -> str:
 
 
 def arm_xml() -> str:
-    """MJCF of the arm with its base at the parent's origin; site "flange" is the maker's interface frame."""
+    """Return MJCF of the arm, base at the parent's origin; site "flange" is the maker's interface frame."""
     opening: list[str] = [
         f'<body name="base"><geom name="base" class="arm" type="cylinder" size="0.05 0.06" pos="0 0 0.06" '
         f'mass="{BASE_MASS}" rgba="{_LIGHT}"/><geom class="looks" type="cylinder" size="0.0515 0.012" '
@@ -160,7 +160,7 @@ def arm_xml() -> str:
 
 
 def actuators_xml() -> str:
-    """MJCF of the joints' position servos, in the joints' order."""
+    """Return MJCF of the joints' position servos, in the joints' order."""
     return "".join(
         f'<position name="servo {index + 1}" joint="joint {index + 1}" kp="{_STIFFNESS[index]}" '
         f'kv="{_DAMPING[index]}"/>'
@@ -170,7 +170,7 @@ def actuators_xml() -> str:
 
 @cache
 def gen3() -> RobotModel:
-    """The Kinova Gen3 with the Robotiq 2F-85: the robot of the published experiment."""
+    """Return the Kinova Gen3 with the Robotiq 2F-85: the robot of the published experiment."""
     accelerations = tuple(joint.acceleration for joint in JOINTS)
     return RobotModel(
         name="Kinova Gen3",

@@ -1,4 +1,4 @@
-"""What a cell leaves out of a model file: what is only there to look at, and other worlds' things."""
+"""Removes from a model file what a cell does not need: visuals, and parts of other worlds."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ _TOUCH = {ARM_CLASS: 13, GRIPPER_CLASS: 11}
 
 
 def strip(spec: mujoco.MjSpec) -> None:
-    """Leave out keyframes, sensors, lights, cameras: the cell has its own."""
+    """Remove keyframes, sensors, lights and cameras, since the cell has its own."""
     for element in (*spec.keys, *spec.sensors, *spec.lights, *spec.cameras):
         spec.delete(element)
 
 
 def freeze_inertias(spec: mujoco.MjSpec, model: mujoco.MjModel) -> None:
-    """Write what the compiler found of masses into the bodies, so that shapes can be left out."""
+    """Write the masses that the compiler has computed into the bodies, so that shapes can be removed."""
     for body in spec.bodies:
         if body == spec.worldbody or body.id < 0:
             continue
@@ -31,7 +31,7 @@ def freeze_inertias(spec: mujoco.MjSpec, model: mujoco.MjModel) -> None:
 
 
 def leave_looks_out(spec: mujoco.MjSpec) -> None:
-    """Leave out shapes that touch nothing and weigh nothing, and meshes that nothing uses: they are slow."""
+    """Remove shapes without contacts and mass, and unused meshes, because they are slow."""
     for geom in list(spec.geoms):
         if not geom.contype and not geom.conaffinity and geom.parent.explicitinertial:
             spec.delete(geom)
@@ -42,7 +42,7 @@ def leave_looks_out(spec: mujoco.MjSpec) -> None:
 
 
 def collide_as(spec: mujoco.MjSpec, collision_class: int) -> None:
-    """Put all shapes that collide into one of the cell's classes, and let them be seen."""
+    """Put all colliding shapes into one of the cell's classes, and make them visible."""
     for geom in spec.geoms:
         if geom.contype or geom.conaffinity:
             geom.contype, geom.conaffinity, geom.group = collision_class, _TOUCH[collision_class], 0

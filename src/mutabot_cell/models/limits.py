@@ -1,4 +1,4 @@
-"""Limits of joints and tool: what a user says of them, and what holds for each joint.
+"""Limits of joints and tool: those that a user sets, and the resulting ones of each joint.
 
 Angles in rad, lengths in m, torques in Nm.
 """
@@ -15,7 +15,7 @@ from mutabot_cell.errors import BadArgument, BadModel
 
 @dataclass(frozen=True, slots=True)
 class JointLimits:
-    """What each joint may do, one value per joint.
+    """The limits of joints, one value per joint.
 
     Attributes:
         speed: rad/s.
@@ -42,7 +42,7 @@ Each = float | Sequence[float]
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """What a user says of a robot's joints, as one value for all or one for each; None: see each.
+    """The limits that a user sets for joints: one value for all, one for each, or None.
 
     Attributes:
         speed: rad/s; 1 rad/s by default.
@@ -63,7 +63,7 @@ class Limits:
     following_error: float = 0.03
 
     def of_joints(self, joints: Sequence[str], found: Sequence[float | None]) -> JointLimits:
-        """Each joint's limits.
+        """Return each joint's limits.
 
         Args:
             joints: their names.
@@ -109,7 +109,7 @@ def _each(name: str, said: Each | None, count: int, other: Sequence[float] = ())
 
 @dataclass(frozen=True, slots=True)
 class ToolLimits:
-    """How fast the tool may move on a straight line: m, rad, s. The values are our choice."""
+    """Speed, acceleration and jerk of the tool on a straight line: m, rad, s. The values are our choice."""
 
     speed: float = 0.5
     turn_speed: float = math.radians(60.0)

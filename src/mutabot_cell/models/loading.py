@@ -1,4 +1,4 @@
-"""Robots from MuJoCo's files: the chain of joints to the flange, servos, and what collides."""
+"""Loads robots from MuJoCo files: the chain of joints to the flange, servos, and colliding shapes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from .servos import make_servos, servos_of, torque_of
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class ArmModel:
-    """An arm without a tool, as a file describes it.
+    """An arm without a tool, as described by a file.
 
     Attributes:
         name: of the robot's type.
@@ -74,7 +74,7 @@ def read_mjcf(
 
 
 def read(path: str | PathLike[str]) -> mujoco.MjSpec:
-    """The spec of a file. Raises BadModel if MuJoCo cannot read it."""
+    """Return the spec of a file. Raises BadModel if MuJoCo cannot read it."""
     if not Path(path).is_file():
         raise BadModel(f"there is no file {fspath(path)!r}")
     try:
@@ -84,7 +84,7 @@ def read(path: str | PathLike[str]) -> mujoco.MjSpec:
 
 
 def flange_of(spec: mujoco.MjSpec, path: str | PathLike[str], tool_site: str) -> mujoco.MjsSite:
-    """The site of this name, made in the body of this name if need be. Raises BadModel if there is none."""
+    """Return the site of this name, or make it in the body of this name. Raises BadModel without either."""
     flange = spec.site(tool_site)
     if flange is None and spec.body(tool_site) is not None:
         flange = spec.body(tool_site).add_site(name=tool_site)
@@ -105,7 +105,7 @@ def read_spec(
     base: Pose | None = None,
     root: str = "",
 ) -> ArmModel:
-    """Read an arm from a spec that holds nothing else. Changes the spec."""
+    """Read an arm from a spec that contains nothing else. Changes the spec."""
     flange = flange_of(spec, path, tool_site)
     chain = chain_to(flange.parent, spec)
     joints = check_chain(chain, path)
@@ -145,7 +145,7 @@ def read_spec(
 
 
 def chain_to(body: mujoco.MjsBody, spec: mujoco.MjSpec) -> list[mujoco.MjsBody]:
-    """The bodies from the base to `body`."""
+    """Return the bodies from the base to `body`."""
     chain = []
     while body is not None and body != spec.worldbody:
         chain.append(body)
@@ -154,7 +154,7 @@ def chain_to(body: mujoco.MjsBody, spec: mujoco.MjSpec) -> list[mujoco.MjsBody]:
 
 
 def _part(spec: mujoco.MjSpec, root: str, path: str | PathLike[str]) -> tuple[mujoco.MjSpec, Pose]:
-    """The robot that begins with body `root`, alone, and where it stands in the file's world."""
+    """Return the robot that begins with body `root`, alone, and its pose in the file's world."""
     body = spec.body(root)
     if body is None:
         raise BadModel(f"{path} has no body {root!r} for the robot's base; it has {names_of(spec.bodies)}")
@@ -210,6 +210,6 @@ def _check_home(
 
 
 def names_of(elements: Iterable[object]) -> str:
-    """Their names in a message."""
+    """Return the elements' names for a message."""
     found = [str(getattr(element, "name", "")) for element in elements]
     return ", ".join(repr(name) for name in found if name) or "none with a name"

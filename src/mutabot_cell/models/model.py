@@ -1,4 +1,4 @@
-"""What stands in the cell, as MJCF text."""
+"""The contents of the cell as MJCF text."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def _quaternion(theta_x: float, theta_y: float, theta_z: float) -> str:
 
 
 def _fixture_xml(fixture: Fixture) -> str:
-    """A body of its own, so that it can be moved; bodies of fixtures come before those of robots."""
+    """Return the MJCF of a fixture as a movable body; fixtures come before robots."""
     return (
         f'<body name="{fixture.name}" pos="{_numbers(fixture.centre)}" quat="{_quaternion(*fixture.angles)}">'
         f'<geom name="{fixture.name}" class="fixture" type="box" size="{_halves(fixture.size)}" '
@@ -44,12 +44,12 @@ def _mark_xml(mark: Mark) -> str:
 
 
 def stands(robot: RobotModel) -> bool:
-    """Whether its base is above the floor, on a pedestal."""
+    """Return whether a robot's base is above the floor, on a pedestal."""
     return robot.base.z > 0.0
 
 
 def _robot_xml(prefix: str, robot: RobotModel) -> str:
-    """The pedestal, and the body to which the robot is attached."""
+    """Return the MJCF of the pedestal, and of the body to which the robot is attached."""
     base = robot.base
     x, y, half = base.x, base.y, base.z / 2
     turned = _quaternion(base.theta_x, base.theta_y, base.theta_z)
@@ -63,7 +63,7 @@ def _robot_xml(prefix: str, robot: RobotModel) -> str:
 
 
 def cell_xml(scene: Scene, robots: Mapping[str, RobotModel]) -> str:
-    """MJCF of what stands in the cell, with an empty body for each robot."""
+    """Return the MJCF of the cell's contents, with an empty body for each robot."""
     fixtures = "".join(_fixture_xml(fixture) for fixture in scene.fixtures)
     marks = "".join(_mark_xml(mark) for mark in scene.marks)
     stands = "".join(_robot_xml(prefix, robot) for prefix, robot in robots.items())

@@ -1,4 +1,4 @@
-"""Sensor noise: a generator per reading, so that one more reading of one sensor does not shift the others."""
+"""Sensor noise: one generator per sensor, so that a further reading of one does not shift the others."""
 
 from __future__ import annotations
 
@@ -37,13 +37,13 @@ class SeededNoise:
         self.errors: dict[str, Callable[[float], float]] = {}
 
     def stream(self, name: str) -> random.Random:
-        """The generator of `name`; also used for what is drawn once per round."""
+        """Return the generator for `name`; also used for values drawn once per round."""
         if name not in self._streams:
             self._streams[name] = random.Random(f"{self._seed}/{self._scope}{name}")
         return self._streams[name]
 
     def add(self, name: str, value: float) -> float:
-        """`value` plus noise of the sensor `name`, in the sensor's unit."""
+        """Return `value` plus noise of the sensor `name`, in the sensor's unit."""
         if self.errors and name in self.errors:
             value = self.errors[name](value)
         if not self._enabled:
@@ -51,7 +51,7 @@ class SeededNoise:
         return value + self.stream(name).gauss(0.0, STANDARD_DEVIATIONS[name])
 
     def bounded(self, name: str, deviation: float) -> float:
-        """A normal draw with mean 0, cut at two standard deviations; drawn also with sensor noise off."""
+        """Return a normal draw with mean 0, cut at two standard deviations; also with sensor noise off."""
         while True:
             draw = self.stream(name).gauss(0.0, deviation)
             if math.fabs(draw) <= 2 * deviation:

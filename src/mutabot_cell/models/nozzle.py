@@ -1,4 +1,4 @@
-"""A dispensing nozzle, as a tool: a cartridge and a needle; with usual measures, which are our choice."""
+"""A dispensing nozzle as a tool: a cartridge and a needle with typical dimensions, chosen by us."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _GREY, _METAL = "0.35 0.37 0.40 1", "0.70 0.71 0.73 1"
 
 
 def nozzle(length: float = 0.160, needle: float = 0.040) -> Tool:
-    """A nozzle along the flange's axis; the tool point is its tip.
+    """Return a nozzle along the flange's axis; the tool point is its tip.
 
     Args:
         length: from the flange to the tip, m.

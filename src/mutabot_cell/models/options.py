@@ -1,4 +1,4 @@
-"""What all models of the physics share: solver options and classes of what collides with what."""
+"""Settings shared by all models of the physics: solver options and collision classes."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ HEAD = OPTIONS + DEFAULTS
 
 
 def compile_quietly(spec: mujoco.MjSpec) -> mujoco.MjModel:
-    """Compile it, without MuJoCo's warnings of parts that were attached.
+    """Compile a spec without MuJoCo's warnings about attached parts.
 
     They are of empty prefixes, with which a model may not be saved correctly (nobody saves these), and of
     options of parts, for which those of the cell hold.
@@ -47,7 +47,7 @@ def compile_quietly(spec: mujoco.MjSpec) -> mujoco.MjModel:
 
 
 def _ignore_warning(message: str) -> None:
-    """Models are checked, and `Simulation.tick` finds what matters itself."""
+    """Ignore a warning: models are checked, and `Simulation.tick` detects what matters."""
 
 
 # here, since whoever builds a model imports this: MuJoCo writes the first warning into MUJOCO_LOG.TXT in the

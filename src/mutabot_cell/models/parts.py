@@ -1,4 +1,4 @@
-"""Parts and fixtures as MuJoCo bodies, with the contacts that friction between pairs of materials needs."""
+"""Parts and fixtures as MuJoCo bodies, with contacts that have the friction of pairs of materials."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def add_part(spec: mujoco.MjSpec, part: Part) -> None:
 
 
 def add_surfaces(spec: mujoco.MjSpec, part: Part, surfaces: Iterable[tuple[str, float]]) -> None:
-    """Contacts of a part with what it may lie on: friction belongs to the pair of materials.
+    """Add contacts of a part with what it may lie on: friction depends on both materials.
 
     Args:
         surfaces: name of a shape, and its friction coefficient against a dry part.
@@ -74,7 +74,7 @@ def add_surfaces(spec: mujoco.MjSpec, part: Part, surfaces: Iterable[tuple[str, 
 
 
 def add_grip(spec: mujoco.MjSpec, part: Part, prefix: str, effector: Fingers | SuctionCup) -> None:
-    """Contacts of a part with what takes hold of it.
+    """Add contacts of a part with the effector that grips it.
 
     They are stiffer than others: what is gripped must turn with the fingers. As stiff as that, a falling part
     would bounce, for numerical reasons. A suction cup notices a part before its lip touches it.
@@ -99,7 +99,7 @@ def add_grip(spec: mujoco.MjSpec, part: Part, prefix: str, effector: Fingers | S
 
 
 def read_mesh(path: str, scale: float = 1.0) -> tuple[Vector3, ...]:
-    """Points of a mesh file (STL, OBJ), for `Mesh(vertices=...)`.
+    """Return the points of a mesh file (STL, OBJ), for `Mesh(vertices=...)`.
 
     Args:
         scale: m per unit of the file; 0.001 where it is in mm.
@@ -146,7 +146,7 @@ def _rolling(part: Part) -> float:
 
 
 def _dimensions(part: Part) -> int:
-    """Directions of friction: a cylinder rolls against a resistance."""
+    """Return the number of friction directions: a cylinder has rolling resistance too."""
     return 6 if isinstance(part, Cylinder) else 3
 
 

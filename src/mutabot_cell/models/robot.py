@@ -1,4 +1,4 @@
-"""A robot as plain data: what planner, controller, sensors and the physics' model ask about an arm.
+"""A robot as plain data for planner, controller, sensors and the physics' model.
 
 Lengths in m, angles in rad, torques in Nm, masses in kg.
 """
@@ -25,7 +25,7 @@ ON_PEDESTAL = Pose(*BASE_POSITION, 0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, slots=True)
 class SphericalWrist:
-    """Reach in closed form, for arms whose last axes meet in one point, the wrist.
+    """The arm's reach in closed form, if its last axes meet in one point, the wrist.
 
     Attributes:
         shoulder: base frame, m.
@@ -72,7 +72,7 @@ class RobotModel(ArmModel):
         root: str | None = None,
         without: Sequence[str] = (),
     ) -> RobotModel:
-        """A robot from a file in MuJoCo's format.
+        """Return a robot from a file in MuJoCo's format.
 
         Servos are those of the file if all joints have position servos; else they are made from the limits.
         Gravity is compensated, as controllers do. The arm's parts do not collide with each other.
@@ -107,7 +107,7 @@ class RobotModel(ArmModel):
         payload: float = 1.0,
         packages: Mapping[str, str | PathLike[str]] | None = None,
     ) -> RobotModel:
-        """A robot from a URDF. Its servos are made from the limits; see `from_mjcf` for the rest.
+        """Return a robot from a URDF. Its servos are made from the limits; see `from_mjcf` for the rest.
 
         Args:
             path: of the file.

@@ -53,7 +53,7 @@ def _finger(name: str, side: int) -> str:
 
 
 def gripper_xml() -> str:
-    """MJCF of the gripper, to stand in the arm's interface frame; the fingers close along its x axis."""
+    """Return MJCF of the gripper for the arm's interface frame; the fingers close along its x axis."""
     return (
         '<body name="gripper" gravcomp="1">'
         f'<geom name="gripper" class="gripper" type="capsule" size="0.036" fromto="0 0 0.01 0 0 0.05" '
@@ -66,12 +66,12 @@ def gripper_xml() -> str:
 
 
 def coupling_xml() -> str:
-    """MJCF that keeps both fingers at the same distance from the middle."""
+    """Return MJCF that keeps both fingers at the same distance from the middle."""
     return '<joint joint1="left finger" joint2="right finger" solref="0.004 1"/>'
 
 
 def tendon_xml() -> str:
-    """MJCF of the tendon whose length is the path both fingers have closed, 0..STROKE m."""
+    """Return MJCF of the tendon whose length is the path both fingers have closed, 0..STROKE m."""
     return (
         '<fixed name="closing"><joint joint="left finger" coef="1"/>'
         '<joint joint="right finger" coef="1"/></fixed>'
@@ -79,7 +79,7 @@ def tendon_xml() -> str:
 
 
 def actuator_xml() -> str:
-    """MJCF of the finger servo, with the largest grip force."""
+    """Return MJCF of the finger servo, with the largest grip force."""
     return (
         f'<position name="fingers" tendon="closing" kp="{_STIFFNESS}" kv="{_DAMPING}" '
         f'forcelimited="true" forcerange="{-FORCE_RANGE[1]} {FORCE_RANGE[1]}"/>'
@@ -88,7 +88,7 @@ def actuator_xml() -> str:
 
 @cache
 def gripper() -> Tool:
-    """The gripper as a tool."""
+    """Return the gripper as a tool."""
     return Tool(
         name="Robotiq 2F-85",
         spec=mujoco.MjSpec.from_string(

@@ -1,4 +1,4 @@
-"""Scenes from MuJoCo's files: named bodies and shapes become fixtures and parts."""
+"""Loads scenes from MuJoCo files: named bodies and shapes become fixtures and parts."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def read_scene(
 
 
 def _shape_of(spec: mujoco.MjSpec, model: mujoco.MjModel, name: str, path: FilePath) -> int:
-    """The number of the one shape of a body, or of a shape, that collides."""
+    """Return the index of the only colliding shape of a body, or of the named shape."""
     if spec.body(name) is not None:
         body = model.body(name).id
         found = [

@@ -1,4 +1,4 @@
-"""Servos of a robot's joints: those of its file, or made from what its joints can give."""
+"""Servos of a robot's joints: from its file, or made from the joints' largest torques."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _ROTOR_SHARE = 0.5e-2
 
 
 def servos_of(spec: mujoco.MjSpec, joints: Sequence[str]) -> tuple[str, ...] | None:
-    """Names of the file's position servos of the joints; None unless each joint has one."""
+    """Return the names of the file's position servos of the joints; None unless each joint has one."""
     by_joint = {one.target: one for one in spec.actuators if _is_servo(one)}
     found = [by_joint.get(name) for name in joints]
     if any(one is None for one in found):
@@ -30,7 +30,7 @@ def servos_of(spec: mujoco.MjSpec, joints: Sequence[str]) -> tuple[str, ...] | N
 
 
 def make_servos(spec: mujoco.MjSpec, joints: Sequence[str], limits: JointLimits) -> tuple[str, ...]:
-    """Replace the joints' actuators by position servos; their names."""
+    """Replace the joints' actuators by position servos, and return their names."""
     for one in [one for one in spec.actuators if one.target in joints]:
         spec.delete(one)
     for joint, peak in zip(joints, limits.peak_torque, strict=True):
@@ -46,7 +46,7 @@ def make_servos(spec: mujoco.MjSpec, joints: Sequence[str], limits: JointLimits)
 
 
 def torque_of(spec: mujoco.MjSpec, model: mujoco.MjModel, joint: str) -> float | None:
-    """What the file says a joint can give at most, Nm; None if it does not say."""
+    """Return the largest torque of a joint according to the file, Nm; None if it does not say."""
     found = model.joint(joint)
     if model.jnt_actfrclimited[found.id]:
         return float(model.jnt_actfrcrange[found.id, 1])
@@ -66,7 +66,7 @@ def torque_of(spec: mujoco.MjSpec, model: mujoco.MjModel, joint: str) -> float |
 
 
 def _is_servo(one: mujoco.MjsActuator) -> bool:
-    """Whether its input is a position of a joint, in the joint's unit."""
+    """Return whether an actuator's input is a joint position, in the joint's unit."""
     stiffness = float(one.gainprm[0])
     return (
         one.trntype == mujoco.mjtTrn.mjTRN_JOINT

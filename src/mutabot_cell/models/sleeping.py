@@ -1,4 +1,4 @@
-"""Parts at rest cost nothing: MuJoCo's sleeping islands, for scenes with many parts."""
+"""Lets parts at rest cost no time, for scenes with many parts: MuJoCo's sleeping islands."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def let_sleep(spec: mujoco.MjSpec) -> None:
 
 @contextmanager
 def awake(model: mujoco.MjModel) -> Iterator[None]:
-    """A context in which nothing sleeps and the poses of fixtures are recomputed."""
+    """Let nothing sleep in this context, and recompute the poses of fixtures."""
     flags = model.opt.enableflags
     model.opt.enableflags = flags & ~_SLEEP
     try:

@@ -1,4 +1,4 @@
-"""A tool as plain data: what is fastened to a robot's flange.
+"""A tool as plain data: the equipment at a robot's flange.
 
 Lengths in m, masses in kg.
 """
@@ -52,7 +52,7 @@ class Tool:
         point: str | None = None,
         force: float | None = None,
     ) -> Tool:
-        """A parallel gripper from a file in MuJoCo's format, whose world frame is fastened to the flange.
+        """Return a parallel gripper from a file in MuJoCo's format, whose world frame is fixed to the flange.
 
         What it can do is measured once: the fingers are opened and closed without gravity.
 

@@ -1,4 +1,4 @@
-"""Robots from URDF files, which MuJoCo reads, but for what is said here."""
+"""Reads robots from URDF files, as MuJoCo does, with the exceptions below."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def read_urdf(
 
 
 def _opening(text: str, path: str | PathLike[str]) -> tuple[str, int]:
-    """The robot's name, and where its opening tag ends."""
+    """Return the robot's name, and where its opening tag ends."""
     try:
         root = ElementTree.fromstring(text)
     except ElementTree.ParseError as error:

@@ -1,4 +1,4 @@
-"""The vacuum in a suction cup: what an ejector draws out against what leaks in."""
+"""The vacuum in a suction cup: the air drawn out by an ejector and the air leaking in."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ class Ejector:
 
     @property
     def time_constant(self) -> float:
-        """With which a tight cup is evacuated, s."""
+        """The time constant with which a tight cup is evacuated, s."""
         return self.volume * self.limit / (ATMOSPHERE * self.flow)
 
 
 class Vacuum:
-    """The pressure in a cup, which follows from the mass of the air in it, at constant temperature.
+    """The pressure in a cup, which follows from the mass of its air at constant temperature.
 
     Attributes:
         pressure: below the atmosphere, Pa.
@@ -50,7 +50,7 @@ class Vacuum:
         self.pressure = 0.0
 
     def advance(self, seconds: float, opening: float, *, is_on: bool) -> None:
-        """Let time pass.
+        """Advance by some time.
 
         Air comes in through openings by Bernoulli's law, q = 0.6 · A · √(2p/ρ), which says too much of it, by
         up to two thirds, above half an atmosphere of vacuum. A step is implicit, so a wide opening is as

@@ -1,1 +1,1 @@
-"""From poses to joints: kinematics and trajectories."""
+"""Motion planning, from poses to joint setpoints: kinematics and trajectories."""

@@ -1,4 +1,4 @@
-"""How a motion under way is brought to rest."""
+"""Brings a motion in progress to rest."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _LONGER = 1.25
 
 
 def braked(motion: Motion, begun: int, step: float, limits: JointLimits) -> Motion:
-    """The rest of a motion after `begun` of its steps, slowed down to rest on the same path.
+    """Return the rest of a motion after `begun` of its steps, slowed down to rest on the same path.
 
     Time is stretched until it stands still, as fast as the joints' acceleration limits allow. A motion that
     would end sooner by itself stays as it is.
@@ -51,7 +51,7 @@ def _is_gentle(motion: Motion, before: Array, step: float, limits: JointLimits) 
 
 
 def braked_joints(state: JointSteps, step: float, limits: JointLimits) -> Motion:
-    """The quickest way to rest of every joint for itself, sampled every `step` s."""
+    """Return the quickest motion to rest, each joint on its own, sampled every `step` s."""
     count = len(state.joints)
     request = ruckig.InputParameter(count)
     request.control_interface = ruckig.ControlInterface.Velocity

@@ -1,4 +1,4 @@
-"""Motions that the wrist's force sensor decides: stop on contact, push with a force.
+"""Motions controlled by the wrist's force sensor: stop on contact, push with a force.
 
 Both steer the tool's velocity at every tick. In the field: guarded motion, and control by an *admittance*,
 velocity = gain · missing force. The orientation stays.
@@ -28,7 +28,7 @@ Feel = Callable[[], Array]
 
 
 class _Steered:
-    """The tool while its velocity is steered."""
+    """The tool under velocity control."""
 
     def __init__(self, steps: JointSteps, period: float) -> None:
         self._steps, self._period = steps, period
@@ -37,7 +37,7 @@ class _Steered:
         self.velocity: Array = np.zeros(3)
 
     def go(self, wanted: Array) -> Motion:
-        """One tick towards a velocity, m/s, shape (3,)."""
+        """Return the setpoints of one tick towards a velocity, m/s, shape (3,)."""
         change = wanted - self.velocity
         size, most = float(np.linalg.norm(change)), ACCELERATION * self._period
         if size > most:
@@ -48,12 +48,12 @@ class _Steered:
         return self._steps.towards(self.position, self._rotation, np.concatenate((velocity, np.zeros(3))))
 
     def stands(self) -> bool:
-        """Whether it is at rest."""
+        """Return whether the tool is at rest."""
         return not self.velocity.any()
 
 
 class UntilContact:
-    """Go straight on until something resists.
+    """A straight motion that ends when something resists.
 
     Args:
         steps: the joints, at rest.
@@ -77,7 +77,7 @@ class UntilContact:
         self.touched = False
 
     def tick(self) -> Motion | None:
-        """See `OnlineMotion`."""
+        """Return the setpoints of the coming tick; see `OnlineMotion`."""
         self.touched = self.touched or float(-self._feel() @ self._direction) >= self._force
         left = self._length - float((self._tool.position - self._tool.start) @ self._direction)
         if self._tool.stands() and (self.touched or left < _THERE):
@@ -89,14 +89,14 @@ class UntilContact:
 
 
 def _braking_speed(left: float, now: float, period: float) -> float:
-    """The speed at the end of this tick from which the tool still comes to rest in `left` m, m/s."""
+    """Return the speed at the end of this tick from which the tool can still stop within `left` m, m/s."""
     change = ACCELERATION * period
     beyond = max(0.0, left - now * period / 2)
     return math.sqrt(2 * ACCELERATION * beyond + change**2 / 4) - change / 2
 
 
 class Push:
-    """Push with a force for a time, compliant along the given axes.
+    """A push with a force for some time, compliant along the given axes.
 
     Args:
         steps: the joints, at rest.
@@ -125,7 +125,7 @@ class Push:
         self._left = round(seconds / period)
 
     def tick(self) -> Motion | None:
-        """See `OnlineMotion`."""
+        """Return the setpoints of the coming tick; see `OnlineMotion`."""
         self._left -= 1
         gone = float(np.linalg.norm(self._tool.position - self._tool.start))
         if self._left < 0 or gone >= self._travel:

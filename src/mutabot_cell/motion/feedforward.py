@@ -1,4 +1,4 @@
-"""Torques that a planned motion needs, put into the setpoints of servos too soft to follow without."""
+"""Computes a planned motion's torques and adds them to the setpoints of soft servos."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _SLOW = 0.01
 
 
 class FeedForward:
-    """What the controller knows of the robot's masses, the tool's included.
+    """The controller's model of the robot's masses, including the tool.
 
     Args:
         robot: whose controller it is.
@@ -36,12 +36,12 @@ class FeedForward:
         self._stiffness = stiffness
 
     def set_payload(self, mass: float, centre: tuple[float, float, float]) -> None:
-        """The declared payload, kg, and its centre of mass in the tool frame, m."""
+        """Set the declared payload, kg, and its centre of mass in the tool frame, m."""
         self._model.body_mass[self._payload] = mass
         self._model.body_ipos[self._payload] = centre
 
     def offsets(self, motion: Motion, step: float) -> Array:
-        """What to add to the setpoints, shape (steps, joints), rad.
+        """Return the offsets to add to the setpoints, shape (steps, joints), rad.
 
         Args:
             step: of the motion, s.
@@ -60,7 +60,7 @@ class FeedForward:
         return offsets
 
     def _torque(self, joints: Array, speeds: Array, accelerations: Array) -> Array:
-        """Of inertia, Coriolis forces and dry friction, shape (joints,), Nm."""
+        """Return the torque of inertia, Coriolis forces and dry friction, shape (joints,), Nm."""
         model, data = self._model, self._data
         data.qpos[self._places] = joints
         data.qvel[self._dofs] = speeds

@@ -18,7 +18,7 @@ _UNBOUNDED = -1e30
 
 
 class JointStep:
-    """The step of the joints that brings the tool nearest to its target, bit by bit that of `mink.solve_ik`.
+    """The joint step that brings the tool nearest to its target; bit by bit the result of `mink.solve_ik`.
 
     mink checks, copies and stacks the matrices of any tasks and any solver anew at each call, which takes
     four times as long as to solve the programme. Here the tasks are known: the tool's pose and, with a cost
@@ -43,7 +43,7 @@ class JointStep:
         self._nothing: Array = np.zeros((0, count))
 
     def solve(self, configuration: mink.Configuration, near: Array, *, limited: bool) -> Array:
-        """How far each joint should go, shape (joints,), rad.
+        """Return how far each joint should move, shape (joints,), rad.
 
         Args:
             near: the posture, shape (joints,), rad.

@@ -47,7 +47,7 @@ _ORIENTATION_COST = 0.3
 
 
 class Kinematics:
-    """The arm without the cell around it. The base frame is the world frame here.
+    """The kinematics of the arm without the cell around it. The base frame is the world frame here.
 
     Attributes:
         count: of the arm's joints.
@@ -63,11 +63,11 @@ class Kinematics:
         self._turns = np.zeros((6, self._model.nv))  # the tool's speed by joint speeds
 
     def fingerprint(self) -> bytes:
-        """Tells arms apart, to the bit."""
+        """Return a value that differs between arms, bit by bit."""
         return Fingerprint(self._model).now()
 
     def tool(self, joints: Array) -> tuple[Array, Array]:
-        """Tool position (shape (3,), m) and rotation (shape (3, 3)) in the base frame.
+        """Return the tool's position (shape (3,), m) and rotation (shape (3, 3)) in the base frame.
 
         Args:
             joints: shape (joints,), rad.
@@ -77,14 +77,14 @@ class Kinematics:
         return self._data.site_xpos[self._site].copy(), self._data.site_xmat[self._site].reshape(3, 3).copy()
 
     def jacobian(self) -> Array:
-        """Of the tool where `tool` was asked for last: base frame, m and rad per rad, shape (6, 7)."""
+        """Return the Jacobian, shape (6, 7), for the last `tool` call: base frame, m and rad per rad."""
         mujoco.mj_comPos(self._model, self._data)
         jacobian = np.zeros((6, self._model.nv))
         mujoco.mj_jacSite(self._model, self._data, jacobian[:3], jacobian[3:], self._site)
         return jacobian
 
     def follow(self, joints: Array, line: Line | RoundedPath) -> Array:
-        """Joint angles at evenly spaced points of `line`, starting at `joints`: shape (knots, joints), rad.
+        """Return joint angles at evenly spaced points of `line` from `joints` on: shape (knots, joints), rad.
 
         Between the knots a cubic spline (`trajectory.Spline`) keeps the tool on the line, within
         `STRAIGHTNESS`.
@@ -119,7 +119,7 @@ class Kinematics:
             count *= 2
 
     def check_configuration(self, knots: Array) -> None:
-        """Refuse to change from one configuration (elbow, wrist) of a six-joint arm to another on a line."""
+        """Refuse a line on which a six-joint arm would change its configuration (elbow, wrist)."""
         if self._model.nv != 6:
             return
         side = 0.0
@@ -136,7 +136,7 @@ class Kinematics:
             side = now
 
     def _side(self, joints: Array) -> float:
-        """Of which sign it is tells configurations apart: between them lies a singularity, where it is 0."""
+        """Return a number whose sign differs between configurations and which is 0 at their singularity."""
         self._data.qpos[:] = joints
         mujoco.mj_kinematics(self._model, self._data)
         mujoco.mj_comPos(self._model, self._data)
@@ -170,7 +170,7 @@ class Kinematics:
 
 
 class _Solver:
-    """mink set up for this arm: the tool's pose first, near a posture second, inside the joint limits."""
+    """mink set up for this arm: first the tool's pose, then a posture, within the joint limits."""
 
     def __init__(self, model: mujoco.MjModel) -> None:
         arm = copy(model)
@@ -193,7 +193,7 @@ class _Solver:
     def solve(
         self, position: Array, rotation: Array, guess: Array, *, near: Array, limited: bool = True
     ) -> Array | None:
-        """Joint angles, shape (joints,), rad, that put the tool there; None if there are none nearby."""
+        """Return joint angles, shape (joints,), rad, for a tool pose; None if there are none nearby."""
         transform = np.eye(4)
         transform[:3, :3] = rotation
         transform[:3, 3] = position
@@ -213,7 +213,7 @@ class _Solver:
         return None
 
     def refusal(self, position: Array, rotation: Array, joints: Array, *, fraction: float) -> MotionRefused:
-        """Why the tool cannot go on from `joints` to there."""
+        """Return the refusal that says why the tool cannot move from `joints` to there."""
         at = f"at {fraction:.0%} of the line"
         free = self.solve(position, rotation, joints, near=joints, limited=False)
         if free is not None:

@@ -30,40 +30,40 @@ class Line:
 
     @classmethod
     def between(cls, start: Array, rotation: Array, end: Array, end_rotation: Array) -> Line:
-        """The line from one tool pose to another, turning the shorter way."""
+        """Return the line from one tool pose to another, turning the shorter way."""
         return cls(start, rotation, end - start, rotation_vector(rotation.T @ end_rotation))
 
     @property
     def numbers(self) -> tuple[Array, ...]:
-        """All that it depends on."""
+        """All numbers that determine the line."""
         return self.start, self.rotation, self.shift, self.turn
 
     @property
     def is_straight(self) -> bool:
-        """Whether the tool's place moves along one straight line and does not turn."""
+        """Whether the tool's position follows one straight line without a turn."""
         return self.angle < _NO_TURN
 
     @property
     def finest(self) -> float:
-        """Length of the shortest bend, m: it has none."""
+        """The length of the shortest bend, m; a line has none."""
         return math.inf
 
     @property
     def length(self) -> float:
-        """m."""
+        """The length, m."""
         return float(np.linalg.norm(self.shift))
 
     @property
     def angle(self) -> float:
-        """rad."""
+        """The angle of the turn, rad."""
         return float(np.linalg.norm(self.turn))
 
     def position_at(self, fraction: float) -> Array:
-        """Shape (3,), m."""
+        """Return the position, shape (3,), m."""
         result: Array = self.start + fraction * self.shift
         return result
 
     def rotation_at(self, fraction: float) -> Array:
-        """Shape (3, 3)."""
+        """Return the rotation, shape (3, 3)."""
         result: Array = self.rotation @ rotation_about(fraction * self.turn)
         return result

@@ -23,10 +23,10 @@ _DAMPING = 1e-8 * np.eye(6)
 
 
 class OnlineMotion(Protocol):
-    """What the arm asks at the beginning of each control tick while such a motion is under way."""
+    """A motion that the arm asks for setpoints at the beginning of each control tick."""
 
     def tick(self) -> Motion | None:
-        """Setpoints of the coming tick, one row a physics step; None when the motion has ended.
+        """Return the setpoints of the coming tick, one row per physics step; None when the motion has ended.
 
         Raises:
             PathLost: the next pose cannot be reached within the joints' limits.
@@ -35,7 +35,7 @@ class OnlineMotion(Protocol):
 
 
 class JointSteps:
-    """The joints while the tool follows poses that are known one tick ahead.
+    """The joint setpoints for tool poses that are known one tick ahead.
 
     Inverse kinematics by Newton steps with the pseudo-inverse of the last tick's Jacobian (damped least
     squares), from where the joints will be if they go on: a tick's way is so short that one or two do. Of the
@@ -68,11 +68,11 @@ class JointSteps:
         self._inverse = self._inverted()
 
     def tool(self) -> tuple[Array, Array]:
-        """Where the setpoints have the tool: position, shape (3,), m, and rotation, shape (3, 3)."""
+        """Return the tool's commanded position, shape (3,), m, and rotation, shape (3, 3)."""
         return self._kinematics.tool(self.joints)
 
     def towards(self, position: Array, rotation: Array, velocity: Array) -> Motion:
-        """Setpoints of the tick at whose end the tool is there.
+        """Return the setpoints of a tick at whose end the tool is there.
 
         Args:
             position: shape (3,), m.
@@ -111,13 +111,13 @@ class JointSteps:
         return joints
 
     def _inverted(self) -> Array:
-        """Pseudo-inverse of the Jacobian at the joints solved for last, shape (joints, 6)."""
+        """Return the pseudo-inverse of the Jacobian at the joints solved for last, shape (joints, 6)."""
         jacobian = self._kinematics.jacobian()
         inverse: Array = jacobian.T @ np.linalg.inv(jacobian @ jacobian.T + _DAMPING)
         return inverse
 
     def _between(self, joints: Array, speeds: Array) -> Motion:
-        """The physics steps from where the joints are to there."""
+        """Return the setpoints of the physics steps from the present joints to these."""
         width = self._tick
         way = joints - self.joints
         start, end = self.speeds * width, speeds * width
@@ -126,7 +126,7 @@ class JointSteps:
 
 
 class _Bounds:
-    """Of a robot's joints, as arrays."""
+    """The limits of a robot's joints, as arrays."""
 
     def __init__(self, robot: RobotModel) -> None:
         self._speed, self._acceleration = np.array(robot.limits.speed), np.array(robot.limits.acceleration)
@@ -135,7 +135,7 @@ class _Bounds:
         self._lowest, self._highest = lowest + LIMIT_MARGIN, highest - LIMIT_MARGIN
 
     def check(self, joints: Array, speeds: Array, accelerations: Array) -> None:
-        """Raise PathLost if the joints are too fast, or could not come to rest within their angles."""
+        """Raise PathLost if the joints are too fast, or could not stop within their angles."""
         pace, gain = np.abs(speeds), np.abs(accelerations)
         for what, values, most in (("speed", pace, self._speed), ("acceleration", gain, self._acceleration)):
             over = values - most

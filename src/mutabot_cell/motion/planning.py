@@ -1,4 +1,4 @@
-"""Motions along lines and between joint angles; what has been planned in a campaign is not planned again."""
+"""Plans motions along lines and between joint angles; plans are shared within a campaign."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Planner:
             self._robot = kinematics.fingerprint() + repr(numbers).encode()
 
     def along(self, joints: Array, line: Line | RoundedPath, speed: float) -> Motion:
-        """A motion of the tool along a line or path.
+        """Return a motion of the tool along a line or path.
 
         Args:
             joints: where it starts, shape (joints,), rad.
@@ -51,7 +51,7 @@ class Planner:
         return self._remembered(plan, joints, *line.numbers, speed)
 
     def between(self, start: Array, end: Array, speed: float) -> Motion:
-        """The fastest motion from joint angles to others, shape (joints,) each, rad.
+        """Return the fastest motion between two joint positions, shape (joints,) each, rad.
 
         Args:
             start, end: of the motion.
@@ -64,7 +64,7 @@ class Planner:
         return self._remembered(plan, start, end, speed)
 
     def _remembered(self, plan: Callable[[], Motion], *given: Array | float) -> Motion:
-        """What `plan` makes of all that is given."""
+        """Return what `plan` makes of these arguments, from memory if possible."""
         if self._memory is None or not are_original(MOTIONS, self, self._kinematics):
             return plan()
         numbers = np.concatenate([np.ravel(part) for part in given])

@@ -1,4 +1,4 @@
-"""Reach in closed form: how far the wrist would be from the shoulder, for arms with a spherical wrist."""
+"""Reach in closed form, by the distance of the wrist from the shoulder, for arms with a spherical wrist."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _CHECKS = 41
 
 
 class WristReach:
-    """The reach of an arm with its tool; everywhere if none is known (`RobotModel.reach`).
+    """The reach of an arm with its tool; unlimited if unknown (`RobotModel.reach`).
 
     Attributes:
         length: largest distance between shoulder and wrist, m.
@@ -37,7 +37,7 @@ class WristReach:
             mujoco.mju_rotVecQuat(self._wrist, flange - np.array(robot.tool.point), back)
 
     def distance(self, position: Array, rotation: Array) -> float:
-        """Distance between shoulder and wrist, m.
+        """Return the distance between shoulder and wrist, m.
 
         Args:
             position: of the tool, shape (3,), m.
@@ -46,7 +46,7 @@ class WristReach:
         return float(np.linalg.norm(position + rotation @ self._wrist - self._shoulder))
 
     def check(self, line: Line | RoundedPath) -> None:
-        """Refuse a line or path on which the wrist would be further from the shoulder than the arm is long.
+        """Refuse a line or path on which the wrist would be further from the shoulder than the arm's length.
 
         Raises:
             MotionRefused: the limit is "reach".

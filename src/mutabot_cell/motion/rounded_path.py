@@ -1,4 +1,4 @@
-"""A tool motion through points: straight between them, with rounded corners, in one go."""
+"""A tool motion through points on straight lines with rounded corners, without a stop."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Waypoint:
 
 @dataclass(frozen=True, slots=True)
 class _Piece:
-    """A straight piece from `start` along `ahead`; an arc if it has a `radius`, bending towards `aside`."""
+    """A straight piece from `start` along `ahead`; an arc towards `aside` if it has a `radius`."""
 
     start: Array
     ahead: Array
@@ -56,7 +56,7 @@ class _Piece:
 
 
 class RoundedPath:
-    """A tool path in the base frame, travelled by its length; the tool turns evenly between two points.
+    """A tool path in the base frame, parametrised by length; the tool turns evenly between two points.
 
     It has what a `Line` has for the planner.
 
@@ -97,24 +97,24 @@ class RoundedPath:
 
     @property
     def numbers(self) -> tuple[Array, ...]:
-        """All that it depends on."""
+        """All numbers that determine the path."""
         return tuple(
             part for one in self._points for part in (one.position, one.rotation, np.array(one.blend))
         )
 
     @property
     def is_straight(self) -> bool:
-        """Whether the tool's place moves along one straight line and does not turn."""
+        """Whether the tool's position follows one straight line without a turn."""
         return False
 
     def position_at(self, fraction: float) -> Array:
-        """Shape (3,), m."""
+        """Return the position, shape (3,), m."""
         way = min(max(fraction, 0.0), 1.0) * self.length
         index = min(bisect_right(self._ends, way), len(self._pieces) - 1)
         return self._pieces[index].at(way - (self._ends[index - 1] if index else 0.0))
 
     def rotation_at(self, fraction: float) -> Array:
-        """Shape (3, 3)."""
+        """Return the rotation, shape (3, 3)."""
         way = min(max(fraction, 0.0), 1.0) * self.length
         index = min(bisect_right(self._marks, way) - 1, len(self._turns) - 1)
         begin, end = self._marks[index], self._marks[index + 1]
@@ -124,7 +124,7 @@ class RoundedPath:
 
 
 def _pieces(points: Sequence[Waypoint], steps: Sequence[float]) -> tuple[list[_Piece], list[float]]:
-    """The pieces of a path, and the lengths at which it passes each point but the first and last."""
+    """Return the pieces of a path, and the lengths at which it passes each point but the first and last."""
     pieces: list[_Piece] = []
     marks: list[float] = []
     place, gone = points[0].position, 0.0

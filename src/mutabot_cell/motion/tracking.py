@@ -1,4 +1,4 @@
-"""Conveyor tracking: the arm's poses move with a belt.
+"""Conveyor tracking: tool poses in a frame that moves with a belt.
 
 The field's names: the belt's *encoder* tells its position, the controller estimates from it where the belt
 will be a tick later, *synchronises* the tool with it under the tool's limits, and superimposes the program's
@@ -34,7 +34,7 @@ _SYNCHRONOUS_SPEED = 5e-3
 
 
 class BeltEstimate:
-    """Position, speed and acceleration of a belt from its encoder's counts.
+    """The estimated position, speed and acceleration of a belt from its encoder's counts.
 
     A critically damped g-h-k filter (fading memory): even speed and even acceleration are followed without an
     error; a change of acceleration is known after some `FILTER_TIME`.
@@ -54,7 +54,7 @@ class BeltEstimate:
         self._k = (1.0 - kept) ** 3 / period**2
 
     def update(self, reading: float) -> None:
-        """Take the next reading, one period after the last."""
+        """Process the next reading, one period after the last."""
         period = self._period
         self.position += (self.speed + self.acceleration * period / 2) * period
         self.speed += self.acceleration * period
@@ -65,7 +65,7 @@ class BeltEstimate:
 
 
 class Follower:
-    """One coordinate that follows a moving target under limits of speed, acceleration and jerk.
+    """A coordinate that follows a moving target within limits of speed, acceleration and jerk.
 
     In the target's own frame the time-optimal way to it (by ruckig, anew at every tick) is one to rest.
 
@@ -85,7 +85,7 @@ class Follower:
         self._answer = ruckig.OutputParameter(1)
 
     def follow(self, target: float, speed: float, acceleration: float) -> None:
-        """Go on by one period towards a target that is at `target` now, with this speed and acceleration."""
+        """Continue for one period towards a target, given its position, speed and acceleration now."""
         request = self._request
         request.control_interface = ruckig.ControlInterface.Position
         request.current_position = [self.position - target]
@@ -99,7 +99,7 @@ class Follower:
         self.acceleration += acceleration
 
     def brake(self) -> None:
-        """Go on by one period towards rest."""
+        """Continue for one period towards rest."""
         request = self._request
         request.control_interface = ruckig.ControlInterface.Velocity
         request.current_position, request.current_velocity = [self.position], [self.speed]
@@ -108,7 +108,7 @@ class Follower:
 
     @property
     def is_at_rest(self) -> bool:
-        """Whether it stands."""
+        """Whether the coordinate is at rest."""
         return self.speed == 0.0 and self.acceleration == 0.0
 
     def _go_on(self) -> ruckig.Result:
@@ -122,7 +122,7 @@ class Follower:
 
 
 class TrackedBelt(Protocol):
-    """What tracking needs of a belt: `mutabot_cell.belt.ConveyorBelt` is one.
+    """The interface of a belt for tracking, as of `mutabot_cell.belt.ConveyorBelt`.
 
     Attributes:
         direction: unit vector of positive speed, shape (3,), world frame.
@@ -131,16 +131,16 @@ class TrackedBelt(Protocol):
     direction: Array
 
     def position(self) -> float:
-        """Encoder, m."""
+        """Return the encoder's reading, m."""
         ...
 
     def speed(self) -> float:
-        """From the encoder, m/s."""
+        """Return the speed by the encoder, m/s."""
         ...
 
 
 class Tracking:
-    """The tool's poses in a frame that moves with a belt, and the straight moves in it.
+    """The tool's poses in a frame that moves with a belt, and straight moves in that frame.
 
     In that frame a thing on the belt is always where it was when the encoder read `since`.
 
@@ -174,7 +174,7 @@ class Tracking:
 
     @property
     def is_synchronous(self) -> bool:
-        """Whether the tool moves as the belt does, to the eye of the encoder."""
+        """Whether the tool moves with the belt, as far as the encoder shows."""
         expected = self._estimate.position + self._estimate.speed * self._period  # as the setpoint: a tick on
         behind = expected - self._since - self._offset.position
         slower = self._estimate.speed - self._offset.speed
@@ -182,11 +182,11 @@ class Tracking:
 
     @property
     def is_moving(self) -> bool:
-        """Whether a move in the belt's frame is under way."""
+        """Whether a move in the belt's frame is in progress."""
         return self._move is not None
 
     def pose(self) -> tuple[Array, Array]:
-        """Commanded position, shape (3,), m, and rotation, shape (3, 3), in the belt's frame."""
+        """Return the commanded position, shape (3,), m, and rotation, shape (3, 3), in the belt's frame."""
         return self._place.copy(), self._rotation.copy()
 
     def move(self, line: Line, speed: float, follow: Callable[[Line], Array]) -> None:
@@ -205,14 +205,14 @@ class Tracking:
         self._move = law
 
     def _meeting(self, line: Line, duration: float) -> Line:
-        """The line in the base frame if the belt goes on as it does."""
+        """Return the line in the base frame for a belt that keeps its speed."""
         begin = line.start + self._offset.position * self._along
         return Line(
             begin, line.rotation, line.shift + self._estimate.speed * duration * self._along, line.turn
         )
 
     def stop_move(self) -> None:
-        """Let the move under way come to rest on its line; following goes on."""
+        """Let the present move come to rest on its line; the tool still follows the belt."""
         if self._move is not None:
             self._move.stop()
 
@@ -221,7 +221,7 @@ class Tracking:
         self._ending = True
 
     def tick(self) -> Motion | None:
-        """See `OnlineMotion`."""
+        """Return the setpoints of the coming tick; see `OnlineMotion`."""
         if self._ending and self._offset.is_at_rest and self._move is None:
             return None
         self._estimate.update(self._belt.position())
@@ -241,7 +241,7 @@ class Tracking:
 
 
 class LineLaw:
-    """How a line is travelled, tick by tick, from rest to rest.
+    """The motion along a line, tick by tick, from rest to rest.
 
     Args:
         line: in whatever frame.
@@ -272,7 +272,7 @@ class LineLaw:
         return float(calculated(self._law, self._request).duration)
 
     def slow_down(self, joints: Spline, limits: JointLimits) -> None:
-        """Be slower where the joints that this line needs would be too fast, all along it."""
+        """Slow down along the whole line where the joints would be too fast."""
         fractions = np.linspace(0.0, 1.0, _CHECKS)
         slope, bend = np.abs(joints.slope(fractions)), np.abs(joints.bend(fractions))
         speed, acceleration = np.array(limits.speed), np.array(limits.acceleration)
@@ -284,11 +284,11 @@ class LineLaw:
         self.duration = self._duration()
 
     def stop(self) -> None:
-        """From now on brake, on the line."""
+        """Brake from now on, on the line."""
         self._request.control_interface = ruckig.ControlInterface.Velocity
 
     def tick(self) -> tuple[Array, Array, Array]:
-        """Position (3,), rotation (3, 3) and velocity (6,) at the end of the coming tick."""
+        """Return position (3,), rotation (3, 3) and velocity (6,) at the end of the coming tick."""
         self.is_done = self._law.update(self._request, self._answer) == ruckig.Result.Finished
         self._answer.pass_to_input(self._request)
         fraction, rate = self._answer.new_position[0], self._answer.new_velocity[0]
@@ -298,5 +298,5 @@ class LineLaw:
 
 
 def _least(most: Array, values: Array) -> float:
-    """The factor by which `values`, shape (n, joints), reach `most`, shape (joints,), first."""
+    """Return the factor by which `values`, shape (n, joints), first reach `most`, shape (joints,)."""
     return 1.0 / max(float((values / most).max()), 1e-9)

@@ -1,4 +1,4 @@
-"""Time laws: how a path is travelled under speed, acceleration and jerk limits.
+"""Time laws of motions along a path, within limits of speed, acceleration and jerk.
 
 ruckig gives the time-optimal law of a joint motion, and of the travelled fraction of a straight line.
 Where a line asks a joint to be faster than it may be, time is stretched there, smoothly: the path stays the
@@ -29,7 +29,7 @@ _LESS_JERK = (1.0, 0.999, 0.99)
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """Setpoints at every physics step.
+    """The setpoints of a motion at every physics step.
 
     Attributes:
         joints: shape (steps, joints), rad.
@@ -41,7 +41,7 @@ class Motion:
 
 
 class Spline:
-    """Cubic spline through evenly spaced knots (not-a-knot ends), over a fraction of 0..1.
+    """A cubic spline through evenly spaced knots (not-a-knot ends), over a fraction of 0..1.
 
     Args:
         knots: shape (at least 4, joints), rad.
@@ -69,7 +69,7 @@ class Spline:
         return index, 1.0 - right, right
 
     def value(self, fractions: Array) -> Array:
-        """Shape (n, joints) at `fractions` of shape (n,)."""
+        """Return the values, shape (n, joints), at `fractions` of shape (n,)."""
         index, left, right = self._locate(fractions)
         bend = self._step**2 / 6.0
         result: Array = (
@@ -80,7 +80,7 @@ class Spline:
         return result
 
     def slope(self, fractions: Array) -> Array:
-        """First derivative by the fraction, shape (n, joints)."""
+        """Return the first derivative by the fraction, shape (n, joints)."""
         index, left, right = self._locate(fractions)
         result: Array = (self._knots[index + 1] - self._knots[index]) / self._step + self._step / 6.0 * (
             (3 * right**2 - 1) * self._bends[index + 1] - (3 * left**2 - 1) * self._bends[index]
@@ -88,7 +88,7 @@ class Spline:
         return result
 
     def bend(self, fractions: Array) -> Array:
-        """Second derivative by the fraction, shape (n, joints)."""
+        """Return the second derivative by the fraction, shape (n, joints)."""
         index, left, right = self._locate(fractions)
         result: Array = left * self._bends[index] + right * self._bends[index + 1]
         return result
@@ -98,7 +98,7 @@ NDIndex = np.ndarray[tuple[int, ...], np.dtype[np.intp]]
 
 
 def joint_motion(start: Array, end: Array, step: float, limits: JointLimits, speed: float = 1.0) -> Motion:
-    """The fastest synchronous motion between two joint positions, shape (joints,), rad, every `step` s.
+    """Return the fastest synchronous motion between joint positions (joints,), rad, sampled every `step` s.
 
     `speed` scales the joints' speed limits, 0..1.
     """
@@ -116,7 +116,7 @@ def line_motion(
     tool: ToolLimits,
     speed: float = 1.0,
 ) -> Motion:
-    """Travel a straight line whose joint angles at even spaces are `knots`, shape (n, joints), rad.
+    """Return the motion on a line whose evenly spaced joint angles are `knots`, shape (n, joints), rad.
 
     Args:
         length: of the line, m.
@@ -156,14 +156,14 @@ def line_motion(
 
 
 def _arrays(limits: JointLimits) -> tuple[Array, Array, Array]:
-    """Limits of speed, acceleration and jerk, shape (joints,) each."""
+    """Return the limits of speed, acceleration and jerk, shape (joints,) each."""
     return np.array(limits.speed), np.array(limits.acceleration), np.array(limits.jerk)
 
 
 def _ruckig(
     start: Array, end: Array, speed: Array, acceleration: Array, jerk: Array
 ) -> tuple[Array, Array, Array, Array]:
-    """Times (n,), positions, speeds and accelerations (n, dof) of the fastest motion from rest to rest."""
+    """Return times (n,), positions, speeds, accelerations (n, dof) of the fastest motion between rests."""
     count = len(start)
     request = ruckig.InputParameter(count)
     request.current_position, request.target_position = start.tolist(), end.tolist()
@@ -177,7 +177,7 @@ def _ruckig(
 
 
 def calculated(law: ruckig.Ruckig, request: ruckig.InputParameter) -> ruckig.Trajectory:
-    """The time law that is asked for.
+    """Compute the requested time law.
 
     Where two kinds of laws meet (a length of exactly 2 a³/j², say) ruckig finds neither in a few cases of a
     hundred, for the rounding of its inputs. A little less jerk, which the request then has, leads away.
@@ -197,7 +197,7 @@ def calculated(law: ruckig.Ruckig, request: ruckig.InputParameter) -> ruckig.Tra
 
 
 def _smooth(factor: Array, grid: float) -> Array:
-    """A smooth curve that is nowhere below `factor`, shape (n,)."""
+    """Return a smooth curve that is nowhere below `factor`, shape (n,)."""
     half = max(1, round(_SMOOTHING / grid))
     if factor.max() <= 1.0 or len(factor) < 3:
         return factor
@@ -208,7 +208,7 @@ def _smooth(factor: Array, grid: float) -> Array:
 
 
 def _needed_slowdown(motion: Motion, step: float, highest: tuple[Array, Array, Array]) -> float:
-    """The factor (>= 1) by which the whole motion must be slower to keep all limits."""
+    """Return the factor (>= 1) by which the whole motion must be slower to keep all limits."""
     speeds = np.diff(motion.joints, axis=0) / step
     accelerations = np.diff(speeds, axis=0) / step
     jerks = np.diff(accelerations, axis=0) / step
@@ -220,7 +220,7 @@ def _needed_slowdown(motion: Motion, step: float, highest: tuple[Array, Array, A
 
 
 def sampled(times: Array, values: Array, rates: Array, step: float) -> Motion:
-    """Cubic Hermite interpolation at every `step` s, the last sample at or just after the end."""
+    """Interpolate by cubic Hermite splines every `step` s, with the last sample at or just after the end."""
     count = math.ceil(times[-1] / step - 1e-9)
     wanted = np.minimum(np.arange(1, count + 1) * step, times[-1])
     index = np.clip(np.searchsorted(times, wanted, side="right") - 1, 0, len(times) - 2)

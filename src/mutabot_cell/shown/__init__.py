@@ -1,1 +1,1 @@
-"""What the cell shows of itself: to pictures, and to mutabot while a test is recorded."""
+"""The cell's pictures, and the recordings that it gives mutabot during a test."""

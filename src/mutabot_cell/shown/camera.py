@@ -1,4 +1,4 @@
-"""A camera in the cell. Imports a GL backend for its first picture; nothing else in this package does.
+"""A camera in the cell. Only this module imports a GL backend, for its first picture.
 
 On a machine without a screen choose one before Python starts: `MUJOCO_GL=egl` (Debian: libegl1) or
 `MUJOCO_GL=osmesa` (Debian: libosmesa6).
@@ -26,7 +26,7 @@ _QUICK_SHADOWS = 1024
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """Where a camera stands.
+    """The viewpoint of a camera.
 
     Attributes:
         azimuth, elevation: degrees.
@@ -41,7 +41,7 @@ class View:
 
 
 class Camera:
-    """Takes pictures of a cell as it is at the time; changes nothing in it.
+    """Takes pictures of a cell as it is now, without changing it.
 
     Args:
         height, width: pixels, at most 960 by 1280.
@@ -62,7 +62,7 @@ class Camera:
         self._camera.lookat[:] = view.look_at
 
     def picture(self, traces: Sequence[Sequence[Vector3]] = ()) -> Pixels:
-        """Red, green and blue of each pixel, shape (height, width, 3), in an array of its own.
+        """Return red, green and blue of each pixel, shape (height, width, 3), as a new array.
 
         Args:
             traces: lines to draw, each through points of the world frame, m.
@@ -79,7 +79,7 @@ class Camera:
         return np.ascontiguousarray(self._renderer.render())
 
     def close(self) -> None:
-        """Let go of what GL holds for it."""
+        """Release the camera's GL resources."""
         if self._renderer is not None:
             self._renderer.close()
             self._renderer = None
@@ -98,7 +98,7 @@ class Camera:
 
 
 class TracingCamera(Camera):
-    """A camera whose pictures show where each robot's tool has been from one of them to the next."""
+    """A camera whose pictures show the path of each robot's tool since the picture before."""
 
     def __init__(
         self, simulation: Simulation, height: int, width: int, view: View, *, is_quick: bool = False
@@ -107,7 +107,7 @@ class TracingCamera(Camera):
         self._paths: list[list[Vector3]] = [[] for _ in simulation.robots]
 
     def picture(self, traces: Sequence[Sequence[Vector3]] = ()) -> Pixels:
-        """See `Camera.picture`."""
+        """Return a picture with the tools' paths; see `Camera.picture`."""
         robots = self._simulation.robots.values()
         for path, robot in zip(self._paths, robots, strict=True):
             x, y, z = self._simulation.data.site_xpos[robot.site].tolist()

@@ -1,4 +1,4 @@
-"""What touches what in the cell, by names that a person would use."""
+"""The contacts in the cell, by names that a person would use."""
 
 from __future__ import annotations
 
@@ -30,18 +30,18 @@ class Contacts:
 
     @property
     def robots(self) -> tuple[str, ...]:
-        """The names of what is part of a robot."""
+        """The names of the parts of robots."""
         return tuple(self._parts.values())
 
     def read(self) -> Iterator[tuple[str, str]]:
-        """The pairs that touch now; parts of the arm among themselves do not count."""
+        """Yield the pairs that touch now, without those within an arm."""
         for one, other in _touching(self._data) | self._asleep():
             pair = self._names[one], self._names[other]
             if pair[0] != pair[1]:
                 yield pair
 
     def _asleep(self) -> set[tuple[int, int]]:
-        """Pairs of which one sleeps and none is awake: MuJoCo does not list them; they do not change."""
+        """Return contacts of sleeping bodies, which MuJoCo does not list and which do not change."""
         states = self._data.body_awake
         if self._data.nbody_awake == states.size:
             return set()

@@ -1,4 +1,4 @@
-"""The feed of a cell: tool, boxes, fingers, contacts, and what stands around."""
+"""Feeds the recording of a test: tool, boxes, fingers, contacts, and surroundings."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _EARLY = 1e-5
 
 
 def tell_of(simulation: Simulation, scene: Scene) -> Feed:
-    """A feed of this cell; it tells something only while a test is recorded."""
+    """Return a feed of this cell, which is active only while a test is recorded."""
     feed, data = Feed(lambda: simulation.time), simulation.data
     for prefix, robot in simulation.robots.items():
         feed.pose(f"{prefix}tool", _tool_pose(data, robot))
@@ -60,7 +60,7 @@ def _tool_pose(data: mujoco.MjData, robot: Robot) -> Callable[[], list[float]]:
 
 
 def _limit_margin(simulation: Simulation, robot: Robot) -> Callable[[], float] | None:
-    """How near the joint is to its limit that is nearest to one, deg; None if no joint has any."""
+    """Return a function for the smallest distance of a joint from its limit, deg; None without limits."""
     model, places = simulation.model, simulation.data.qpos
     joints = [model.joint(robot.prefix + name).id for name in robot.model.joints]
     limited = [joint for joint in joints if model.jnt_limited[joint]]
@@ -71,7 +71,7 @@ def _limit_margin(simulation: Simulation, robot: Robot) -> Callable[[], float] |
 
 
 class _Teller:
-    """Calls a feed whenever it has something to tell, also in the middle of a stretch."""
+    """Calls a feed whenever it is due, also in the middle of a stretch."""
 
     def __init__(self, simulation: Simulation, feed: Feed) -> None:
         self._simulation, self._feed = simulation, feed

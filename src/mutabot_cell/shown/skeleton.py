@@ -1,4 +1,4 @@
-"""The lines by which a robot is drawn: from its base through its joints, and its fingers."""
+"""The lines that represent a robot: from its base through its joints, and its fingers."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _FINGER, _KNUCKLES = 0.009, 0.5
 
 
 class SkeletonLine(NamedTuple):
-    """A line.
+    """A line of a skeleton.
 
     Attributes:
         name: of what.
@@ -66,7 +66,7 @@ def skeleton_of(simulation: Simulation, robot: Robot) -> Iterator[SkeletonLine]:
 
 
 def _chain(simulation: Simulation, robot: Robot) -> list[int]:
-    """The bodies from the base to the tool point; of two at one place the latter."""
+    """Return the bodies from the base to the tool point; of two at one place the latter."""
     parents, places = simulation.model.body_parentid, simulation.data.xpos
     found = [int(simulation.model.site_bodyid[robot.site])]
     while found[-1] not in (robot.body, 0):
@@ -77,19 +77,19 @@ def _chain(simulation: Simulation, robot: Robot) -> list[int]:
 
 
 def _radii(model: mujoco.MjModel, chain: Sequence[int]) -> tuple[float, ...]:
-    """How thick the links of a chain are; the base, which has none, as the first link."""
+    """Return the radii of a chain's links; the base, which has none, gets that of the first link."""
     found = [_radius(model, body) for body in chain]
     return (found[min(1, len(found) - 1)], *found[1:])
 
 
 def _radius(model: mujoco.MjModel, body: int) -> float:
-    """How thick the largest shape of a body is."""
+    """Return the radius of the largest shape of a body."""
     first, count = int(model.body_geomadr[body]), int(model.body_geomnum[body])
     sizes = [sorted(model.geom_aabb[geom, 3:].tolist())[1] for geom in range(first, first + count)]
     return min(_THICKEST, max(_THINNEST, *sizes)) if sizes else _USUAL
 
 
 def _farthest(data: mujoco.MjData, pads: list[int]) -> int:
-    """The pad that is farthest from the first: on the other side."""
+    """Return the pad that is farthest from the first: on the other side."""
     apart = np.linalg.norm(data.geom_xpos[pads] - data.geom_xpos[pads[0]], axis=1)
     return pads[int(apart.argmax())]

@@ -1,1 +1,1 @@
-"""Watching one plain run of the suite, for ``mutabot init``."""
+"""Observes one plain run of the suite, for ``mutabot init``."""

@@ -1,4 +1,4 @@
-"""Who is called: the name by which a vocabulary would call it, and what it says about itself."""
+"""Describes called functions: the name in a vocabulary, the arguments and the documentation."""
 
 from __future__ import annotations
 
@@ -46,17 +46,17 @@ class Callee:
 
     @property
     def function(self) -> Any:
-        """What is called in the end."""
+        """The function that is called in the end."""
         return self.raw.fset if self.is_set else _function(self.raw)
 
     @functools.cached_property
     def signature(self) -> inspect.Signature | None:
-        """Its arguments without ``self``; None if nothing tells them."""
+        """The parameters without ``self``; None if they are unknown."""
         return self._told[0]
 
     @property
     def is_documented(self) -> bool:
-        """Whether only a docstring tells its arguments, as those that pybind11 writes do."""
+        """Whether only a docstring documents the parameters, as pybind11's docstrings do."""
         return self._told[1]
 
     @functools.cached_property
@@ -88,7 +88,7 @@ class Callee:
 
 
 def class_name(kind: type) -> str:
-    """``module:Qualified.Name``, as vocabularies name a class."""
+    """Return ``module:Qualified.Name``, a class's name in vocabularies."""
     return f"{kind.__module__}:{kind.__qualname__}"
 
 
@@ -98,7 +98,7 @@ def _takes_anything(signature: inspect.Signature) -> bool:
 
 
 def meant_by(kind: type, name: str) -> Callee | None:
-    """The method ``name`` of a class that a mock or a fake stands for, even if a patch hides the class."""
+    """Return method ``name`` of the class that a mock or fake replaces, even if a patch hides the class."""
     owner = next((one for one in kind.__mro__ if name in vars(one)), None)
     if owner is None or "<" in owner.__qualname__:
         return None
@@ -107,7 +107,7 @@ def meant_by(kind: type, name: str) -> Callee | None:
 
 
 def method_of(value: Any, name: str) -> Callee | None:
-    """The method or property ``name`` of an object, class or module; None if it has no name of its own."""
+    """Return the method or property ``name`` of an object, class or module; None if it has no name there."""
     if isinstance(value, ModuleType):
         return function_of(vars(value).get(name), f"{value.__name__}:{name}")
     if isinstance(value, super):
@@ -127,7 +127,7 @@ def method_of(value: Any, name: str) -> Callee | None:
 
 
 def any_method(name: str, seen: Callee | None = None) -> Callee:
-    """The method ``name`` of whatever has it; its arguments are those of one that was seen."""
+    """Return a callee for method ``name`` of any object; its arguments are those of an observed one."""
     target = f"{ANY}.{name}"
     return (
         Callee(target, None, None, "", True) if seen is None else replace(seen, target=target, stands_in=True)
@@ -135,7 +135,7 @@ def any_method(name: str, seen: Callee | None = None) -> Callee:
 
 
 def assigned_by(value: Any, name: str) -> Callee | None:
-    """The property or ``__setitem__`` that an assignment to an object calls; None if it calls nothing."""
+    """Return the property or ``__setitem__`` that an assignment to an object calls; None if there is none."""
     callee = method_of(type(value), name)
     if name == "__setitem__" or callee is None:
         return callee
@@ -144,7 +144,7 @@ def assigned_by(value: Any, name: str) -> Callee | None:
 
 
 def function_of(found: Any, spelt: str = "") -> Callee | None:
-    """A function by the name it has where it is defined, or as it is spelt."""
+    """Return a function by the name it has where it is defined, or as the program writes it."""
     if isinstance(found, MethodType):
         return method_of(found.__self__, found.__name__)
     is_wrapper = "__wrapped__" in getattr(found, "__dict__", {})  # hasattr is true of all names of mock.call
@@ -160,7 +160,7 @@ def function_of(found: Any, spelt: str = "") -> Callee | None:
 
 
 def described(callee: Callee, *, of_tests: bool, own: bool) -> WatchedCallable:
-    """A call with all that the callable says about itself."""
+    """Return a call with all that the callable's text and documentation say."""
     function, signature, owner = callee.function, callee.signature, callee.owner
     parameters = signature.parameters.values() if signature is not None else ()
     return WatchedCallable(
@@ -184,7 +184,7 @@ def described(callee: Callee, *, of_tests: bool, own: bool) -> WatchedCallable:
 
 
 def _nameable(target: str, raw: Any, owner: type | None) -> Callee | None:
-    """The callee, if its name leads to it."""
+    """Return the callee if its name leads to it; else None."""
     module, _, qualname = target.partition(":")
     if module not in sys.modules or "<" in qualname or not qualname:
         return None
@@ -220,7 +220,7 @@ def _written(annotation: Any) -> str:
 
 
 def _raised_by(function: Any) -> Iterator[str]:
-    """Exceptions that its text raises."""
+    """Yield the exceptions that the function's text raises."""
     try:
         tree = ast.parse(textwrap.dedent(inspect.getsource(function)))
     except (OSError, TypeError, SyntaxError):
@@ -236,7 +236,7 @@ def _raised_by(function: Any) -> Iterator[str]:
 
 
 def spell_signature(signature: inspect.Signature) -> str:
-    """The text that is read as this signature, bar annotations. Defaults that are no literals are ``…``."""
+    """Return the signature's text, without annotations. Defaults that are not literals are ``…``."""
     parameters = [
         parameter.replace(annotation=inspect.Parameter.empty, default=_spelt(parameter.default))
         for parameter in signature.parameters.values()
@@ -246,7 +246,7 @@ def spell_signature(signature: inspect.Signature) -> str:
 
 
 class _UnknownDefault:
-    """Prints itself as an ellipsis."""
+    """A default that is not a literal, printed as an ellipsis."""
 
     def __repr__(self) -> str:
         return "…"

@@ -1,4 +1,4 @@
-"""Whether a function only computes: then calling it, or not, changes nothing on a robot."""
+"""Determines whether a function only computes, so that its calls change nothing on a robot."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _EFFECTS = (
 
 
 def only_computes(function: Any, owner: type | None = None) -> bool:
-    """Whether the text of a function shows that it computes what it returns, and does nothing else.
+    """Return whether the text of a function shows that it only computes its result.
 
     A function whose text is not there, that returns no computed value, that writes to its arguments or calls
     what cannot be followed may do anything.
@@ -70,7 +70,7 @@ class _Function:
 
     @property
     def only_computes(self) -> bool:
-        """Whether it returns what it computes, and does nothing else."""
+        """Whether it returns what it computes, and has no other effect."""
         if self._tree is None or len(self._callers) > _DEPTH:
             return False
         nodes = list(ast.walk(self._tree))
@@ -79,7 +79,7 @@ class _Function:
         return is_computed and self._uses_arguments(nodes) and self._has_no_effect(nodes)
 
     def _uses_arguments(self, nodes: list[ast.AST]) -> bool:
-        """Whether it looks at what it is given; a stand-in for the robot does not."""
+        """Return whether it uses its arguments; a fake of the robot does not."""
         names = {node.arg for node in nodes if isinstance(node, ast.arg)} - {"self", "cls"}
         return not names or any(isinstance(node, ast.Name) and node.id in names for node in nodes)
 
@@ -92,7 +92,7 @@ class _Function:
 
     @cached_property
     def _own(self) -> set[str]:
-        """Names of objects that are made in it, and not only looked up."""
+        """The names of objects that it makes, rather than only looks up."""
         made, others = set[str](), set[str]()
         values = {id(node): node for node in ast.walk(self._tree) if isinstance(node, ast.Assign)}
         for node in values.values():
@@ -143,7 +143,7 @@ class _Function:
         return is_text and _Function.of(found, owner, self._callers).only_computes
 
     def _found(self, node: ast.expr) -> Any:
-        """What a name, or attributes of one, stand for now."""
+        """Return the object to which a name, or attributes of one, refer now."""
         if isinstance(node, ast.Name):
             return self._names.get(node.id, getattr(_builtins(), node.id, None))
         if isinstance(node, ast.Attribute):
@@ -193,7 +193,7 @@ def _is_bound(node: ast.AST) -> TypeGuard[ast.Name]:
 
 
 def _root(node: Any) -> str | None:
-    """The name at which attributes and items begin; None if they begin at another expression."""
+    """Return the name at which attributes and items begin; None if they begin with another expression."""
     while isinstance(node, ast.Attribute | ast.Subscript | ast.Starred):
         node = node.value
     return node.id if isinstance(node, ast.Name) else None

@@ -1,4 +1,4 @@
-"""Descriptions of values that need no import: plain numbers, texts and sequences by path."""
+"""Describes values without importing their types: plain numbers, texts and sequences by path."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _OF_NATIVE = {"MjData": ("ctrl",)}
 
 
 def look(values: Values, value: Any, root: str = "", *, message: bool = False) -> None:
-    """Look at one more value; the paths of a ``message`` begin with the names of its fields."""
+    """Add the description of a value; paths in a ``message`` begin with the names of its fields."""
     values.times += 1
     values.type = values.type or type_of(value)
     whole = WatchedPart(root, type=type_of(value) if message else "")
@@ -39,7 +39,7 @@ def look(values: Values, value: Any, root: str = "", *, message: bool = False) -
 
 
 def merge_part(values: Values, part: WatchedPart) -> None:
-    """Add what is known of a part to what was seen of it before."""
+    """Merge a part into what was observed of it before."""
     known = values.parts.get(part.path)
     part.count = part.count or 1
     if known is None:
@@ -55,7 +55,7 @@ def merge_part(values: Values, part: WatchedPart) -> None:
 
 
 def type_of(value: Any) -> str:
-    """``package/Name`` of a message; the name of the class of anything else."""
+    """Return ``package/Name`` for a message; the name of the class for anything else."""
     kind = type(value)
     own = getattr(kind, "_type", None)
     if isinstance(own, str) and hasattr(kind, "_slot_types"):
@@ -110,13 +110,13 @@ def _fields(value: Any, part: WatchedPart, depth: int) -> Iterator[WatchedPart]:
 
 
 def plain(value: Any) -> Any:
-    """Arrays and scalars of numeric libraries as Python has them, if they are small enough."""
+    """Return small arrays and scalars of numeric libraries as Python values."""
     is_array = hasattr(type(value), "tolist") and getattr(value, "size", 0) <= _LARGEST
     return value.tolist() if is_array else value
 
 
 def _named(value: Any, types: Mapping[str, str] | None) -> Iterator[tuple[str, str, Any]]:
-    """Step, name and value of the parts of an object that have names."""
+    """Yield step, name and value of the named parts of an object."""
     if isinstance(value, Mapping):
         for key, part in list(value.items())[:MOST_PARTS]:
             if isinstance(key, str) and '"' not in key and "]" not in key:
@@ -142,7 +142,7 @@ def _names(value: Any) -> tuple[str, ...]:
 
 
 def _is_record(value: Any) -> bool:
-    """Whether an object does little more than hold plain values, as a pose does."""
+    """Return whether an object does little more than contain plain values, as a pose does."""
     parts = vars(value).values() if hasattr(value, "__dict__") else ()
     slots = hasattr(type(value), "__slots__") and not parts
     return slots or (0 < len(parts) <= _MOST_FIELDS and all(map(_is_plain_part, parts)))
@@ -156,7 +156,7 @@ def _is_plain_part(part: Any) -> bool:
 
 
 def _message_fields(value: Any) -> Mapping[str, str] | None:
-    """The types of the fields of a message, by name; None for what is no message."""
+    """Return the types of a message's fields, by name; None if it is not a message."""
     kind = type(value)
     if hasattr(kind, "_slot_types"):
         return dict(zip(kind.__slots__, kind._slot_types, strict=True))
@@ -166,7 +166,7 @@ def _message_fields(value: Any) -> Mapping[str, str] | None:
 
 
 def _in_seconds(value: Any) -> Any:
-    """A moment or duration of a message in seconds; anything else as it is."""
+    """Return a time or duration in a message in seconds; other values unchanged."""
     for whole, rest in (("sec", "nanosec"), ("secs", "nsecs")):
         if hasattr(type(value), whole) and hasattr(value, rest):  # the type's: a mock has any attribute
             return float(getattr(value, whole) + getattr(value, rest) / 1e9)

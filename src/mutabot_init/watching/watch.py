@@ -1,4 +1,4 @@
-"""What one process sees of the calls in some files: which callables and names of a middleware, which values.
+"""Observes the calls in some files of a process: which callables, middleware names and values.
 
 Every call, and every attribute that is read, comes here first. Nothing changes that the program can see.
 """
@@ -63,7 +63,7 @@ _MOST_ELEMENTS = 255
 
 @dataclass(slots=True)
 class _Seen:
-    """A callable and what was seen of it."""
+    """A callable and its observations."""
 
     callee: Callee
     call: WatchedCallable
@@ -84,7 +84,7 @@ _UNANSWERED = frozenset({Form.PUBLISH, Form.GOAL})
 
 
 class Watch(Observer):
-    """What is seen of the calls in some files, and of what is done under names of a middleware."""
+    """The observations of the calls in some files, and of uses of middleware names."""
 
     def __init__(self, libraries: Sequence[str], is_test: Callable[[str], bool | None]) -> None:
         super().__init__(libraries, is_test)
@@ -105,7 +105,7 @@ class Watch(Observer):
         return self._wrapped(found, self._of(callee, caller), caller)
 
     def read(self, name: str, found: Any, receiver: Any, caller: CallOrigin) -> None:
-        """Note that an attribute was read from ``receiver``."""
+        """Record that an attribute was read from ``receiver``."""
         raw = inspect.getattr_static(type(receiver), name, None)
         if isinstance(raw, property | cached_property):
             seen = self._of(method_of(receiver, name), caller)
@@ -113,7 +113,7 @@ class Watch(Observer):
                 self._answer(seen, found)
 
     def assigned(self, name: str, receiver: Any, values: Sequence[Any], caller: CallOrigin) -> None:
-        """Note what is assigned to a property, or to an item of what is no plain container."""
+        """Record what is assigned to a property, or to an item of an object that is no plain container."""
         with suppress(Exception):  # as above
             seen = self._of(assigned_by(receiver, name), caller)
             if seen is not None and self._counts(seen, caller):
@@ -123,7 +123,7 @@ class Watch(Observer):
     def used(
         self, form: Form, name: str, caller: CallOrigin | None, written: Sequence[Any], *, is_callback: bool
     ) -> Callable[[Any], None] | None:
-        """Look at what is done under a name; calls that are under way lead to it."""
+        """Record a use of a name and the calls that lead to it; return a function for the value read."""
         for seen in _under_way.get():
             seen.call.leads_to_names = True
         if caller is None:
@@ -144,7 +144,7 @@ class Watch(Observer):
             look(values, value, message=True)
 
     def data(self) -> WatchedCalls:
-        """What was seen: callables, what was done under names, and what packages beside this one saw."""
+        """Return the observations: callables, uses of names, and what other packages observed."""
         calls = [self._call(seen) for seen in list(self._seen.values())]
         beside = {name: seen() for name, seen in self._beside.items()}
         return WatchedCalls(calls, list(self._uses.values()), beside)
@@ -153,13 +153,13 @@ class Watch(Observer):
         return self.is_test(callee.file) is True
 
     def _method(self, value: Any, name: str) -> Callee | None:
-        """A method by its name; looked up once for each class."""
+        """Return a method by its name; cached for each class."""
         if inspect.ismodule(value) or isinstance(value, super) or name in getattr(value, "__dict__", ()):
             return method_of(value, name)
         return self._method_of(value if isinstance(value, type) else type(value), name)
 
     def _stood_for(self, value: Any, name: str, callee: Callee | None, found: Any) -> Callee | None:
-        """What a mock or a class of the tests stands for: the robot's callable, or any of its name."""
+        """Return what a mock or fake replaces: the robot's callable, or any callable with its name."""
         if _is_mock(value):
             spelt = re.split(r"\W", value._extract_mock_name())[0]
             kind = vars(value).get("_spec_class") or self._only_class(spelt, name)
@@ -175,7 +175,7 @@ class Watch(Observer):
         return robots or any_method(name, callee)
 
     def _of(self, callee: Callee | None, caller: CallOrigin) -> _Seen | None:
-        """What this side, program or tests, has seen of a callable; None for one that is no robot's."""
+        """Return this side's observations of a callable; None if it is not a robot's."""
         if callee is None:
             return None
         key = (callee.target, caller.is_test, callee.is_set)
@@ -223,7 +223,7 @@ class Watch(Observer):
             seen.call.problem = text
 
     def _counts(self, seen: _Seen, caller: CallOrigin) -> bool:
-        """Count a call; whether its values are to be looked at."""
+        """Count a call; return whether its values are to be recorded."""
         if seen.call.of_tests and (seen.call.own or self._is_of_tests(seen.callee)):
             return False
         where = f"{caller.file}:{caller.line}"
@@ -233,7 +233,7 @@ class Watch(Observer):
     def _arguments(
         self, seen: _Seen, args: tuple[Any, ...], kwargs: dict[str, Any], instance: Any
     ) -> dict[str, Any]:
-        """Look at the arguments of a call, and return those that it is given under a known name."""
+        """Record the arguments of a call, and return those that it is given under a known name."""
         values, signature, call = dict(kwargs), seen.callee.signature, seen.call
         given = {*kwargs}
         if signature is None:
@@ -266,7 +266,7 @@ class Watch(Observer):
                 look(command.result, result)
 
     def _call(self, seen: _Seen) -> WatchedCallable:
-        """Return a callable with what it raised on either side: tests make robots refuse."""
+        """Return a callable with the exceptions it raised on either side: tests make robots refuse."""
         sides = (self._seen.get((seen.call.target, of_tests, seen.call.is_set)) for of_tests in (False, True))
         raised = dict.fromkeys(
             name for side in (seen, *sides) if side is not None for name in side.call.raised
@@ -276,7 +276,7 @@ class Watch(Observer):
 
 @contextmanager
 def _making(seen: _Seen) -> Iterator[None]:
-    """Note that a call is under way, and what it raises."""
+    """Record that a call is in progress, and what it raises."""
     token = _under_way.set((*_under_way.get(), seen))
     try:
         yield
@@ -291,7 +291,7 @@ def _making(seen: _Seen) -> Iterator[None]:
 
 
 def _only_class(name: str, method: str) -> type | None:
-    """Return the class that a mock of this name stands for: the only one of the name with such a method."""
+    """Return the class that a mock with this name replaces: the only one so named with such a method."""
     kinds = {
         id(kind): kind
         for module in list(sys.modules.values())
@@ -302,7 +302,7 @@ def _only_class(name: str, method: str) -> type | None:
 
 
 def _limits(value: Any, instance: Any) -> list[list[float]] | None:
-    """Least and greatest values of an action, as the environment or the simulated model tells them."""
+    """Return the limits of an action, as the environment or the simulated model gives them."""
     space: Any = getattr(instance, "action_space", None)
     if hasattr(space, "low") and hasattr(space, "high"):
         pairs = zip(plain(space.low), plain(space.high), strict=True)
@@ -312,7 +312,7 @@ def _limits(value: Any, instance: Any) -> list[list[float]] | None:
 
 
 def _command(seen: _Seen, instance: Any, values: Mapping[str, Any]) -> Command | None:
-    """Which command a call is, by a node, register or name that tells it apart; None if nothing does."""
+    """Return a call's command, by the node, register or name that identifies it; None if nothing does."""
     call = seen.call
     if seen.has_no_commands:
         return None
@@ -340,7 +340,7 @@ _CallFacts = tuple[str, str, Mapping[str, Any]]
 
 
 def _told_by(call: WatchedCallable, instance: Any, values: Mapping[str, Any]) -> _CallFacts:
-    """What tells a command apart; an empty path if nothing does."""
+    """Return what identifies a command; an empty path if nothing does."""
     is_item = call.name == "__setitem__"
     if not (is_item or call.is_set or _TALKS.search(call.name)):
         return "", "", {}
@@ -363,12 +363,12 @@ def _tells(name: str) -> bool:
 
 
 def _is_address(key: Any) -> bool:
-    """Whether a key names a tag or an object, rather than an element of a list."""
+    """Return whether a key names a tag or an object, rather than an element of a list."""
     return isinstance(key, str) or (type(key) is int and key > _MOST_ELEMENTS)
 
 
 def _pair(path: str, value: Any) -> tuple[str, str, Any] | None:
-    """The first pair of a name and what is written under it: its path, the name and the value."""
+    """Return the first pair of a name and a value written under it: its path, the name and the value."""
     if not isinstance(value, tuple | list) or not value:
         return None
     if len(value) == 2 and isinstance(value[0], str) and not isinstance(value[1], str | tuple):
@@ -377,7 +377,7 @@ def _pair(path: str, value: Any) -> tuple[str, str, Any] | None:
 
 
 def _prints_itself(value: Any) -> bool:
-    """Whether an object prints as a name of its own, as a node does by its id."""
+    """Return whether an object is printed as a distinct name, as a node is by its id."""
     kind: Any = type(value)
     prints = kind.__str__ is not object.__str__ or kind.__repr__ is not object.__repr__
     if value is None or not prints or not hasattr(value, "__dict__") or is_dataclass(value):
@@ -387,11 +387,11 @@ def _prints_itself(value: Any) -> bool:
 
 
 def _is_mock(value: Any) -> bool:
-    """Whether a value is a mock, whatever it says that it is."""
+    """Return whether a value is a mock, whatever class it claims to have."""
     module = sys.modules.get("unittest.mock")
     return module is not None and issubclass(type(value), module.NonCallableMock)
 
 
 def _is_no_robot(top: str) -> bool:
-    """Whether nothing of a top-level package is to be described as a call."""
+    """Return whether nothing of a top-level package is a call of a robot."""
     return top in sys.stdlib_module_names or top in _NO_ROBOTS or top.startswith("pytest")

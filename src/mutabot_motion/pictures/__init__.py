@@ -1,1 +1,1 @@
-"""Videos of original and mutant beside each other: filmed, or drawn."""
+"""Videos of original and mutant side by side: filmed, or drawn."""

@@ -1,4 +1,4 @@
-"""A recording drawn: from above and from the side, where a simulator draws nothing itself."""
+"""Draws a recording from above and from the side, for simulators that render no pictures."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _VIEWS = (("from above", 0, 1), ("from the side", 0, 2))
 
 @dataclass(frozen=True, slots=True)
 class _PixelView:
-    """One view: what it shows goes to pixels."""
+    """A view, and its conversion to pixels."""
 
     right: int
     up: int
@@ -67,7 +67,7 @@ class Drawn:
             letters(14).draw(draw, (_WIDTH - _EDGE, 6 + 18 * number), name, _colour(number), "ra")
 
     def at(self, time: float) -> Image.Image:
-        """How it was at a time, s: paths until then, and where things were."""
+        """Return the picture at a time, s: the paths until then, and the things' positions."""
         image = self._empty.copy()
         draw = ImageDraw.Draw(image)
         for line, view in product(self._lines, self._views):
@@ -86,7 +86,7 @@ class Drawn:
 def _draw_line(
     draw: ImageDraw.ImageDraw, view: _PixelView, row: Sequence[float], radii: Sequence[float]
 ) -> None:
-    """An arm, link by link."""
+    """Draw an arm link by link."""
     points = [view.pixel(row[start : start + 3]) for start in range(0, len(row), 3)]
     for number, ends in enumerate(pairwise(points)):
         draw.line(ends, fill=_ARM, width=max(2, round(2 * view.scale * radii[number])))
@@ -100,7 +100,7 @@ def _colour(number: int) -> str:
 
 
 def _room(recordings: Sequence[RecordedPaths]) -> list[tuple[float, float]]:
-    """Along each axis, between which coordinates anything is, m; blocks only beside what moves."""
+    """Return the range of coordinates along each axis, m; blocks count only near what moves."""
     points = [
         point
         for recording in recordings
@@ -115,7 +115,7 @@ def _room(recordings: Sequence[RecordedPaths]) -> list[tuple[float, float]]:
 
 
 def _views(room: Sequence[tuple[float, float]]) -> list[_PixelView]:
-    """Both views in one scale."""
+    """Return both views in one scale."""
     spans = [most - least for least, most in room]
     wide, high = _WIDTH - 2 * _EDGE, _HEIGHT / 2 - _EDGE - _LABEL
     scale = min(wide / spans[0], high / spans[1], high / spans[2])
@@ -144,7 +144,7 @@ def _draw_thing(
     size: Sequence[float] | None,
     colour: str,
 ) -> None:
-    """A box by its edges, as it is turned; anything else as a dot. ``row``: as in a track."""
+    """Draw a box by its edges, rotated; anything else as a dot. ``row``: as in a track."""
     place, turn = row[:3], row[3:] or (1.0, 0.0, 0.0, 0.0)
     if size is None:
         x, y = view.pixel(place)
@@ -160,7 +160,7 @@ def _draw_thing(
 
 
 def _rotated(turn: Sequence[float], vector: Sequence[float]) -> list[float]:
-    """A vector, rotated by a unit quaternion w, x, y, z."""
+    """Return a vector rotated by a unit quaternion w, x, y, z."""
     w, *axis = turn
     twice = [2.0 * part for part in _cross(axis, vector)]
     return [v + w * t + c for v, t, c in zip(vector, twice, _cross(axis, twice), strict=True)]

@@ -1,4 +1,4 @@
-"""A film: the pictures of one test, written by its process and read when that has ended.
+"""A film: the pictures of one test, written by its process and read after that has ended.
 
 Each picture is kept as its difference from the one before, compressed: most of a work cell stands still.
 """
@@ -18,7 +18,7 @@ _HEAD = struct.Struct("<dIII")
 
 
 class FilmWriter:
-    """Takes pictures down, until it is closed or its process ends.
+    """Writes pictures to a film until it is closed or its process ends.
 
     Attributes:
         count: how many there are.
@@ -30,7 +30,7 @@ class FilmWriter:
         self.count = 0
 
     def add(self, time: float, picture: Any) -> None:
-        """Add one. Raises ValueError for what is no picture, TypeError for what holds no numbers.
+        """Add a picture. Raises ValueError for an invalid one, TypeError for one without numbers.
 
         Args:
             time: s.
@@ -45,12 +45,12 @@ class FilmWriter:
         self.count += 1
 
     def close(self) -> None:
-        """Close the film: no further pictures are added."""
+        """Close the film; no further pictures are added."""
         os.close(self._file)
 
 
 def _pixels_of(picture: Any) -> tuple[int, int, bytes]:
-    """Height, width and the pixels of a picture; raises as ``FilmWriter.add``."""
+    """Return height, width and pixels of a picture. Raises the errors of ``FilmWriter.add``."""
     view = memoryview(picture)
     if view.ndim != 3 or view.shape is None or view.shape[2] not in (3, 4) or view.format != "B":
         raise ValueError(
@@ -70,7 +70,7 @@ def _pixels_of(picture: Any) -> tuple[int, int, bytes]:
 
 
 def _differing(pixels: bytes, before: bytes) -> bytes:
-    """What differs from a picture of the same size, bit by bit; applied twice it gives the picture back."""
+    """Return the bitwise difference of two pictures of the same size; applied twice it restores a picture."""
     if len(pixels) != len(before):
         return pixels
     both = int.from_bytes(pixels, "little") ^ int.from_bytes(before, "little")
@@ -79,7 +79,7 @@ def _differing(pixels: bytes, before: bytes) -> bytes:
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """One picture.
+    """A picture.
 
     Attributes:
         time: s, on the same clock as the recording of the test.
@@ -94,7 +94,7 @@ class Picture:
 
 
 class Film:
-    """A film that was written; of one whose process was killed it has the pictures that are whole.
+    """A film that was written; if its process was killed, it has only the complete pictures.
 
     Args:
         path: its file. One that does not exist has no pictures.
@@ -105,12 +105,12 @@ class Film:
 
     @property
     def times(self) -> list[float]:
-        """When its pictures were taken, s."""
+        """The times of its pictures, s."""
         return [head[0] for head, _ in self._heads()]
 
     @property
     def end(self) -> float:
-        """When its last picture was taken so far, s; 0 without any."""
+        """The time of its last picture so far, s; 0 without any."""
         return max(self.times, default=0.0)
 
     def pictures(self) -> Iterator[Picture]:
@@ -121,7 +121,7 @@ class Film:
             yield Picture(at, height, width, before)
 
     def _heads(self) -> Iterator[tuple[tuple[float, int, int, int], BinaryIO]]:
-        """What stands before each picture, and the file at its beginning."""
+        """Yield the header of each picture, and the file, positioned at its start."""
         if not self._path.is_file():
             return
         length = self._path.stat().st_size

@@ -1,4 +1,4 @@
-"""A frame of a video: both sides beside each other, what each is, the time, and the moment of the fault."""
+"""A video frame: both sides with their labels, the time, and the moment of the fault."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def _speed(end: float) -> float:
 
 
 class Shots(Protocol):
-    """The pictures of one side.
+    """The interface of one side's pictures.
 
     Attributes:
         end: the last moment that they show, s.
@@ -44,11 +44,11 @@ class Shots(Protocol):
     def end(self) -> float: ...
 
     def at(self, time: float) -> Image.Image:
-        """How it looked at a time, s: from call to call the same or a later one."""
+        """Return the picture at a time, s; later calls must have the same or a later time."""
 
 
 class Filmed:
-    """What a simulator's camera saw. Raises ValueError if that is nothing."""
+    """The pictures of a simulator's camera. Raises ValueError if there are none."""
 
     def __init__(self, film: Film) -> None:
         times = film.times
@@ -60,7 +60,7 @@ class Filmed:
         self._shown = self._image(self._next)
 
     def at(self, time: float) -> Image.Image:
-        """See ``Shots``. Before its first picture it shows that."""
+        """Return the picture at a time, s, or the first one before that; see ``Shots``."""
         latest = None
         while self._next is not None and self._next.time <= time + _SLACK:
             latest, self._next = self._next, next(self._coming, None)
@@ -101,7 +101,7 @@ class Frames:
         self._draw_rail(ImageDraw.Draw(self._empty))
 
     def at(self, time: float) -> Image.Image:
-        """The frame of a moment, s; from call to call the same or a later one."""
+        """Return the frame at a time, s; later calls must have the same or a later time."""
         frame = self._empty.copy()
         for number, side in enumerate(self._sides):
             frame.paste(self._fitted(side.at(time)), (self._left(number), _TITLE))
@@ -118,7 +118,7 @@ class Frames:
         return _MARGIN + number * (self._width + _MARGIN)
 
     def _fitted(self, image: Image.Image) -> Image.Image:
-        """A picture of another size is shown as large as it can be."""
+        """Return a picture of another size, scaled to fit."""
         size = self._width, self._height
         return image if image.size == size else ImageOps.pad(image, size, Image.Resampling.BILINEAR, _GROUND)
 

@@ -1,4 +1,4 @@
-"""Text in pictures, with whatever fonts the machine has."""
+"""Text in pictures, with the fonts that the machine has."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _SPOKEN = {
 
 @dataclass(frozen=True)
 class Letters:
-    """A font in a size.
+    """A font in one size.
 
     Attributes:
         is_whole: whether it has more than the letters of English.
@@ -44,7 +44,7 @@ class Letters:
     is_whole: bool
 
     def width(self, text: str) -> float:
-        """How wide a text is, pixels."""
+        """Return the width of a text, in pixels."""
         found: float = self.font.getlength(self.known(text))
         return found
 
@@ -56,7 +56,7 @@ class Letters:
         fill: str | tuple[int, ...],
         anchor: str = "la",
     ) -> None:
-        """Write a text; ``anchor`` as Pillow has it."""
+        """Draw a text; ``anchor`` is Pillow's."""
         onto.text(place, self.known(text), fill=fill, font=self.font, anchor=anchor)
 
     def lines(self, text: str, width: float, most: int) -> list[str]:
@@ -79,13 +79,13 @@ class Letters:
         return f"{line[: max(0, room - 1)].rstrip()} …"
 
     def known(self, text: str) -> str:
-        """The text with the signs that the font has."""
+        """Return the text reduced to the characters in the font."""
         return text if self.is_whole else letters_of_english(text)
 
 
 @lru_cache
 def letters(size: int) -> Letters:
-    """A font in a size, pixels."""
+    """Return a font in this size, in pixels."""
     from PIL import ImageFont  # noqa: PLC0415  # an extra
 
     for name in _FONTS:
@@ -97,7 +97,7 @@ def letters(size: int) -> Letters:
 
 
 def letters_of_english(text: str) -> str:
-    """A text for fonts that have hardly any other sign."""
+    """Return a text in ASCII, for fonts with hardly any other characters."""
     for sign, spoken in _SPOKEN.items():
         text = text.replace(sign, spoken)
     plain = unicodedata.normalize("NFKD", text)

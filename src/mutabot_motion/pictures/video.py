@@ -1,4 +1,4 @@
-"""Videos, filmed or drawn: H.264 in MP4, which browsers play, or GIF, which texts such as pull requests show.
+"""Writes videos, filmed or drawn: H.264 in MP4 for browsers, or GIF for texts such as pull requests.
 
 Needs PyAV and Pillow: ``mutabot[video]``.
 
@@ -34,7 +34,7 @@ _GIF_RATE, _GIF_MOST, _GIF_WIDTH = 10, 200, 720
 def show(
     file: Path, shown: Shown, films: tuple[Film, Film], problems: Sequence[str], progress: Progress
 ) -> list[str]:
-    """Write a video of both films; where pictures are missing, of both paths, drawn.
+    """Write a video of both films; where pictures are missing, of both recordings, drawn.
 
     Args:
         films: of the original and of the mutant.
@@ -78,7 +78,7 @@ def _why_no_pictures(problems: Sequence[str]) -> str:
 
 
 def write_video(file: Path, frames: Frames, progress: Progress) -> float:
-    """Write a video; of one that is not finished nothing is left. Returns how long it is, s."""
+    """Write a video, and remove it if it is not finished. Return its duration, s."""
     count = 0
     frame: Any = av.VideoFrame
     with written_whole(file) as part, av.open(str(part), "w", options={"movflags": "+faststart"}) as video:
@@ -96,7 +96,7 @@ def write_video(file: Path, frames: Frames, progress: Progress) -> float:
 
 
 def write_gif(file: Path, frames: Frames, progress: Progress) -> float:
-    """Write an animation that is repeated; of one that is not finished nothing is left.
+    """Write an animation that repeats, and remove it if it is not finished. Return its duration, s.
 
     A long one has fewer pictures per second. Returns how long it is, s.
     """
@@ -117,13 +117,13 @@ def write_gif(file: Path, frames: Frames, progress: Progress) -> float:
 
 
 def _indexed(frame: Image.Image) -> Image.Image:
-    """A frame as small as a GIF shows it, in colours of its own."""
+    """Return a frame in the size of the GIF, with a colour table of its own."""
     frame.thumbnail((_GIF_WIDTH, _GIF_WIDTH))
     return frame.quantize(128, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
 
 
 def _moments(end: float, speed: float) -> Iterator[float]:
-    """The moment that each frame shows, s."""
+    """Yield the time that each frame shows, s."""
     shown = int(end / speed * RATE) + 1
     yield from (number * speed / RATE for number in range(shown))
     yield from (end for _ in range(int(_HELD * RATE)))

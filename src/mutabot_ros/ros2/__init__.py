@@ -1,4 +1,4 @@
-"""ROS 2: what nodes do through rclpy.
+"""ROS 2: intercepts what nodes do through rclpy.
 
 One file per thing that a node has: topics, services, actions, parameters, times. Names are the resolved ones,
 which rclpy knows once a publisher, subscription or client is there.
@@ -26,7 +26,7 @@ _HOOKS = (hook_nodes, hook_topics, hook_services, hook_actions, hook_parameters,
 
 
 def hook(messages: Names) -> Callable[[], None]:
-    """Let what nodes of this process do pass by; returns what takes the hooks away."""
+    """Intercept what the nodes of this process do; return a function that removes the hooks."""
     patches = Patches()
     for put in _HOOKS:
         put(patches, messages)
@@ -35,5 +35,5 @@ def hook(messages: Names) -> Callable[[], None]:
 
 
 def check(operation: Operation) -> Iterator[Finding]:
-    """What of an operation does not fit the installed definition of its type, or the one the program uses."""
+    """Yield what in an operation does not fit the installed definition of its type, or the program's type."""
     return TYPES.look_at(operation)

@@ -1,4 +1,4 @@
-"""Actions of ROS 2: goals, their feedback, their results, and cancelling them."""
+"""Intercepts actions of ROS 2: goals, feedback, results, and cancelling."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _ENDINGS = {5: "CANCELED", 6: "ABORTED"}
 
 
 def hook(patches: Patches, messages: Names) -> None:
-    """Stand around clients of actions as soon as the program imports them."""
+    """Hook action clients as soon as the program imports them."""
     actions = _Actions(messages)
 
     def imported(module: Any) -> None:
@@ -154,7 +154,7 @@ class _Actions:
 
 
 def _with(message: Any, field: str, value: Any) -> Any:
-    """The message itself if the field has that value already, else a copy with it."""
+    """Return the message if its field has that value, else a copy in which it has."""
     if getattr(message, field) is value:
         return message
     copied = copy.copy(message)

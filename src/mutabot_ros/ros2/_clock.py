@@ -1,4 +1,4 @@
-"""Time of a node: waiting in it, having something done later, and letting it jump.
+"""The time of a node: waiting, calling something later, and clock jumps.
 
 A node that follows ``/clock`` waits in that time. Where it stands still meanwhile, as in a cell whose time
 passes only while something is done, the wait is over when as much of ours has passed: nobody waits forever.
@@ -23,7 +23,7 @@ _NANO = 1e9
 
 
 class _Moved:
-    """By how much the clocks of this process are off, in nanoseconds."""
+    """The offset of this process's clocks, in nanoseconds."""
 
     by = 0
 
@@ -35,7 +35,7 @@ _moved = _Moved()
 
 
 def hook(patches: Patches, messages: Names) -> None:
-    """Stand around the clocks of nodes."""
+    """Hook the clocks of nodes."""
     clock: Any = import_module("rclpy.clock")
     steady = import_module("rclpy.clock_type").ClockType.STEADY_TIME
 
@@ -50,12 +50,12 @@ def hook(patches: Patches, messages: Names) -> None:
 
 
 def jump(seconds: float) -> None:
-    """Let the clocks of this process jump; negative is back."""
+    """Move the clocks of this process by seconds; negative values move them back."""
     _moved.by += round(seconds * _NANO)
 
 
 def sleep(node: Any) -> Callable[[float], Awaitable[None]]:
-    """How a plain call of a node waits."""
+    """Return how a plain call of a node waits."""
 
     async def slept(seconds: float) -> None:
         _wait(node, seconds)
@@ -64,7 +64,7 @@ def sleep(node: Any) -> Callable[[float], Awaitable[None]]:
 
 
 def pause(node: Any) -> Callable[[float], Awaitable[None]]:
-    """How a coroutine of a node waits."""
+    """Return how a coroutine of a node waits."""
 
     async def paused(seconds: float) -> None:
         await Pause(lambda action: later(node)(seconds, action))
@@ -73,7 +73,7 @@ def pause(node: Any) -> Callable[[float], Awaitable[None]]:
 
 
 def later(node: Any) -> Callable[[float, Callable[[], object]], None]:
-    """How a node has something done later: by its executor, if one spins it."""
+    """Return how a node calls something later: by its executor, if one spins it."""
 
     def done_later(seconds: float, action: Callable[[], object]) -> None:
         def wait() -> None:

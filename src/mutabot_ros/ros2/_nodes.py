@@ -1,4 +1,4 @@
-"""Nodes of ROS 2: which of them has what, and where a call of one of them is."""
+"""Nodes of ROS 2: the entities that belong to each, and the sites of their calls."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _NAME, _NODE = "_mutabot_name", "_mutabot_node"
 
 
 class _ThreadState(threading.local):
-    """What this thread is doing: making something of rclpy's own, or something of a node."""
+    """State of a thread: whether it creates entities of rclpy itself or of a node."""
 
     making = 0
     node: Any = None
@@ -31,7 +31,7 @@ _now = _ThreadState()
 
 
 def hook(patches: Patches, messages: Names) -> None:
-    """Note nodes as they come."""
+    """Record nodes as they are created."""
     patches.put(import_module("rclpy.node").Node, "__init__", partial(_made, messages))
 
 
@@ -52,7 +52,7 @@ def own() -> Iterator[None]:
 
 
 def is_own() -> bool:
-    """Whether what is made now is rclpy's own: parts of a node, or of a wait."""
+    """Return whether entities created now belong to rclpy itself: parts of a node, or of a wait."""
     return _now.making > 0
 
 
@@ -67,19 +67,19 @@ def of(node: Any) -> Iterator[None]:
 
 
 def claim(thing: Any, node: Any = None) -> None:
-    """Note to which node something belongs: this one, or the one that makes it now."""
+    """Record the node to which an entity belongs: this one, or the one that is creating it."""
     found = node if node is not None else _now.node
     if found is not None:
         setattr(thing, _NODE, found)
 
 
 def node_of(thing: Any) -> Any:
-    """The node that something belongs to; None if that is not known."""
+    """Return the node to which something belongs; None if it is unknown."""
     return getattr(thing, _NODE, None)
 
 
 def name_of(node: Any) -> str | None:
-    """The resolved name of a node; None without one."""
+    """Return the resolved name of a node; None without a node."""
     if node is None:
         return None
     found: str | None = getattr(node, _NAME, None)
@@ -90,7 +90,7 @@ def name_of(node: Any) -> str | None:
 
 
 def topic_of(thing: Any, ask: Callable[[], str]) -> str:
-    """The resolved name of a publisher, subscription or client; asked once."""
+    """Return the resolved name of a publisher, subscription or client; it is cached."""
     found: str | None = getattr(thing, _NAME, None)
     if found is None:
         found = ask()

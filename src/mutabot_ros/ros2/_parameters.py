@@ -1,4 +1,4 @@
-"""Parameters of nodes, with the defaults of their declarations."""
+"""Intercepts parameters of nodes, with the defaults of their declarations."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from . import _nodes
 
 
 def hook(patches: Patches, messages: Names) -> None:
-    """Stand around the readings of parameters."""
+    """Hook the functions that read parameters."""
     parameters = _Parameters(messages)
     node: Any = import_module("rclpy.node").Node
     patches.put(node, "declare_parameter", parameters.declare)
@@ -57,7 +57,7 @@ class _Parameters:
         return {name: self._read(node, whole + name, one) for name, one in original(node, prefix).items()}
 
     def _note(self, node: Any, name: str, value: Any) -> None:
-        """Note the value that a declaration gives; a type is not a value."""
+        """Record the value that a declaration gives; a type is no value."""
         if value is not None and not isinstance(value, import_module("rclpy.parameter").Parameter.Type):
             self._defaults.setdefault(node, {})[name] = value
 

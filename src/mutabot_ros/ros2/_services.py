@@ -1,4 +1,4 @@
-"""Services of ROS 2: their clients, with and without waiting."""
+"""Intercepts services of ROS 2: their clients, with and without waiting."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _SLICE = 0.1
 
 
 def hook(patches: Patches, messages: Names) -> None:
-    """Stand around clients of services."""
+    """Hook service clients."""
     services = _Services(messages)
     client: Any = import_module("rclpy.client").Client
     patches.put(import_module("rclpy.node").Node, "create_client", services.make)
@@ -82,7 +82,7 @@ class _Services:
 
 
 async def never() -> Any:
-    """An answer that never comes."""
+    """Wait for ever, in place of an answer that never arrives."""
     await Never()
 
 

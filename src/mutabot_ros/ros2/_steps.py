@@ -1,4 +1,4 @@
-"""Coroutines around futures of rclpy: what is awaited is a future or a pause, and nothing else runs them.
+"""Runs coroutines around rclpy's futures: they can only await a future or a pause.
 
 A call without waiting (``call_async``) gives the program a future at once. What a mutant does around it is a
 coroutine. It takes its first step at once, as the call itself would, and each further one as soon as what it
@@ -43,7 +43,7 @@ class FutureAnswer:
 
 
 class Pause:
-    """Awaits that an action is done; ``begin`` is given what to do then."""
+    """Awaits the end of an action; ``begin`` gets the function to call then."""
 
     def __init__(self, begin: Callable[[Callable[[], object]], None]) -> None:
         self._begin = begin
@@ -52,12 +52,12 @@ class Pause:
         yield self
 
     def then(self, go_on: Callable[[Any], None]) -> None:
-        """Go on when it is over."""
+        """Continue when the action is over."""
         self._begin(lambda: go_on(None))
 
 
 class Never:
-    """Awaits what never comes."""
+    """Awaits something that never happens."""
 
     def __await__(self) -> Generator[Any, None, None]:
         while True:
@@ -68,12 +68,12 @@ class Never:
 
 
 def future_of(coroutine: Coroutine[Any, Any, Any]) -> Any:
-    """A future of rclpy that ends as a coroutine does; raises what the coroutine raises at its first step."""
+    """Return a future of rclpy with a coroutine's result; raises what the coroutine's first step raises."""
     return _Driven(coroutine).begin()
 
 
 def inner_of(future: Any) -> Any:
-    """Return rclpy's future behind one of mutabot's; any other future itself."""
+    """Return rclpy's future inside one of mutabot's; any other future as it is."""
     return getattr(future, _INNER, future)
 
 

@@ -1,4 +1,4 @@
-"""Timers and rates of nodes. A timer is named after its callback, a rate after its node."""
+"""Intercepts timers and rates of nodes. A timer is named after its callback, a rate after its node."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ._topics import as_called
 
 
 def hook(patches: Patches, messages: Names) -> None:
-    """Stand around timers and rates."""
+    """Hook timers and rates."""
     times = _NodeTimers(messages)
     node: Any = import_module("rclpy.node").Node
     patches.put(node, "create_timer", times.make_timer)

@@ -1,4 +1,4 @@
-"""Topics of ROS 2: publishers and subscriptions, with their quality of service in common words."""
+"""Intercepts topics of ROS 2: publishers and subscriptions, with their quality of service."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _WRAPPED = "_mutabot_wrapped"
 
 
 def hook(patches: Patches, messages: Names) -> None:
-    """Stand around publishers and subscriptions."""
+    """Hook publishers and subscriptions."""
     node: Any = import_module("rclpy.node").Node
     topics = _Topics(messages)
     patches.put(node, "create_publisher", topics.advertise)
@@ -32,7 +32,7 @@ def hook(patches: Patches, messages: Names) -> None:
 
 
 def _hook_callback(patches: Patches, kind: Any, topics: _Topics) -> None:
-    """Callbacks are kept as the program gave them, and an executor gets ours."""
+    """Keep callbacks as the program gave them, but let executors call ours."""
     original = kind.callback
 
     def set_callback(subscription: Any, callback: Any) -> None:
@@ -134,7 +134,7 @@ class _Topics:
         return handler(publish, None, (msg,), {}, _nodes.where(node))
 
     def around(self, subscription: Any, callback: Any) -> Any:
-        """What an executor calls in the place of a subscription's callback."""
+        """Return what an executor calls instead of a subscription's callback."""
         node = _nodes.node_of(subscription)
         if node is None or subscription.raw:
             return callback
@@ -191,17 +191,17 @@ class _Topics:
 
 
 class _Nothing(Exception):  # noqa: N818  (no error: there is no message)
-    """Marks that no message came in time."""
+    """Marks that no message has arrived in time."""
 
 
 def _is_kept(qos_profile: Any) -> bool:
-    """Whether what is received may be what the publisher keeps for late subscribers."""
+    """Return whether a received message may be one kept by the publisher for late subscribers."""
     durability = getattr(qos_profile, "durability", None)
     return getattr(durability, "name", None) == "TRANSIENT_LOCAL"
 
 
 def _first(message: Any, otherwise: Callable[[], Any]) -> Callable[[], Any]:
-    """A message that is there already, and then others."""
+    """Return a function that returns an existing message first, and then others."""
     there = [message]
 
     def wait() -> Any:
@@ -211,7 +211,7 @@ def _first(message: Any, otherwise: Callable[[], Any]) -> Callable[[], Any]:
 
 
 def as_called(callback: Any, ours: Callable[..., Any]) -> Any:
-    """``ours`` in the form of a callback of the program's: a coroutine function if that is one."""
+    """Return ``ours`` in the form of the program's callback: as a coroutine function if that is one."""
     if not inspect.iscoroutinefunction(callback):
         return _named_like(callback, ours)
 
@@ -236,7 +236,7 @@ _NANO = 1e9
 
 
 def qualities(qos: Any) -> dict[str, Any] | None:
-    """What a profile, or the depth of a queue that stands for one, says; None for neither.
+    """Return the settings of a profile, or of a queue depth that stands for one; None for neither.
 
     A deadline of 0 is none. Policies that the middleware is to choose keep their name.
     """
@@ -253,7 +253,7 @@ def qualities(qos: Any) -> dict[str, Any] | None:
 
 
 def changed(qos: Any, changes: dict[str, Any]) -> Any:
-    """A profile with other values; the very one if there are none."""
+    """Return a profile with other values; the same object if there are no changes."""
     if not changes:
         return qos
     rclpy_qos: Any = import_module("rclpy.qos")

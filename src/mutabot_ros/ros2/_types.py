@@ -1,4 +1,4 @@
-"""Types of ROS 2: a class for each message, service and action; that of a service or action has its parts."""
+"""The types of ROS 2: a class for each message, service and action; the latter two contain their parts."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from mutabot_ros._types import Types
 
 
 class Ros2Types(Types):
-    """See ``Types``; parts are attributes of classes."""
+    """The message types of ROS 2 (see ``Types``); parts are attributes of classes."""
 
     written: ClassVar[Mapping[Form, tuple[str, str]]] = {
         Form.PUBLISH: ("msg", ""),

@@ -1,4 +1,4 @@
-"""What stands before the callbacks and clocks of nodes of ROS 2 that are disturbed."""
+"""Intercepts the callbacks and clocks of disturbed ROS 2 nodes."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ _OWN = ("/clock", "/parameter_events", "/rosout")
 
 
 def topic_of(subscription: Any) -> str | None:
-    """The topic of a subscription; None for one of rclpy's own. Raises LookupError for what is destroyed."""
+    """Return the topic of a subscription; None for rclpy's own. Raises LookupError if it is destroyed."""
     topic: str = _of_living(lambda: subscription.topic_name)
     return None if _nodes.is_own() or topic in _OWN or subscription.raw else topic
 
 
 def listen(subscription: Any, deliver: Callable[[Any, Callable[[Any], Any]], Any]) -> None:
-    """Let something stand before the callback of a subscription."""
+    """Intercept the callback of a subscription."""
     callback = subscription._callback  # as the program gave it
 
     def received(message: Any, *more: Any) -> Any:
@@ -30,18 +30,18 @@ def listen(subscription: Any, deliver: Callable[[Any, Callable[[Any], Any]], Any
 
 
 def later(subscription: Any, seconds: float, action: Callable[[], object]) -> None:
-    """Have something done later, in the time of the subscription's node, by its executor."""
+    """Call something later, in the time of the subscription's node, by its executor."""
     _clock.later(_nodes.node_of(subscription))(seconds, action)
 
 
 def name_of(node: Any) -> str:
-    """The resolved name of a node. Raises LookupError for one that is destroyed."""
+    """Return the resolved name of a node. Raises LookupError if it is destroyed."""
     name: str = _of_living(node.get_fully_qualified_name)
     return name
 
 
 def run_apart(node: Any, read: Callable[[int], int]) -> None:
-    """Let the clock of a node say another time, in nanoseconds."""
+    """Let a node's clock show another time, in nanoseconds."""
     clock = node.get_clock()
     now = clock.now
 
@@ -53,7 +53,7 @@ def run_apart(node: Any, read: Callable[[int], int]) -> None:
 
 
 def _of_living(ask: Callable[[], Any]) -> Any:
-    """Ask something of an entity. Raises LookupError for one that is destroyed, as of an earlier test."""
+    """Ask something of an entity. Raises LookupError if it is destroyed, as one of an earlier test is."""
     try:
         return ask()
     except import_module("rclpy.exceptions").InvalidHandle as error:

@@ -1,4 +1,4 @@
-"""Campaigns over the simulation: which projects use it, and how their tests are run over it."""
+"""Campaigns over the simulation: which projects use it, and how their tests run over it."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Ros2Simulation(SimulatedMiddleware):
     def arguments(
         self, root: Path, given: Sequence[str], tables: Mapping[str, Table]
     ) -> Sequence[str] | None:
-        """Name the plug-in, for a project over the installed rclpy that does not name it itself."""
+        """Return arguments that add the plug-in, if the project uses the installed rclpy and lacks it."""
         if not self._is_used_by(root, given):
             return None
         table = _table(tables)
@@ -65,11 +65,11 @@ class Ros2Simulation(SimulatedMiddleware):
         return ["-p", PLUGIN, *order]
 
     def draws(self, tables: Mapping[str, Table]) -> bool:
-        """Whether the order of callbacks is drawn."""
+        """Return whether the order of callbacks is random."""
         return _table(tables).schedule != "first-in"
 
     def reason(self, message: str) -> str:
-        """The simulation's own words, if it was the simulation that failed."""
+        """Return the simulation's own message if the simulation has failed."""
         found = _REASON.search(message)
         return found[1].strip() if found is not None else super().reason(message)
 
@@ -89,7 +89,7 @@ def _table(tables: Mapping[str, Table]) -> RosTable:
 
 
 def _settings(root: Path) -> Iterator[str]:
-    """What may name plug-ins of pytest."""
+    """Yield the settings of pytest that may name plug-ins."""
     for name in _SETTINGS:
         if (file := root / name).is_file():
             yield file.read_text(encoding="utf-8", errors="replace")

@@ -1,4 +1,4 @@
-"""A pytest plug-in: the suite runs over simulated ROS as it does in a campaign.
+"""A pytest plug-in that runs the suite over simulated ROS as a campaign does.
 
 `MUTABOT_ROUND=3 python -m pytest -p mutabot_ros.simulation.plugin` repeats the orders of a campaign's round.
 """

@@ -1,4 +1,4 @@
-"""How the simulation runs in mutabot's campaigns."""
+"""Configures the simulation for mutabot's campaigns."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from ros_in_process.settings import PACKAGES, SETTINGS
 
 
 def configure() -> None:
-    """Set the simulation up for this process, before it may start; without effect where nothing is simulated.
+    """Configure the simulation for this process, before it may start; no effect without simulation.
 
     What mutabot itself waits for takes place in real time, but for what its hooks let nodes wait for. Each
     round has orders of its own. A test that met what is not simulated decides nothing.

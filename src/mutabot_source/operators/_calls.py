@@ -1,4 +1,4 @@
-"""Calls with other arguments, as text and nodes of the original."""
+"""Builds calls with other arguments, as text and nodes of the original."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from mutabot_source.operator import TextParts
 
 
 def call(node: ast.Call, keywords: Iterable[ast.keyword], arguments: Iterable[ast.expr] = ()) -> TextParts:
-    """A call with these keywords, and its own arguments or these."""
+    """Return a call with these keywords, and its own positional arguments or these."""
     given: list[TextParts] = [
         ("*", one.value) if isinstance(one, ast.Starred) else (one,) for one in arguments or node.args
     ]
@@ -22,5 +22,5 @@ def call(node: ast.Call, keywords: Iterable[ast.keyword], arguments: Iterable[as
 
 
 def last_name(node: ast.expr) -> str:
-    """The last part of the name of what is called; empty if it has none."""
+    """Return the last part of the called name; empty if it has none."""
     return node.attr if isinstance(node, ast.Attribute) else node.id if isinstance(node, ast.Name) else ""

@@ -1,4 +1,4 @@
-"""BSR: a statement becomes a bomb."""
+"""BSR: a statement is replaced by one that raises an error."""
 
 from __future__ import annotations
 

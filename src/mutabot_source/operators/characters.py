@@ -23,7 +23,7 @@ _DIGITS = "0123456789"
 
 
 class _Characters(ConventionalOperator):
-    """Changes single characters of texts that are arguments of calls."""
+    """Changes single characters of strings that are arguments of calls."""
 
     family = TEXT
 
@@ -45,7 +45,7 @@ class _Characters(ConventionalOperator):
 
     @abstractmethod
     def _changed(self, text: str, random: Random) -> Iterator[tuple[str, str]]:
-        """Variants, and the texts they make."""
+        """Yield variants, each with the changed text."""
 
 
 class DropCharacter(_Characters):

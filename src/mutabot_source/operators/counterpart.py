@@ -51,7 +51,7 @@ class Counterpart(ConventionalOperator):
 
 
 def _counterparts(text: str) -> Iterable[tuple[str, str]]:
-    """Words of a text, and the text with the counterpart of each."""
+    """Yield each word of a text that has a counterpart, and the text with the counterpart instead."""
     parts = _PART.findall(text)
     if "".join(parts) != text or " " in text:
         return

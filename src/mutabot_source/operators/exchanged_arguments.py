@@ -67,14 +67,14 @@ class ExchangedArguments(ConventionalOperator):
 
 
 def _may_be_alike(one: ast.expr, other: ast.expr) -> bool:
-    """Whether two expressions may have values of one kind, and not the same, for all that the text says."""
+    """Return whether two expressions may have different values of the same kind, as far as the text shows."""
     if isinstance(one, _OF_NO_KIND) or isinstance(other, _OF_NO_KIND) or ast.dump(one) == ast.dump(other):
         return False
     return _kind(one) == _kind(other)
 
 
 def _kind(node: ast.expr) -> str:
-    """What kind of value an expression has, if it says so itself."""
+    """Return the kind of an expression's value, if the expression shows it."""
     if is_text(node):
         return "text"
     if is_named_constant(node):

@@ -60,5 +60,5 @@ class LostConversion(ConventionalOperator):
 
 
 def _is_idle_statement(around: Surroundings) -> bool:
-    """Whether nobody uses the value of the call, so that it is called for what it does."""
+    """Return whether the call's value is unused, so that it is called for its effect."""
     return not around.is_value

@@ -46,7 +46,7 @@ class LostCopy(ConventionalOperator):
 
 
 def _copied(node: ast.Call) -> ast.expr | None:
-    """What a call makes a copy of; None if it makes none."""
+    """Return the expression that a call copies; None if the call is no copy."""
     name = last_name(node.func)
     if len(node.args) == 1 and not isinstance(node.args[0], ast.Starred):
         is_copy = name in ("copy", "deepcopy") or (name in _MAKING and _is_kept(node.args[0]))
@@ -56,7 +56,7 @@ def _copied(node: ast.Call) -> ast.expr | None:
 
 
 def _is_kept(node: ast.expr) -> bool:
-    """Whether an expression may be a row that somebody keeps, rather than one that is made here."""
+    """Return whether an expression may be an object stored elsewhere, rather than one that is made here."""
     if isinstance(node, ast.Call):
         is_method = isinstance(node.func, ast.Attribute) and not node.args and not node.keywords
         return is_method and last_name(node.func) not in ("keys", "values", "items", "split", "readlines")

@@ -63,7 +63,7 @@ class LostFactor(ConventionalOperator):
 
 
 def _value_and_factor(node: ast.BinOp) -> tuple[ast.expr, ast.expr] | None:
-    """The value that is converted and its factor; None if no operand is a factor, or both may be."""
+    """Return the converted value and its factor; None if no operand is a factor, or both may be."""
     left, right = _is_factor(node.left), _is_factor(node.right)
     if right and not left and not isinstance(node.left, ast.Constant):
         return node.left, node.right
@@ -73,7 +73,7 @@ def _value_and_factor(node: ast.BinOp) -> tuple[ast.expr, ast.expr] | None:
 
 
 def _of_half_turn(node: ast.BinOp) -> tuple[ast.expr, ast.expr, ast.expr] | None:
-    """A value, what it is multiplied with and what divides it, of value * π / 180 and value * 180 / π."""
+    """Return value, multiplier and divisor of ``value * π / 180`` or ``value * 180 / π``; else None."""
     inner = node.left
     if (
         not isinstance(node.op, ast.Div)

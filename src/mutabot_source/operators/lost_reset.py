@@ -57,7 +57,7 @@ def _sets_back(node: SyntaxNode) -> bool:
 
 
 def _clears(node: SyntaxNode) -> bool:
-    """Whether a statement clears something that an object keeps."""
+    """Return whether a statement clears something that an object stores."""
     if not isinstance(node, ast.Expr) or not isinstance(node.value, ast.Call):
         return False
     function = node.value.func

@@ -101,7 +101,7 @@ def _of_call(node: ast.Call) -> Iterable[Draft]:
 
 
 def _other_axes(node: ast.expr) -> Iterable[tuple[str, str]]:
-    """Other axes than those of a text: about the other kind of axes, and in the reverse order."""
+    """Yield other axes for a text: of the other kind (static or rotating), and in the reverse order."""
     if isinstance(node, ast.Constant) and isinstance(node.value, str) and _AXES.fullmatch(node.value):
         text = node.value
         lead = text[0] if text[0] in "rs" else ""
@@ -132,5 +132,5 @@ def _row(values: list[ast.expr], brackets: str = "()") -> TextParts:
 
 
 def _with_text(node: ast.Call, argument: ast.expr, text: str) -> TextParts:
-    """The call with a text as one of its arguments."""
+    """Return the call with a text as one of its arguments."""
     return tuple(text if part is argument else part for part in call(node, node.keywords))

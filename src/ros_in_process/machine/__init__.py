@@ -1,1 +1,1 @@
-"""Threads and time of the simulation, and who sees them."""
+"""Threads and time of the simulation, and the modules that see them."""

@@ -161,5 +161,5 @@ def _change_running_loop(old: SimulatedThread, new: SimulatedThread) -> None:
 
 
 def install() -> None:
-    """Provide asyncio to those who see the simulation."""
+    """Provide asyncio to the modules that see the simulation."""
     provide("asyncio", _asyncio)

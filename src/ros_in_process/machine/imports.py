@@ -1,4 +1,4 @@
-"""Gives modules of the project and of rclpy the simulated `time`, `threading` and so on, others the real.
+"""Gives the project and rclpy a simulated `time`, `threading` and so on, and other modules the real ones.
 
 The module with the import statement decides. So pytest, its plug-ins and libraries are as they were.
 """
@@ -29,13 +29,13 @@ _real_import = builtins.__import__
 
 
 def provide(name: str, build: Callable[[], ModuleType]) -> None:
-    """Put a simulated module in the place of the module of this name."""
+    """Register the builder of a simulated module that replaces the module with this name."""
     _builders[name] = build
     _tops.add(name.partition(".")[0])
 
 
 def refuse(name: str, refusal: Callable[[], None]) -> None:
-    """Call this where the project imports an installed package of this name; it raises."""
+    """Register a function to call when the project imports an installed package of this name; it raises."""
     _refusals[name] = refusal
     _tops.add(name)
 
@@ -46,7 +46,7 @@ def is_provided(name: str) -> bool:
 
 
 def stand_in(name: str) -> ModuleType:
-    """The simulated module of a name; made when it is first asked for."""
+    """Return the simulated module for a name, which is built on first use."""
     if name not in _built:
         module = _builders[name]()
         _built[name] = module
@@ -73,14 +73,14 @@ def is_of_project(file: str) -> bool:
 
 
 def _overlays() -> tuple[str, ...]:
-    """Where workspaces of ROS below a root install the project's own packages."""
+    """Return where workspaces of ROS below a root install the project's own packages."""
     prefixes = [prefix for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if prefix]
     folders = [os.path.join(os.path.realpath(prefix), "") for prefix in prefixes]
     return tuple(folder for folder in folders if folder.startswith(tuple(_roots)))
 
 
 def sees_simulation(module: Mapping[str, Any]) -> bool:
-    """Whether a module, given by its globals, gets simulated modules."""
+    """Return whether a module, given by its globals, gets simulated modules."""
     if MARK in module:
         return bool(module[MARK])
     name, file = module.get("__name__"), module.get("__file__")
@@ -89,12 +89,12 @@ def sees_simulation(module: Mapping[str, Any]) -> bool:
 
 
 def is_decided(name: str) -> bool:
-    """Whether the modules that a module sees are fixed by its name: it does not belong to the project."""
+    """Return whether a module's name alone decides what it sees, since it is not the project's."""
     return _decided(name) is not None
 
 
 def _decided(name: str) -> bool | None:
-    """What `PACKAGES` says of a module or the nearest package around it."""
+    """Return what `PACKAGES` says of a module or of the nearest package around it; None if nothing."""
     while name:
         if name in PACKAGES:
             return PACKAGES[name]
@@ -130,12 +130,12 @@ _import.__code__ = _import.__code__.replace(co_filename=f"<importlib._bootstrap,
 
 
 def install() -> None:
-    """From now on, give importing modules the real or simulated module that they are meant to have."""
+    """From now on, give each importing module the real or simulated modules meant for it."""
     builtins.__import__ = _import
 
 
 def catch_up() -> None:
-    """Give simulated modules to modules of the project that have already imported the real ones."""
+    """Give the project's modules that have already imported real modules the simulated ones."""
     for module in [module for name, module in list(sys.modules.items()) if _decided(name)]:
         for name, value in list(vars(module).items()):
             if isinstance(value, ModuleType) and value.__name__ in _builders:
@@ -143,7 +143,7 @@ def catch_up() -> None:
 
 
 def copied(name: str, without: Sequence[str] = ()) -> ModuleType:
-    """A second copy of a module of the standard library that sees simulated modules, not in `sys.modules`."""
+    """Return a second copy of a standard library module that sees simulated modules; not in `sys.modules`."""
     real = sys.modules.get(name) or _real_import(name, None, None, ("*",), 0)
     file = real.__file__
     if file is None or real.__spec__ is None or real.__spec__.loader is None:

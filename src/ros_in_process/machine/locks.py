@@ -1,4 +1,4 @@
-"""Locks among simulated threads."""
+"""Locks for simulated threads."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ros_in_process.machine.scheduler import SCHEDULER, SECOND, SimulatedThread
 
 
 def _is_asked_by_project() -> bool:
-    """Whether the project itself takes a lock: switching within rclpy would find races of rclpy alone."""
+    """Return whether the project itself takes a lock; switches in rclpy would only find its own races."""
     frame = sys._getframe(2)
     if frame.f_code is Lock.__enter__.__code__ and frame.f_back is not None:
         frame = frame.f_back
@@ -18,7 +18,7 @@ def _is_asked_by_project() -> bool:
 
 
 class Lock:
-    """`_thread.lock`, among simulated threads."""
+    """`_thread.lock` for simulated threads."""
 
     def __init__(self) -> None:
         self._is_held = False
@@ -76,7 +76,7 @@ class Lock:
 
 
 class RLock(Lock):
-    """`_thread.RLock`, among simulated threads."""
+    """`_thread.RLock` for simulated threads."""
 
     def __init__(self) -> None:
         super().__init__()

@@ -1,4 +1,4 @@
-"""Run all threads of a simulation in one native thread, in simulated time.
+"""Runs all threads of a simulation in one native thread, in simulated time.
 
 Each simulated thread is a greenlet. One runs until it waits; the scheduler then picks the next that can
 run. When none can, time jumps to the earliest deadline. So waiting costs no wall time, the order of events
@@ -34,7 +34,7 @@ FRUITLESS_ALARMS = 100_000
 
 
 class SimulatedProcess(Protocol):
-    """What threads belong to, as far as the scheduler, the middleware and the standard library know it.
+    """The process of simulated threads, as the scheduler, the middleware and the standard library use it.
 
     Attributes:
         contexts: its contexts of ROS.
@@ -107,7 +107,7 @@ class Scheduler:
         ] = []  # what changes when another thread goes on
 
     def follow(self, schedule: Schedule) -> None:
-        """Let a schedule decide from now on."""
+        """Follow a schedule from now on."""
         self.schedule = schedule
         self.is_preemptive = not isinstance(schedule, FirstIn)
 
@@ -144,7 +144,7 @@ class Scheduler:
             self._enter(self._next())
 
     def drop_process(self, process: SimulatedProcess) -> None:
-        """Stop all threads of a process but the running one for ever; their `finally` blocks do not run."""
+        """Stop all threads of a process but the running one for ever, without their `finally` blocks."""
         for task in [task for task in self._tasks if task.process is process and task is not self.current]:
             task.is_over, task.is_parked = True, False
             if task in self._ready:
@@ -153,7 +153,7 @@ class Scheduler:
             self._dropped.append(task)
 
     def end_thread(self) -> None:
-        """Leave the running thread for ever."""
+        """End the running thread for ever."""
         self._dropped.append(self.current)
         self._tasks.remove(self.current)
         self.current.is_over = True
@@ -162,7 +162,7 @@ class Scheduler:
     # --- waiting ---
 
     def park(self, deadline: int | None = None, reason: str = "") -> bool:
-        """Let others run until this thread is woken (true) or the deadline has come (false)."""
+        """Let other threads run until this one is woken (True) or the deadline has come (False)."""
         self._require_own_thread()
         task = self.current
         task.waits += 1
@@ -174,7 +174,7 @@ class Scheduler:
         return task.was_woken
 
     def wake(self, task: SimulatedThread) -> None:
-        """Let a waiting thread go on."""
+        """Let a waiting thread continue."""
         if task.is_parked and not task.is_over:
             task.is_parked, task.was_woken = False, True
             self._ready.append(task)
@@ -187,12 +187,12 @@ class Scheduler:
         self.wake(task)
 
     def run_in(self, task: SimulatedThread, function: Callable[[], object]) -> None:
-        """Run a function in a waiting thread, as Python runs handlers of signals; then it waits on."""
+        """Run a function in a waiting thread, as Python runs signal handlers; then the thread waits on."""
         task.calls.append(function)
         self.wake(task)
 
     def sleep(self, duration: int) -> None:
-        """Let `duration` nanoseconds pass, whatever notifies this thread meanwhile."""
+        """Let `duration` nanoseconds pass, even if this thread is notified meanwhile."""
         end = self.now + max(duration, 0)
         if duration <= 0:
             self.pause()
@@ -200,7 +200,7 @@ class Scheduler:
             self.park(end, "sleeps")
 
     def pause(self) -> None:
-        """Let others that can run go first."""
+        """Let other ready threads run first."""
         self._require_own_thread()
         task = self.current
         self._collect_due()
@@ -209,7 +209,7 @@ class Scheduler:
             self._go_on(task)
 
     def poll(self) -> None:
-        """Count a look that does not wait; when looks are all that happens, they take time."""
+        """Count a poll that does not wait; if nothing but polls happens, they take time."""
         self.now += READING
         task = self.current
         by_others = self._events - task.own_events
@@ -222,12 +222,12 @@ class Scheduler:
             task.polls = polls
 
     def may_switch(self) -> None:
-        """Mark a place at which a native thread could lose the processor: some schedules switch here."""
+        """Mark a place at which a native thread could lose the processor; some schedules switch here."""
         if self.is_preemptive and self.schedule.switches_here() and self._is_own_thread():
             self.pause()
 
     def progress(self) -> None:
-        """Say that something has happened, so another look is worth while for all others."""
+        """Note that something has happened, so that polling again makes sense for all other threads."""
         self._events += 1
         self.current.own_events += 1
 
@@ -258,7 +258,7 @@ class Scheduler:
         task.greenlet.switch()
 
     def _next(self) -> SimulatedThread:
-        """The thread that goes on; time jumps if none can."""
+        """Return the thread to run next; time jumps if none is ready."""
         for _ in range(FRUITLESS_ALARMS):
             self._collect_due()
             if self._ready:
@@ -279,7 +279,7 @@ class Scheduler:
         return self._stop(self._deadlock("all threads wait, and nothing will ever wake one"))
 
     def advanced(self) -> float:
-        """Time has jumped; gives it in seconds. A vocabulary may name this as its clock's tick."""
+        """Return the time to which simulated time has jumped, s; a vocabulary may use it as clock tick."""
         return self.now / SECOND
 
     def _collect_due(self) -> None:
@@ -298,7 +298,7 @@ class Scheduler:
         return Deadlock(f"{why}; the test's thread {self.main.reason or 'waits'}")
 
     def _stop(self, error: BaseException) -> SimulatedThread:
-        """End the test: its own thread gets the error."""
+        """End the test by raising the error in its own thread."""
         self.main.pending = error
         self.main.is_parked = False
         if self.main in self._ready:
@@ -317,7 +317,7 @@ class Scheduler:
             )
 
     def after_fork(self) -> None:
-        """Go on in a forked process, whose native thread has another number on some systems."""
+        """Continue in a forked process, whose native thread has another number on some systems."""
         self._native_thread = _thread.get_ident()
 
 

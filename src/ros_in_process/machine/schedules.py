@@ -1,4 +1,4 @@
-"""In which order threads and callbacks that are ready go on.
+"""The order in which ready threads and callbacks continue.
 
 `first-in` takes what has become ready first: each run is the same. `random` draws from a seed. A program
 whose outcome depends on the order fails under some seed, and fails again under the same.
@@ -16,32 +16,32 @@ TRANSIT = 2_000_000
 
 
 class Schedule(Protocol):
-    """What decides where the order is open."""
+    """Decides wherever the order is open."""
 
     def begin(self, test: str) -> None:
-        """A test begins: what it draws depends on its name alone, so it can be replayed alone."""
+        """Begin a test: its random numbers depend on its name alone, so it can be replayed alone."""
 
     def choose(self, number: int) -> int:
-        """Choose which of the threads that can run goes on."""
+        """Choose which of the ready threads continues."""
 
     def switches_here(self) -> bool:
-        """Whether the running thread lets others go first at a place at which it need not."""
+        """Return whether the running thread lets others run at a place at which it need not."""
 
     def keeps(self, number: int) -> list[bool]:
         """Choose which of `number` ready entities a wait set reports now; at least one."""
 
     def discovery(self) -> int:
-        """After which time (ns) two ends in different contexts find each other."""
+        """Return how long (ns) two endpoints in different contexts take to discover each other."""
 
     def transit(self) -> int:
-        """How long (ns) a message is under way."""
+        """Return how long (ns) a message is in transit."""
 
 
 class FirstIn:
-    """What has become ready first goes first; nothing takes time."""
+    """Runs what has become ready first; nothing takes time."""
 
     def begin(self, test: str) -> None:
-        """Do nothing: this order draws no numbers."""
+        """Do nothing: this order draws no random numbers."""
 
     def choose(self, number: int) -> int:
         return 0
@@ -60,7 +60,7 @@ class FirstIn:
 
 
 class RandomOrder:
-    """Drawn from a seed."""
+    """A random order, drawn from a seed."""
 
     def __init__(self, seed: int) -> None:
         self.seed = seed
@@ -89,7 +89,7 @@ class RandomOrder:
 
 
 def schedule_named(name: str, seed: int = 0) -> Schedule:
-    """The schedule of a name: `first-in` or `random`."""
+    """Return the schedule with a name: `first-in` or `random`."""
     if name == "first-in":
         return FirstIn()
     if name == "random":

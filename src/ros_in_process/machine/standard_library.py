@@ -1,4 +1,4 @@
-"""Modules of the standard library that wait or read clocks, in simulated time.
+"""Modules of the standard library that wait or read clocks, simulated.
 
 Only `_thread` and `time` are written anew. `threading`, `queue`, `concurrent.futures` and `sched` are
 second copies of the library's own source above them, so they behave as they do everywhere.
@@ -106,7 +106,7 @@ def _queue() -> ModuleType:
 
 
 def _c_queue() -> ModuleType:
-    """Without `SimpleQueue`, which would block the native thread: the library then has its own in Python."""
+    """Return `_queue` without `SimpleQueue`, which would block the native thread; Python's own is used."""
     module = ModuleType("_queue")
     module.Empty = __import__("queue").Empty  # type: ignore[attr-defined]
     return module
@@ -142,7 +142,7 @@ def _importlib() -> ModuleType:
 
 
 def _uuid() -> ModuleType:
-    """Identities drawn from a seed, so that two runs have the same."""
+    """Return a module whose identifiers are drawn from a seed, so that two runs have the same."""
     random = Random(0)
 
     def drawn() -> real_uuid.UUID:
@@ -152,7 +152,7 @@ def _uuid() -> ModuleType:
 
 
 def install() -> None:
-    """Provide these modules to those who see the simulation."""
+    """Provide these modules to the modules that see the simulation."""
     if sys.version_info[:2] not in PYTHONS:
         raise NeedsRealRos(f"threads of Python {sys.version.split()[0]} are not simulated")
     for name, build in {

@@ -1,4 +1,4 @@
-"""`_thread` among simulated threads: what `threading` stands on."""
+"""`_thread` for simulated threads, on which `threading` is built."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _TIMEOUT_MAX = 9_000_000_000.0
 
 
 class Local:
-    """`threading.local`: each thread has attributes of its own."""
+    """`threading.local` for simulated threads: each has its own attributes."""
 
     __slots__ = ("__dict__", "_arguments", "_dictionaries")
 
@@ -43,7 +43,7 @@ class Local:
 
 
 def _make_current(local: Local) -> None:
-    """Let the attributes be those of the thread that runs."""
+    """Switch to the attributes of the running thread."""
     dictionaries = object.__getattribute__(local, "_dictionaries")
     own = dictionaries.get(SCHEDULER.current)
     is_new = own is None
@@ -74,7 +74,7 @@ def _start_new_thread(
 
 
 class ThreadHandle:
-    """What `Thread.join` waits for, from Python 3.13 on."""
+    """The handle on which `Thread.join` waits from Python 3.13 on."""
 
     def __init__(self) -> None:
         self.ident = 0
@@ -125,7 +125,7 @@ def _set_sentinel() -> Lock:
 
 
 def thread_module() -> ModuleType:
-    """The module that stands in the place of `_thread`."""
+    """Return the module that replaces `_thread`."""
     module = ModuleType("_thread")
     module.__dict__.update(
         error=RuntimeError, _local=Local,

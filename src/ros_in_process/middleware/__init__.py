@@ -1,1 +1,1 @@
-"""ROS's middleware in Python: what stands in the place of rclpy's C extension."""
+"""ROS's middleware in Python, which replaces rclpy's C extension."""

@@ -30,7 +30,7 @@ _NONE, _UNKNOWN, _TERMINATED = 0, 2, 3
 
 
 class _ActionEnd(Destroyable):
-    """What clients and servers have in common: parts with names below the action's."""
+    """The common part of clients and servers: services and topics with names below the action's."""
 
     kind_name = ""
 
@@ -56,7 +56,7 @@ class _ActionEnd(Destroyable):
 
 
 class ActionClient(_ActionEnd):
-    """The end of an action that sends goals."""
+    """The client of an action, which sends goals."""
 
     kind_name = "client"
 
@@ -86,7 +86,7 @@ class ActionClient(_ActionEnd):
         ]
 
     def is_ready(self, wait_set: WaitSet) -> tuple[bool, ...]:
-        """Whether there is feedback, a status, an answer to a goal, to a cancelling, a result."""
+        """Return whether feedback, a status, a goal response, a cancel response or a result has arrived."""
         return self._is_ready(wait_set, ("subscription", "subscription", "client", "client", "client"))
 
     def is_action_server_available(self) -> bool:
@@ -130,7 +130,7 @@ def _numbered(client: Client, kind: Any) -> tuple[Any, Any]:
 
 
 class ActionServer(_ActionEnd):
-    """The end of an action that carries out goals."""
+    """The server of an action, which carries out goals."""
 
     kind_name = "server"
 
@@ -198,7 +198,7 @@ class ActionServer(_ActionEnd):
         return bytes(info.goal_id.uuid) in self.goals
 
     def process_cancel_request(self, request: Any, kind: Any) -> Any:
-        """Which goals a request to cancel means, and whether it can."""
+        """Return the goals that a cancel request refers to, and whether they can be cancelled."""
         response = kind()
         uuid = bytes(request.goal_info.goal_id.uuid)
         before = _nanoseconds(request.goal_info.stamp)
@@ -217,7 +217,7 @@ class ActionServer(_ActionEnd):
         return response
 
     def notify_goal_done(self) -> None:
-        """A goal has ended: its result is kept for a while."""
+        """Note that a goal has ended: its result is kept for a while."""
         for goal in self.goals.values():
             if not goal.is_active() and goal.expires_at is None and self._keeps_results_for >= 0:
                 goal.expires_at = self.clock.now() + self._keeps_results_for
@@ -262,7 +262,7 @@ def _status(goal: ActionGoalHandle) -> Any:
 
 
 class ActionGoalHandle(Destroyable):
-    """A goal of a server, and its state."""
+    """A server's goal, and its state."""
 
     def __init__(self, server: ActionServer, info: Any) -> None:
         super().__init__()

@@ -31,7 +31,7 @@ _NAME = re.compile(r"[\w/~{}:*\\]+")
 
 @dataclass
 class RemapRule:
-    """`node:match:=replacement`."""
+    """A remapping rule `node:match:=replacement`."""
 
     node: str | None
     match: str
@@ -40,7 +40,7 @@ class RemapRule:
 
 @dataclass
 class Arguments:
-    """What the ROS arguments of a command line say, in their order."""
+    """The ROS arguments of a command line, in order."""
 
     remaps: list[RemapRule] = field(default_factory=list)
     parameters: list[tuple[str, str, Any]] = field(default_factory=list)  # pattern of nodes, name, value
@@ -52,7 +52,7 @@ class Arguments:
     unknown: list[str] = field(default_factory=list)
 
     def remapped(self, key: str, node: str) -> str | None:
-        """What a rule says about `__node` or `__ns` of a node that a program calls so."""
+        """Return the name that a rule gives a node instead of `__node` or `__ns`; None without a rule."""
         keys = {"__node", "__name"} if key == "__node" else {key}
         for rule in self.remaps:
             if rule.match in keys and rule.node in {None, node}:
@@ -60,7 +60,7 @@ class Arguments:
         return None
 
     def resolved(self, full: str, node: str, namespace: str, scheme: str) -> str | None:
-        """What a rule makes of a full name of a topic or service; None if none applies."""
+        """Return the name that a rule gives a topic or service; None if no rule applies."""
         for rule in self.remaps:
             prefix, _, match = rule.match.rpartition("://")
             if rule.match.startswith("__") or rule.node not in {None, node} or prefix not in {"", scheme}:
@@ -70,7 +70,7 @@ class Arguments:
         return None
 
     def parameters_of(self, full_name: str) -> dict[str, Any]:
-        """The parameters that the arguments set for a node; what stands later wins."""
+        """Return the parameters that the arguments set for a node; later ones win."""
         return {name: value for pattern, name, value in self.parameters if _fits(full_name, pattern)}
 
 
@@ -85,7 +85,7 @@ def _fits(full_name: str, pattern: str) -> bool:
 
 
 def parse(words: list[str]) -> Arguments:
-    """Read a command line. Raises RCLInvalidROSArgsError if an argument has no meaning."""
+    """Read a command line. Raises RCLInvalidROSArgsError if an argument is invalid."""
     found, rest, is_inside = Arguments(), iter(words), False
     for word in rest:
         if not is_inside:
@@ -163,7 +163,7 @@ def _read_file(found: Arguments, word: str, value: str) -> None:
 
 
 def _pairs(node: Any) -> Iterator[tuple[str, Any]]:
-    """The keys and values of a mapping of YAML, where a key may stand twice."""
+    """Yield the keys and values of a YAML mapping, in which a key may occur twice."""
     if isinstance(node, yaml.MappingNode):
         yield from ((str(key.value), value) for key, value in node.value)
 
@@ -192,7 +192,7 @@ def _read_level(found: Arguments, word: str, value: str) -> None:
 
 
 def _ignore(found: Arguments, word: str, value: str) -> None:
-    """Enclaves and logging back ends change nothing here."""
+    """Ignore arguments of enclaves and logging back ends, which change nothing here."""
 
 
 _OPTIONS: dict[str, tuple[str, Callable[[Arguments, str, str], None]]] = {
@@ -207,7 +207,7 @@ _OPTIONS: dict[str, tuple[str, Callable[[Arguments, str, str], None]]] = {
 
 
 def parse_strictly(words: list[str]) -> Arguments:
-    """Read a command line. Raises UnknownROSArgsError if it has ROS arguments that ROS does not know."""
+    """Read a command line. Raises UnknownROSArgsError if it has unknown ROS arguments."""
     found = parse(words)
     if found.unknown:
         raise UnknownROSArgsError(repr(found.unknown))
@@ -215,5 +215,5 @@ def parse_strictly(words: list[str]) -> Arguments:
 
 
 def rclpy_remove_ros_args(words: list[str] | None) -> list[str]:
-    """The command line without its ROS arguments."""
+    """Return the command line without its ROS arguments."""
     return parse_strictly(list(words or [])).others

@@ -32,13 +32,13 @@ class RosClock(Destroyable):
         self.events: list[ClockEvent] = []
 
     def now(self) -> int:
-        """Its time in nanoseconds; looking at it takes no time."""
+        """Return the clock's time in nanoseconds; reading it takes no time."""
         if self.is_overridden:
             return self._override
         return SCHEDULER.now if self.kind is ClockType.STEADY_TIME else SCHEDULER.system_time
 
     def steady_time_of(self, time: int) -> int | None:
-        """When, in steady time, it will show a time; None if that depends on `/clock`."""
+        """Return the steady time at which it will show a time; None if that depends on `/clock`."""
         return None if self.is_overridden else SCHEDULER.now + time - self.now()
 
     def get_now(self) -> rcl_time_point_t:
@@ -152,7 +152,7 @@ class Timer(Waitable):
 
     @property
     def deadline(self) -> int | None:
-        """When, in steady time, it will be due; None if never, or as `/clock` says."""
+        """The steady time at which it will be due; None if never, or if that depends on `/clock`."""
         return None if self._is_cancelled else self.clock.steady_time_of(self.next_call)
 
     def is_timer_ready(self) -> bool:
@@ -198,14 +198,14 @@ class Timer(Waitable):
         return None if self._is_cancelled else self.next_call - self.clock.now()
 
     def change_epoch(self, credit: int) -> None:
-        """Go on with the rest of the period when the clock's source has changed."""
+        """Continue with the rest of the period after the clock's source has changed."""
         now = self.clock.now()
         if now:
             self.next_call = now + credit
             self._last_call = self.next_call - self._period
 
     def follow_jump(self) -> None:
-        """Restart its period when the clock has jumped back behind its last call."""
+        """Restart the period after the clock has jumped back behind the last call."""
         now = self.clock.now()
         if now < self._last_call:
             self._last_call, self.next_call = now, now + self._period

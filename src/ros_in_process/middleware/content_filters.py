@@ -1,4 +1,4 @@
-"""Filters of subscriptions by content, in the part of SQL that DDS has for them, such as `data > %0`."""
+"""Content filters of subscriptions, in DDS's subset of SQL, such as `data > %0`."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _COMPARISONS: dict[str, Callable[[Any, Any], bool]] = {
 
 
 class ContentFilter:
-    """Decides whether a subscription hears a message."""
+    """Decides whether a subscription receives a message."""
 
     def __init__(self, expression: str, parameters: list[str]) -> None:
         self.expression, self.parameters = expression, list(parameters)

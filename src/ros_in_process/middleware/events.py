@@ -10,7 +10,7 @@ from ros_in_process.middleware.records import MODULE
 
 
 class Status:
-    """What has happened since an event was last taken; counted whether or not anybody asks."""
+    """Counts of an event since it was last taken; counted even if nothing handles it."""
 
     def __init__(self, record: Any) -> None:
         self.values = record()
@@ -20,7 +20,7 @@ class Status:
         self._handles: list[EventHandle] = []
 
     def tell(self, handle: EventHandle) -> None:
-        """Let a handle know from now on whether something has happened."""
+        """Notify a handle from now on if something has happened."""
         self._handles.append(handle)
         handle.is_ready = self.has_changed
 
@@ -28,7 +28,7 @@ class Status:
         self._handles.remove(handle)
 
     def count(self, **changes: Any) -> None:
-        """Add to the counts; each `name` that counts has a `name_change` beside it."""
+        """Add to the counts; each `name` has a `name_change` that counts with it."""
         for name, change in changes.items():
             if name == "last_policy_kind":
                 self.values.last_policy_kind = change
@@ -54,7 +54,7 @@ class Status:
 
 
 class EventHandle(Waitable):
-    """A handle to one kind of event of a publisher or a subscription."""
+    """A handle of one kind of event of a publisher or subscription."""
 
     def __init__(self, end: Any, event: Any) -> None:
         super().__init__()

@@ -1,4 +1,4 @@
-"""What rclpy's executors do around each wait, with less work.
+"""Makes rclpy's executors do less work around each wait.
 
 For each callback an executor gathers all that its nodes have, keeps it in use, fills a wait set and asks it
 about each member. Over a real middleware that is little beside the wait itself; here it was half of what a
@@ -26,7 +26,7 @@ _MODULE = "rclpy.executors"
 
 
 def hasten(_: Node) -> None:
-    """Let all executors wait with less work, if their text is known. Called for each new node."""
+    """Make all executors wait faster, if their source is known. Called for each new node."""
     executor = getattr(sys.modules.get(_MODULE), "Executor", None)
     if executor is None or hasattr(executor, "_simulation_seen"):
         return
@@ -42,7 +42,7 @@ def wait_for_ready_callbacks(
     nodes: list[Any] | None = None,
     condition: Callable[[], bool] = lambda: False,
 ) -> Iterator[tuple[Any, Any, Any]]:
-    """Give a task for each callback that is ready, with what it is for and the node.
+    """Yield a task for each ready callback, with its entity and node.
 
     Raises what rclpy raises where time is up, the executor or its context is shut down, or the condition
     holds.
@@ -86,7 +86,7 @@ def wait_for_ready_callbacks(
 
 
 def _under_way(executor: Any, nodes: list[Any]) -> Iterator[tuple[Any, Any, Any]]:
-    """Tasks that were begun and can go on; those that are over are forgotten then."""
+    """Yield tasks that have begun and can continue; forget those that are done."""
     for task, entity, node in list(executor._tasks):
         if not task.executing() and not task.done() and (node is None or node in nodes):
             yield task, entity, node
@@ -94,7 +94,7 @@ def _under_way(executor: Any, nodes: list[Any]) -> Iterator[tuple[Any, Any, Any]
 
 
 def _ready(executor: Any, node: Any, numbers: set[int]) -> Iterator[tuple[Any, Any]]:
-    """What a node has that is ready, given the numbers of the handles that are; with what takes from it."""
+    """Yield a node's ready entities, by the numbers of ready handles, and the functions to take from them."""
     if numbers:
         for timer in node.timers:
             # one that was cancelled meanwhile is not
@@ -120,7 +120,7 @@ def _may_begin(entity: Any) -> bool:
 
 
 class _Gathered:
-    """What an executor waits for: all that its nodes have and that may be executed now.
+    """The entities of an executor's nodes that may be executed now.
 
     Attributes:
         guards, waitables: of these, rclpy's own objects.
@@ -169,7 +169,7 @@ class _Gathered:
 
     @classmethod
     def by(cls, executor: Any, nodes: list[Any]) -> _Gathered:
-        """Gather it, or take what was gathered last if all is as it was then."""
+        """Gather the entities, or return the last result if nothing has changed."""
         entities: list[Any] = []
         for node in nodes:
             entities += node.subscriptions
@@ -187,7 +187,7 @@ class _Gathered:
         return found
 
     def _still_holds(self, executor: Any, nodes: list[Any], entities: list[Any]) -> bool:
-        """Whether it would be the same if it was gathered now."""
+        """Return whether gathering now would give the same result."""
         return (
             self._may_be_kept
             and self._destroyed == Destroyable.destroyed
@@ -203,7 +203,7 @@ class _Gathered:
         )
 
     def put_in_use(self, context: Any, in_use: ExitStack) -> WaitSet:
-        """The wait set of all of it, none of which is destroyed before the end of ``in_use``."""
+        """Return a wait set of all entities, none of which is destroyed before the end of ``in_use``."""
         if context.handle is None:
             raise RuntimeError("Cannot enter context if context is None")
         for index, event in enumerate(self._events):
@@ -218,7 +218,7 @@ class _Gathered:
         return wait_set
 
     def _add_others(self, wait_set: WaitSet, in_use: ExitStack) -> None:
-        """Let waitables that are no event handlers add themselves."""
+        """Let waitables that are not event handlers add themselves."""
         for one in self._others:
             try:
                 in_use.enter_context(one)
@@ -229,7 +229,7 @@ class _Gathered:
             one.add_to_wait_set(wait_set)
 
     def ready_waitables(self, nodes: list[Any], wait_set: WaitSet) -> Iterator[tuple[Any, Any]]:
-        """Waitables that have something, as they see it after the wait, and their nodes."""
+        """Yield the waitables that are ready after the wait, and their nodes."""
         may_have = self._others or wait_set.has_ready("event")
         if not may_have and not any(one._ready_to_take_data for one in self._events):
             return
@@ -240,7 +240,7 @@ class _Gathered:
 
 
 def _may_be_executed(entity: Any) -> bool:
-    """As `Executor.can_execute`; nothing can come between, so no lock is taken."""
+    """Return whether an entity can be executed, as `Executor.can_execute` does, but without a lock."""
     if entity._executor_event:
         return False
     group: Any = entity.callback_group

@@ -56,19 +56,19 @@ _MENTIONED = {"rclpy_init", "rclpy_ok"}
 
 
 class EventsExecutor:
-    """The experimental executor, which is written in C++."""
+    """The experimental executor; the real one is written in C++."""
 
     def __init__(self, context: Any) -> None:
         raise NeedsRealRos("the EventsExecutor is written in C++, below the border of the simulation")
 
 
 def rclpy_get_rmw_implementation_identifier() -> str:
-    """The name of the middleware that this one simulates."""
+    """Return the name of the middleware that this one simulates."""
     return "rmw_fastrtps_cpp"
 
 
 def build() -> ModuleType:
-    """The module, with every name."""
+    """Return the module, with all names."""
     module = ModuleType(MODULE, "Simulated.")
     for source in _SOURCES:
         for name, value in vars(source).items():
@@ -83,7 +83,7 @@ def build() -> ModuleType:
 
 
 def names_used() -> set[str]:
-    """The names of the extension that the installed rclpy's Python uses."""
+    """Return the names of the extension that the installed rclpy's Python code uses."""
     spec = importlib.util.find_spec("rclpy")
     if spec is None or spec.origin is None:
         raise NeedsRealRos("rclpy is not installed, and the simulation runs its Python")

@@ -1,4 +1,4 @@
-"""Who is there: contexts, nodes, and the ends of topics and services."""
+"""The graph of ROS: contexts, nodes, and the endpoints of topics and services."""
 
 from __future__ import annotations
 
@@ -60,11 +60,11 @@ class Destroyable:
             self._release()
 
     def _release(self) -> None:
-        """Take it out of the graph."""
+        """Remove it from the graph."""
 
 
 class Waitable(Destroyable):
-    """What a wait set can wait for.
+    """Something that a wait set can wait for.
 
     Each kind has `is_ready`. Wait sets look at all of their members again and again, so it is an attribute,
     and a property only where it depends on time.
@@ -75,7 +75,7 @@ class Waitable(Destroyable):
         self.watchers: list[SimulatedThread] = []
 
     def changed(self) -> None:
-        """Let the threads go on that wait for this to become ready."""
+        """Wake the threads that wait for this to become ready."""
         SCHEDULER.progress()
         for task in self.watchers:
             SCHEDULER.wake(task)
@@ -114,13 +114,13 @@ class Participant(Destroyable):
         self.close()
 
     def close(self) -> None:
-        """Be shut down, whoever asked for it."""
+        """Shut it down, for whatever reason."""
         self.is_up = False
         SCHEDULER.progress()
 
 
 class Node(Destroyable):
-    """A node: its names, and the ends that it has."""
+    """A node: its names, and its endpoints."""
 
     def __init__(
         self, name: str, namespace: str, context: Participant, cli_args: list[str] | None,
@@ -160,7 +160,7 @@ class Node(Destroyable):
             end.destroy_when_not_in_use()
 
     def resolve(self, name: str, scheme: str = "rostopic", only_expand: bool = False) -> str:
-        """The full name of a topic or service in this node."""
+        """Return the full name of a topic or service in this node."""
         full = names.expanded(name, self.name, self.namespace)
         if only_expand:
             return full
@@ -239,7 +239,7 @@ class Endpoint(Waitable):
                 yield end
 
     def when_both_are_seen(self, other: Endpoint, meet: Callable[[], None]) -> None:
-        """Call `meet` when two endpoints see each other: in one context at once, else after discovery."""
+        """Call `meet` when two endpoints discover each other: in one context at once, else after a delay."""
 
         def meet_if_there() -> None:
             if not self.is_destroyed and not other.is_destroyed:
@@ -279,7 +279,7 @@ def _actions(ends: Iterable[Endpoint]) -> NamesAndTypes:
 
 
 class World:
-    """All nodes and ends that are there, in the order in which they came."""
+    """All existing nodes and endpoints, in the order of their creation."""
 
     def __init__(self) -> None:
         self.nodes: list[Node] = []
@@ -287,11 +287,11 @@ class World:
         self.on_node: list[Callable[[Node], None]] = []
 
     def discovery(self) -> int:
-        """When what is made now is seen by other contexts."""
+        """Return when other contexts see what is created now."""
         return SCHEDULER.now + SCHEDULER.schedule.discovery()
 
     def seen(self, by: Node, role: str) -> list[Endpoint]:
-        """The ends of a role that a node knows of."""
+        """Return the endpoints of a role that a node knows."""
         return [end for end in self.ends if end.role == role and _is_seen(by, end.node.context, end.seen_at)]
 
     def of_node(self, by: Node, role: str, name: str, namespace: str, what: str) -> list[Endpoint]:

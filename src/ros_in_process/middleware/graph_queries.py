@@ -1,4 +1,4 @@
-"""What nodes can ask about each other: names and types of topics and services, and who is at their ends."""
+"""Graph queries of nodes: names and types of topics and services, and their endpoints."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def _dds_type(name: str, part: str = "") -> str:
 
 
 def _dds_names(end: Endpoint) -> list[tuple[str, str]]:
-    """The topics of the network that an end stands for."""
+    """Return the network topics of an endpoint."""
     if end.role in {"publisher", "subscription"}:
         return [(f"rt{end.name}", _dds_type(end.type_name))]
     return [
@@ -32,7 +32,7 @@ def _dds_names(end: Endpoint) -> list[tuple[str, str]]:
 
 
 def rclpy_get_topic_names_and_types(node: Node, no_demangle: bool) -> NamesAndTypes:
-    """All topics, by their names in ROS or those on the network."""
+    """Return all topics, by their names in ROS or on the network."""
     if no_demangle:
         ends = [
             end
@@ -45,21 +45,21 @@ def rclpy_get_topic_names_and_types(node: Node, no_demangle: bool) -> NamesAndTy
 
 
 def rclpy_get_service_names_and_types(node: Node) -> NamesAndTypes:
-    """All services that somebody offers or wants."""
+    """Return all services with a server or client."""
     return _named(WORLD.seen(node, "service") + WORLD.seen(node, "client"))
 
 
 def rclpy_get_publisher_names_and_types_by_node(
     node: Node, no_demangle: bool, name: str, namespace: str
 ) -> NamesAndTypes:
-    """The topics that a node publishes."""
+    """Return the topics that a node publishes."""
     return _topics(WORLD.of_node(node, "publisher", name, namespace, "publisher"), no_demangle)
 
 
 def rclpy_get_subscriber_names_and_types_by_node(
     node: Node, no_demangle: bool, name: str, namespace: str
 ) -> NamesAndTypes:
-    """The topics that a node hears."""
+    """Return the topics to which a node subscribes."""
     return _topics(WORLD.of_node(node, "subscription", name, namespace, "subscriber"), no_demangle)
 
 
@@ -68,22 +68,22 @@ def _topics(ends: list[Endpoint], no_demangle: bool) -> NamesAndTypes:
 
 
 def rclpy_get_service_names_and_types_by_node(node: Node, name: str, namespace: str) -> NamesAndTypes:
-    """The services that a node offers."""
+    """Return the services that a node offers."""
     return _named(WORLD.of_node(node, "service", name, namespace, "service"))
 
 
 def rclpy_get_client_names_and_types_by_node(node: Node, name: str, namespace: str) -> NamesAndTypes:
-    """The services that a node wants."""
+    """Return the services that a node uses."""
     return _named(WORLD.of_node(node, "client", name, namespace, "client"))
 
 
 def rclpy_get_publishers_info_by_topic(node: Node, topic: str, no_mangle: bool) -> list[dict[str, Any]]:
-    """Who publishes a topic, and how."""
+    """Return the publishers of a topic, with their quality of service."""
     return _infos(node, "publisher", PUBLISHER, topic, no_mangle)
 
 
 def rclpy_get_subscriptions_info_by_topic(node: Node, topic: str, no_mangle: bool) -> list[dict[str, Any]]:
-    """Who hears a topic, and how."""
+    """Return the subscriptions to a topic, with their quality of service."""
     return _infos(node, "subscription", SUBSCRIPTION, topic, no_mangle)
 
 
@@ -104,10 +104,10 @@ def _infos(node: Node, role: str, number: int, topic: str, no_mangle: bool) -> l
 
 
 def rclpy_resolve_name(node: Node, name: str, only_expand: bool, is_service: bool) -> str:
-    """The full name of a topic or service in a node."""
+    """Return the full name of a topic or service in a node."""
     return node.resolve(name, "rosservice" if is_service else "rostopic", only_expand)
 
 
 def rclpy_remap_topic_name(node: Node, name: str) -> str:
-    """What remapping makes of a full name."""
+    """Return a full name after remapping."""
     return node.resolve(name)

@@ -1,4 +1,4 @@
-"""What nodes log: on the standard error, and on `/rosout`."""
+"""Logs of nodes: on the standard error, and on `/rosout`."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _sublogger_users: dict[str, int] = {}
 
 
 def log(severity: int, name: str, text: str, function: str = "", file: str = "", line: int = 0) -> None:
-    """Write a line, and publish it if the logger is a node's."""
+    """Write a line, and publish it if the logger belongs to a node."""
     now = SCHEDULER.system_time
     label = _NAMES.get(int(severity), "UNSET")
     row = f"[{label}] [{now // SECOND}.{now % SECOND:09d}] [{name}]: {text}\n"
@@ -84,7 +84,7 @@ def rclpy_logging_set_logger_level(name: str, level: Any, detailed_error: bool =
 
 
 def rclpy_logging_get_logger_level(name: str) -> int:
-    """The level of a logger itself; 0 if it has none."""
+    """Return the level of a logger itself; 0 if it has none."""
     return _levels.get(name, _DEFAULT_LEVEL if not name else 0)
 
 
@@ -103,14 +103,14 @@ def rclpy_logging_logger_is_enabled_for(name: str, severity: Any) -> bool:
 
 
 def rclpy_logging_severity_level_from_string(text: str) -> int:
-    """The number of a severity."""
+    """Return the number of a severity."""
     if text.upper() not in SEVERITIES:
         raise RuntimeError("Failed to get severity name")
     return SEVERITIES[text.upper()]
 
 
 def rclpy_logging_rosout_add_sublogger(logger: str, sublogger: str) -> bool:
-    """Publish what a child of a node's logger logs; false if the logger is no node's."""
+    """Publish what a child of a node's logger logs; return False if the logger is not a node's."""
     if logger not in _publishers:
         return False
     full = f"{logger}.{sublogger}"
@@ -128,13 +128,13 @@ def rclpy_logging_rosout_remove_sublogger(logger: str, sublogger: str) -> None:
 
 
 def rclpy_logging_configure(context: Participant) -> None:
-    """Take the levels that a command line sets."""
+    """Set the log levels given on a command line."""
     _levels.update(context.arguments.levels)
     has_console[0] = context.arguments.has_console
 
 
 def rclpy_logging_fini() -> None:
-    """Forget who publishes on `/rosout`."""
+    """Forget the publishers on `/rosout`."""
     _publishers.clear()
 
 
@@ -148,11 +148,11 @@ def rclpy_logging_shutdown() -> None:
 
 
 def rclpy_logging_get_logging_directory() -> str:
-    """Where real ROS would write log files."""
+    """Return where real ROS would write log files."""
     home = os.environ.get("ROS_HOME") or os.path.join(os.path.expanduser("~"), ".ros")
     return os.environ.get("ROS_LOG_DIR") or os.path.join(home, "log")
 
 
 def rclpy_logging_get_separator_string() -> str:
-    """What stands between a logger's name and its child's."""
+    """Return the separator between a logger's name and its child's."""
     return "."

@@ -39,7 +39,7 @@ _NUMPY = {"float": "float32", "double": "float64"}
 
 
 def fields_of(kind: type) -> list[tuple[str, Any]]:
-    """The slots of a message class with the types of their fields."""
+    """Return the slots of a message class with the types of their fields."""
     slots = [slot for slot in kind.__slots__ if slot != "_check_fields"]  # type: ignore[attr-defined]
     return list(zip(slots, kind.SLOT_TYPES, strict=True))  # type: ignore[attr-defined]
 
@@ -50,7 +50,7 @@ def _conversions(kind: type) -> list[tuple[str, str, Convert]]:
 
 
 def converted(message: Any, kind: Any) -> Any:
-    """A copy of a message, as an object of the class. Raises as the conversion to C does."""
+    """Return a copy of a message as an object of the class. Raises what the conversion to C raises."""
     copy = kind.__new__(kind)
     copy._check_fields = False
     for slot, name, convert in _conversions(kind):
@@ -59,7 +59,7 @@ def converted(message: Any, kind: Any) -> Any:
 
 
 def class_of(of: Any) -> type:
-    """The message class of a nested type."""
+    """Return the message class of a nested type."""
     package = ".".join(of.namespaces)
     module = importlib.import_module(package)
     if not hasattr(module, of.name):  # a part of a service or an action, such as `Fibonacci_Goal`
@@ -206,20 +206,20 @@ def _array(of: Any, name: str) -> Convert:
 
 
 def type_name(kind: type) -> str:
-    """A class's name on the network, such as `std_msgs/msg/String`."""
+    """Return a class's name on the network, such as `std_msgs/msg/String`."""
     package, folder = kind.__module__.split(".")[:2]
     return f"{package}/{folder}/{kind.__name__}"
 
 
 class _TypeSupport:
-    """In the place of a package's C type support: classes only ask whether there is any."""
+    """Replaces a package's C type support: classes only check that there is one."""
 
     def __getattr__(self, name: str) -> str:
         return name
 
 
 def install() -> None:
-    """Load no C type support: messages are converted here."""
+    """Replace the loading of C type support, since messages are converted here."""
     import rosidl_generator_py  # noqa: PLC0415  (only where there is ROS)
 
     support = _TypeSupport()

@@ -1,4 +1,4 @@
-"""Names of nodes, namespaces, topics and services: which are valid, and what they expand to.
+"""Names of nodes, namespaces, topics and services: validation and expansion.
 
 The rules and their wording are those that rclpy's callers see with real ROS.
 """
@@ -16,7 +16,7 @@ _MAX_NODE, _MAX_NAMESPACE, _MAX_TOPIC = 255, 245, 247
 
 
 def rclpy_get_validation_error_for_node_name(name: str) -> NameProblem:
-    """What is wrong with a node's name, and where; None if nothing is."""
+    """Return what is wrong with a node's name, and where; None if it is valid."""
     if not name:
         return "node name must not be empty", 0
     for index, char in enumerate(name):
@@ -30,7 +30,7 @@ def rclpy_get_validation_error_for_node_name(name: str) -> NameProblem:
 
 
 def rclpy_get_validation_error_for_full_topic_name(name: str) -> NameProblem:
-    """What is wrong with a name that is fully expanded."""
+    """Return what is wrong with a fully expanded name, and where; None if it is valid."""
     problem = _path_problem(name, "topic name")
     if problem is None and len(name) > _MAX_TOPIC:
         return f"topic name length should not exceed '{_MAX_TOPIC}'", _MAX_TOPIC - 1
@@ -38,7 +38,7 @@ def rclpy_get_validation_error_for_full_topic_name(name: str) -> NameProblem:
 
 
 def rclpy_get_validation_error_for_namespace(name: str) -> NameProblem:
-    """What is wrong with a namespace."""
+    """Return what is wrong with a namespace, and where; None if it is valid."""
     if name == "/":
         return None
     problem = _path_problem(name, "namespace")
@@ -67,7 +67,7 @@ def _path_problem(name: str, what: str) -> NameProblem:
 
 
 def rclpy_get_validation_error_for_topic_name(name: str) -> NameProblem:
-    """What is wrong with a name that may be relative, private, or have substitutions."""
+    """Return what is wrong with a name that may be relative, private, or contain substitutions; else None."""
     if not name:
         return "topic name must not be empty string", 0
     if name[0].isdigit():
@@ -111,7 +111,7 @@ def _tokens_problem(name: str) -> NameProblem:
 
 
 def rclpy_expand_topic_name(name: str, node: str, namespace: str) -> str:
-    """The absolute name that a name has in a node."""
+    """Return the absolute form of a name in a node."""
     for what, value, problem in (
         ("topic name", name, rclpy_get_validation_error_for_topic_name(name)),
         ("node name", node, rclpy_get_validation_error_for_node_name(node)),
@@ -139,7 +139,7 @@ def _substituted(name: str, values: dict[str, str]) -> str:
 
 
 def expanded(name: str, node: str, namespace: str) -> str:
-    """The absolute name, valid on the network. Raises RCLError if there is none."""
+    """Return the absolute form of a name, valid on the network. Raises RCLError if it is invalid."""
     try:
         full = rclpy_expand_topic_name(name, node, namespace)
     except ValueError as error:

@@ -1,4 +1,4 @@
-"""Quality of service: profiles, what a system default means, and which offers satisfy which requests."""
+"""Quality of service: profiles, the resolution of defaults, and which offers satisfy which requests."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _STATUS = (1, 1, 1, 1, 0, 0, 0, 0)
 
 
 def _nanoseconds(duration: Any) -> int:
-    """A duration where 0 means none, as infinite."""
+    """Return a duration in nanoseconds, infinite for 0, which means none."""
     nanoseconds = int(duration if isinstance(duration, int) else duration.nanoseconds)
     return nanoseconds or RMW_DURATION_INFINITE
 
@@ -49,7 +49,7 @@ def _duration(nanoseconds: int) -> Any:
 
 
 class rmw_qos_profile_t:  # noqa: N801  (the name that rclpy uses)
-    """A profile as rclpy hands it over."""
+    """A profile as rclpy passes it."""
 
     def __init__(  # noqa: PLR0917  (as rclpy calls it)
         self, history: int, depth: int, reliability: int, durability: int, lifespan: Any, deadline: Any,
@@ -73,7 +73,7 @@ class rmw_qos_profile_t:  # noqa: N801  (the name that rclpy uses)
         return cls(*_PREDEFINED[name], False)
 
     def to_dict(self) -> dict[str, Any]:
-        """The arguments of rclpy's own QoSProfile."""
+        """Return the arguments of rclpy's own QoSProfile."""
         times = [
             0 if time == RMW_DURATION_INFINITE else time
             for time in (self.lifespan, self.deadline, self.lease)
@@ -81,7 +81,7 @@ class rmw_qos_profile_t:  # noqa: N801  (the name that rclpy uses)
         return self._told(self.depth, self.history, self.liveliness, times)
 
     def as_discovered(self) -> dict[str, Any]:
-        """The profile as discovered by others: without depth and history, and with defaults resolved."""
+        """Return the profile as others discover it: without depth and history, with defaults resolved."""
         return self._told(
             0, UNKNOWN, self.liveliness or AUTOMATIC, [self.lifespan, self.deadline, self.lease]
         )
@@ -135,14 +135,14 @@ rmw_qos_profile_t.__module__ = MODULE
 
 
 def rclpy_action_get_rmw_qos_profile(name: str) -> dict[str, Any]:
-    """The profile of an action's status topic."""
+    """Return the profile of an action's status topic."""
     if name != ACTION_STATUS:
         raise RuntimeError(f"Requested unknown rmw_qos_profile: {name}")
     return rmw_qos_profile_t(*_STATUS, False).to_dict()
 
 
 def mismatch(offered: rmw_qos_profile_t, requested: rmw_qos_profile_t) -> Any:
-    """The last policy whose offer does not satisfy the request; None if all do. Both profiles resolved."""
+    """Return the last policy whose offer does not satisfy the request, both resolved; None if all do."""
     kinds = rmw_qos_policy_kind_t
     found = None
     if requested.durability == TRANSIENT_LOCAL and offered.durability == VOLATILE:
@@ -157,7 +157,7 @@ def mismatch(offered: rmw_qos_profile_t, requested: rmw_qos_profile_t) -> Any:
 
 
 class QoSCheckCompatibleResult:
-    """Whether two profiles go together, and if not, why."""
+    """Whether two profiles are compatible, and if not, why."""
 
     def __init__(self, compatibility: Any = QoSCompatibility.OK, reason: str = "") -> None:
         self.compatibility, self.reason = compatibility, reason
@@ -169,7 +169,7 @@ QoSCheckCompatibleResult.__module__ = MODULE
 def rclpy_qos_check_compatible(
     offered: rmw_qos_profile_t, requested: rmw_qos_profile_t
 ) -> QoSCheckCompatibleResult:
-    """Whether an offer satisfies a request, as far as the profiles alone say."""
+    """Return whether an offer satisfies a request, as far as the profiles alone show."""
     errors, warnings = list(_errors(offered, requested)), list(_warnings(offered, requested))
     if errors:
         return QoSCheckCompatibleResult(QoSCompatibility.ERROR, "".join(f"ERROR: {text};" for text in errors))

@@ -126,7 +126,7 @@ TransitionCallbackReturnType = _enumeration(
 
 
 class Record:
-    """Some named numbers."""
+    """A record of named numbers."""
 
     fields: ClassVar[tuple[str, ...]] = ()
 

@@ -1,4 +1,4 @@
-"""Messages as bytes: the encoding that ROS uses on the network (XCDR1, little endian)."""
+"""Serialization of messages as ROS sends them on the network (XCDR1, little endian)."""
 
 from __future__ import annotations
 
@@ -163,7 +163,7 @@ def _write_wide(writer: _CdrWriter, value: str) -> None:
 
 
 def rclpy_serialize(message: Any, kind: type) -> bytes:
-    """A message as bytes."""
+    """Return a message as bytes."""
     writer = _CdrWriter()
     _write_message(kind)(writer, converted(message, kind))
     return _HEADER + bytes(writer.data)

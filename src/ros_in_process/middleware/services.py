@@ -27,7 +27,7 @@ REQUEST_SENT, REQUEST_RECEIVED, RESPONSE_SENT, RESPONSE_RECEIVED = range(4)
 
 
 class _ServiceEnd(Endpoint):
-    """What clients and servers have in common."""
+    """The common part of clients and servers."""
 
     def __init__(self, node: Node, kind: Any, name: str, profile: Any) -> None:
         wanted = profile or rmw_qos_profile_t.predefined("qos_profile_services_default")
@@ -60,7 +60,7 @@ class _ServiceEnd(Endpoint):
             self._events.destroy_when_not_in_use()
 
     def receive(self, message: Any, request: rmw_request_id_t, event: int) -> None:
-        """Take a request or an answer into the queue, now or when it has been under way."""
+        """Put a request or response into the queue, now or after its transit time."""
         stamp = SCHEDULER.system_time
         at = max(SCHEDULER.now + SCHEDULER.schedule.transit(), self._last_arrival)
 
@@ -85,7 +85,7 @@ class _ServiceEnd(Endpoint):
         return converted(message, kind), info
 
     def configure_introspection(self, clock: RosClock, profile: rmw_qos_profile_t, state: Any) -> None:
-        """Publish an event for each request and answer, with or without its contents."""
+        """Publish an event for each request and response, with or without its contents."""
         self._event_clock, self._state = clock, state
         if state is not _OFF and self._events is None:
             self._events = Publisher(self.node, self.kind.Event, f"{self.name}/_service_event", profile)
@@ -117,7 +117,7 @@ def _meet(client: Client, service: Service) -> None:
 
 
 class Client(_ServiceEnd):
-    """The end of a service that asks."""
+    """The client of a service."""
 
     role = "client"
 
@@ -136,7 +136,7 @@ class Client(_ServiceEnd):
         return bool(self.matched)
 
     def send_request(self, request: Any) -> int:
-        """Ask all servers that match now; the first answer counts."""
+        """Send a request to all servers that match now; the first response counts."""
         SCHEDULER.may_switch()
         copy = converted(request, self.kind.Request)
         self._sent += 1
@@ -148,7 +148,7 @@ class Client(_ServiceEnd):
         return self._sent
 
     def accept(self, response: Any, identity: rmw_request_id_t) -> None:
-        """Take an answer, unless another came first."""
+        """Accept a response, unless another came first."""
         if identity.sequence_number in self._open:
             self._open.discard(identity.sequence_number)
             self.receive(response, identity, RESPONSE_RECEIVED)
@@ -159,7 +159,7 @@ class Client(_ServiceEnd):
 
 
 class Service(_ServiceEnd):
-    """The end of a service that answers."""
+    """The server of a service."""
 
     role = "service"
 

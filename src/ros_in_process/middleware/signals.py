@@ -1,4 +1,4 @@
-"""What signals do to the contexts and executors of a process, as rclpy's own handlers do it."""
+"""Handles signals for a process's contexts and executors, as rclpy's own handlers do."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ def install_signal_handlers(options: Any) -> None:
 
 
 def get_current_signal_handlers_options() -> Any:
-    """Which signals do."""
+    """Return which signals shut contexts down."""
     return _options.get(_process(), SignalHandlerOptions.NO)
 
 
 def uninstall_signal_handlers() -> None:
-    """Let signals do what they do without ROS."""
+    """Restore what signals do without ROS."""
     _options.pop(_process(), None)
 
 
@@ -40,12 +40,12 @@ def register_sigint_guard_condition(condition: GuardCondition) -> None:
 
 
 def unregister_sigint_guard_condition(condition: GuardCondition) -> None:
-    """No longer trigger a guard condition."""
+    """Stop triggering a guard condition."""
     _conditions[:] = [entry for entry in _conditions if entry[1] is not condition]
 
 
 def handles(process: Any, signum: int) -> bool:
-    """Whether a process has a handler of ROS for a signal."""
+    """Return whether a process has a ROS handler for a signal."""
     bit = {signal.SIGINT: 1, signal.SIGTERM: 2}.get(signal.Signals(signum), 0)
     return (
         bool(_options.get(process, SignalHandlerOptions.NO).value & bit)
@@ -68,6 +68,6 @@ def shut_down(process: Any) -> None:
 
 
 def forget(process: Any) -> None:
-    """Drop what a process that has ended had registered."""
+    """Remove what a process that has ended had registered."""
     _options.pop(process, None)
     _conditions[:] = [entry for entry in _conditions if entry[0] is not process]

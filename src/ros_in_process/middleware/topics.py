@@ -1,4 +1,4 @@
-"""Topics: publishers, subscriptions, their matching by quality of service, and the events of it."""
+"""Topics: publishers, subscriptions, their matching by quality of service, and its events."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _ON_PUBLISHER, _ON_SUBSCRIPTION = rcl_publisher_event_type_t, rcl_subscription_e
 
 @dataclass(frozen=True)
 class SentMessage:
-    """A message on its way."""
+    """A message in transit."""
 
     message: Any
     stamp: int  # the system time at which it was published
@@ -44,7 +44,7 @@ class SentMessage:
 
 
 class _Topic(Endpoint):
-    """What publishers and subscriptions have in common."""
+    """The common part of publishers and subscriptions."""
 
     def __init__(self, node: Node, kind: Any, topic: str, profile: Any) -> None:
         what = self.role
@@ -75,12 +75,12 @@ class _Topic(Endpoint):
         self.matched.clear()
 
     def find(self, end: Any) -> None:
-        """Match another end that has been discovered."""
+        """Match another endpoint that has been discovered."""
         self.matched.append(end)
         self.statuses[self._match_event].count(total_count=1, current_count=1)
 
     def lose(self, end: Any) -> None:
-        """Forget another end that is gone."""
+        """Forget another endpoint that is gone."""
         if end in self.matched and not self.is_destroyed:
             self.matched.remove(end)
             self.statuses[self._match_event].count(total_count=0, current_count=-1)
@@ -120,7 +120,7 @@ def _meet(publisher: Publisher, subscription: Subscription) -> None:
 
 
 class Publisher(_Topic):
-    """The end of a topic that speaks."""
+    """The publisher of a topic."""
 
     role = "publisher"
     _match_event = _ON_PUBLISHER.RCL_PUBLISHER_MATCHED
@@ -157,7 +157,7 @@ class Publisher(_Topic):
         self._send(converted(message, self.kind))
 
     def publish_raw(self, data: bytes) -> None:
-        """Publish a serialized message; whether it is valid turns out at the subscription."""
+        """Publish a serialized message; its validity is checked by the subscription."""
         self._send(bytes(data))
 
     def _send(self, message: Any) -> None:
@@ -201,7 +201,7 @@ class Publisher(_Topic):
         self._lease_alarm = SCHEDULER.call_at(SCHEDULER.now + self.profile.lease, self.lose_liveliness)
 
     def lose_liveliness(self) -> None:
-        """Count as dead: it has not said in time that it is alive."""
+        """Mark the publisher as not alive: it has not asserted its liveliness in time."""
         if self.is_alive and not self.is_destroyed:
             self.is_alive = False
             self.statuses[_ON_PUBLISHER.RCL_PUBLISHER_LIVELINESS_LOST].count(total_count=1)
@@ -215,7 +215,7 @@ class Publisher(_Topic):
 
 
 class Subscription(_Topic):
-    """The end of a topic that hears."""
+    """A subscription to a topic."""
 
     role = "subscription"
     _match_event = _ON_SUBSCRIPTION.RCL_SUBSCRIPTION_MATCHED
@@ -252,7 +252,7 @@ class Subscription(_Topic):
             self.when_both_are_seen(publisher, partial(_meet, publisher, self))
 
     def receive(self, sample: SentMessage, publisher: Publisher) -> None:
-        """Take a message into the queue, now or when it has been under way."""
+        """Put a message into the queue, now or after its transit time."""
         transit = SCHEDULER.schedule.transit()
         at = max(
             SCHEDULER.now + transit, self._last_arrivals.get(publisher.number, 0)
@@ -280,7 +280,7 @@ class Subscription(_Topic):
         return False
 
     def take_message(self, kind: Any, raw: bool) -> tuple[Any, dict[str, Any]] | None:
-        """The oldest message, as a new object, and what is known of it; None if there is none."""
+        """Return the oldest message, as a new object, and its metadata; None if there is none."""
         if not self.is_ready:
             return None
         sample, received = self.queue.popleft()
@@ -353,7 +353,7 @@ class Subscription(_Topic):
 
 
 def rclpy_assert_liveliness(publisher: Publisher) -> None:
-    """Say that a publisher is alive."""
+    """Assert that a publisher is alive."""
     publisher.assert_liveliness()
 
 

@@ -1,4 +1,4 @@
-"""The hashes and descriptions of message types, as the packages bring them."""
+"""The hashes and descriptions of message types, as their packages provide them."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def hash_of(type_name: str) -> dict[str, Any]:
 
 
 def answer_about(request: Any, response: Any, types: Iterable[str]) -> Any:
-    """Fill in the answer of a node's `get_type_description` service: the hash says which type is meant."""
+    """Fill in the response of a node's `get_type_description` service; the hash identifies the type."""
     meant = [name for name in types if _hash_text(name) == request.type_hash]
     found = _description(meant[0] if meant else request.type_name)
     if found is None:

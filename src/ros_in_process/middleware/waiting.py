@@ -32,7 +32,7 @@ KINDS = ("subscription", "guard_condition", "timer", "client", "service", "event
 
 
 def _adder(kind: str) -> Callable[[WaitSet, Any], int]:
-    """A method of a wait set: adds a member of a kind. An executor calls it for each of its entities."""
+    """Return a method that adds a member of a kind to a wait set; executors call it for each entity."""
 
     def add(self: WaitSet, member: Any) -> int:
         members = self._members[kind]
@@ -46,7 +46,7 @@ def _adder(kind: str) -> Callable[[WaitSet, Any], int]:
 
 
 class WaitSet(Destroyable):
-    """What an executor waits for.
+    """The set of entities for which an executor waits.
 
     Attributes:
         is_over: whether the time for the wait had passed when it ended.
@@ -65,7 +65,7 @@ class WaitSet(Destroyable):
 
     @classmethod
     def of(cls, members: Sequence[list[Any]], context: Participant) -> WaitSet:
-        """A wait set of these members, by kind."""
+        """Return a wait set of these members, by kind."""
         wait_set = cls(*map(len, members), context)
         wait_set._members = {kind: [*of_kind] for kind, of_kind in zip(KINDS, members, strict=True)}
         return wait_set
@@ -121,7 +121,7 @@ class WaitSet(Destroyable):
             raise RCLError("failed to wait on wait set: wait set is empty")
 
     def _look(self, end: int | None) -> None:
-        """Note which members are ready, and whether time is up."""
+        """Record which members are ready, and whether the time is up."""
         self._ready = {kind: [one.is_ready for one in members] for kind, members in self._members.items()}
         self.is_over = end is not None and SCHEDULER.now >= end
 
@@ -129,13 +129,13 @@ class WaitSet(Destroyable):
         return any(map(any, self._ready.values()))
 
     def _pass_over(self, known: GuardCondition) -> None:
-        """Take a guard condition back if nothing else is ready."""
+        """Reset a guard condition if nothing else is ready."""
         if sum(map(sum, self._ready.values())) == 1:
             known.is_ready = False
             self._ready["guard_condition"] = [False] * len(self._members["guard_condition"])
 
     def _park(self, end: int | None) -> None:
-        """Wait until one of the members is ready, which none is now, or until the end."""
+        """Wait until a member is ready, as none is now, or until the end."""
         task = SCHEDULER.current
         watched = [member.watchers for members in self._members.values() for member in members]
         for watchers in watched:
@@ -153,7 +153,7 @@ class WaitSet(Destroyable):
                 watchers.remove(task)
 
     def _keep_some(self) -> None:
-        """Report some of what is ready only, as the schedule says; the rest is ready at the next wait.
+        """Report only some ready members, as the schedule chooses; the others are ready at the next wait.
 
         All guard conditions are reported. An executor triggers again those whose callback it has not run yet,
         and runs it whether the wait reports them or not: if one stayed triggered, it would run twice.
@@ -169,7 +169,7 @@ class WaitSet(Destroyable):
                 self._ready[kind][index] = is_kept
 
     def is_ready(self, kind: str, index: int) -> bool:
-        """Return whether a member was ready after the wait; before a wait, whether there is a member."""
+        """Return whether a member was ready after the wait; before a wait, whether it exists."""
         flags = self._ready.get(kind)
         if flags is not None and index < len(flags):
             return flags[index]
@@ -180,11 +180,11 @@ class WaitSet(Destroyable):
         return flags is None and index < len(self._members[kind])
 
     def has_ready(self, kind: str) -> bool:
-        """Whether a member of a kind was ready after the wait."""
+        """Return whether a member of a kind was ready after the wait."""
         return any(self._ready[kind])
 
     def ready_numbers(self) -> set[int]:
-        """The numbers of all members that were ready after the wait."""
+        """Return the numbers of all members that were ready after the wait."""
         return {
             member.number
             for kind, flags in self._ready.items()

@@ -1,1 +1,1 @@
-"""Programs and processes that the project starts, in this process."""
+"""Programs and processes that the project starts, simulated in this process."""

@@ -1,4 +1,4 @@
-"""`multiprocessing` for modules of the project: its processes are simulated ones.
+"""`multiprocessing` for the project's modules: its processes are simulated.
 
 A process starts with modules of its own, and its function is imported anew, as with the start method
 `spawn`.
@@ -27,7 +27,7 @@ _SHARED = "a function that cannot be imported runs in a process of its own: the 
 
 
 class ChildProcess:
-    """`multiprocessing.Process`."""
+    """`multiprocessing.Process`, simulated."""
 
     def __init__(
         self, group: None = None, target: Callable[..., object] | None = None, name: str | None = None,
@@ -39,7 +39,7 @@ class ChildProcess:
         self._process: Process | None = None
 
     def run(self) -> None:
-        """What the process does."""
+        """Run the process's function."""
         if self._target is not None:
             self._target(*self._args, **self._kwargs)
 
@@ -96,7 +96,7 @@ def _note_sharing() -> None:
 
 
 def _imported_anew(function: Callable[..., object]) -> Callable[..., object]:
-    """The function of this name in this process's own modules."""
+    """Return the function with this name in this process's own modules."""
     found: Any = None
     try:
         found = importlib.import_module(function.__module__)
@@ -111,7 +111,7 @@ def _imported_anew(function: Callable[..., object]) -> Callable[..., object]:
 
 
 class _SharedObject:
-    """An object that simulated processes share."""
+    """An object shared by simulated processes."""
 
     def __deepcopy__(self, memo: object) -> Any:
         return self
@@ -236,5 +236,5 @@ def _current() -> Any:
 
 
 def install() -> None:
-    """Provide multiprocessing to those who see the simulation."""
+    """Provide multiprocessing to the modules that see the simulation."""
     provide("multiprocessing", _multiprocessing)

@@ -1,4 +1,4 @@
-"""What starts nodes outside this process, where they are not simulated: refused, with the command."""
+"""Refuses to start nodes outside this process, where they are not simulated, and names the command."""
 
 from __future__ import annotations
 
@@ -26,19 +26,19 @@ ProgramOf = Callable[[list[str], str], object]
 
 
 def words_of(command: Any) -> list[str]:
-    """The words of a command as `subprocess.Popen` takes it."""
+    """Return the words of a command as `subprocess.Popen` takes it."""
     if isinstance(command, str | bytes | os.PathLike):
         command = [command]
     return [os.fsdecode(word) for word in command]
 
 
 def is_python(program: str) -> bool:
-    """Whether a command's first word is an interpreter of Python."""
+    """Return whether a command's first word is a Python interpreter."""
     return program == sys.executable or os.path.basename(program).startswith("python")
 
 
 def starts_nodes(program: str) -> bool:
-    """Whether a command's first word is a tool of ROS that starts nodes, or an installed node."""
+    """Return whether a command's first word is a ROS tool that starts nodes, or an installed node."""
     prefixes = [prefix for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if prefix]
     return os.path.basename(program) in _STARTERS or any(
         os.path.realpath(program).startswith(os.path.join(prefix, "lib", "")) for prefix in prefixes
@@ -46,7 +46,7 @@ def starts_nodes(program: str) -> bool:
 
 
 def refused(words: list[str]) -> NeedsRealRos:
-    """The error that names a command."""
+    """Return the error that names a command."""
     return NeedsRealRos(f"`{' '.join(words)[:80]}` starts nodes outside this process")
 
 
@@ -55,7 +55,7 @@ def _refuse_launcher(name: str) -> None:
 
 
 def _hear(program_of: ProgramOf, event: str, arguments: tuple[Any, ...]) -> None:
-    """Refuse to start a program of the project as a real process, as a shell or a library would."""
+    """Refuse to start a program of the project as a real process, for example by a shell or library."""
     if event not in _EVENTS:
         return
     words = words_of(arguments[_EVENTS[event]])
@@ -66,7 +66,7 @@ def _hear(program_of: ProgramOf, event: str, arguments: tuple[Any, ...]) -> None
 
 
 def _commands(words: list[str]) -> Iterator[list[str]]:
-    """What a command starts, and what the texts in it would start if a shell read them."""
+    """Yield the commands that a command starts, also those in its texts that a shell would run."""
     texts = [_read_as_shell(word) for word in words if len(words) == 1 or " " in word]
     for text in (words, *texts):
         for index, word in enumerate(text):
@@ -84,7 +84,7 @@ def _read_as_shell(text: str) -> list[str]:
 
 
 def install(program_of: ProgramOf) -> None:
-    """Refuse from now on what would start nodes outside."""
+    """Refuse from now on to start nodes outside this process."""
     for name in _LAUNCHERS:
         refuse(name, partial(_refuse_launcher, name))
     sys.addaudithook(partial(_hear, program_of))

@@ -1,4 +1,4 @@
-"""Simulated processes: nodes that tests start run in this process, with modules and arguments of their own.
+"""Simulated processes: nodes that tests start run in this process, with their own modules and arguments.
 
 When a thread of another process goes on, what belongs to a process is changed: its modules of the project,
 its arguments, environment and folder, its output, and the globals of rclpy. All other modules are shared.
@@ -63,7 +63,7 @@ class Process:
     # --- being the one that runs ---
 
     def enter(self) -> None:
-        """Make what belongs to this process current."""
+        """Make this process's state current."""
         sys.modules.update(self.modules)
         self._number_of_modules = len(sys.modules)
         sys.argv, sys.path = self.argv, self.path
@@ -78,7 +78,7 @@ class Process:
             setattr(sys, name, stream)
 
     def leave(self) -> None:
-        """Keep what belongs to this process, and take it away."""
+        """Save this process's state, and remove it."""
         if len(sys.modules) != self._number_of_modules:
             self.modules = {
                 name: module for name, module in list(sys.modules.items()) if _is_own(name, module)
@@ -98,7 +98,7 @@ class Process:
     # --- its life ---
 
     def start(self, run: Callable[[], object]) -> None:
-        """Let its main thread run, as soon as the schedule chooses it."""
+        """Start its main thread, which runs when the schedule chooses it."""
         self.parent = self.parent or current()
         self._run = run
         self.main_task = SCHEDULER.spawn(lambda: self._live(run), self)
@@ -141,7 +141,7 @@ class Process:
         _remove_from_graph(self.contexts)
 
     def kill(self, signum: int) -> None:
-        """End at once, without a word: others see that its nodes are gone when their lease is over."""
+        """End at once: others see that its nodes are gone when their leases expire."""
         self._leave_graph_later()
         self._end(-signum)
 
@@ -184,7 +184,7 @@ class Process:
         SCHEDULER.drop_process(self)
 
     def wait(self, timeout: float | None = None) -> bool:
-        """Wait until it has ended, for at most `seconds`; false if it has not."""
+        """Wait until it has ended, for at most `timeout` seconds; return False if it has not."""
         end = None if timeout is None else SCHEDULER.now + round(timeout * SECOND)
         task = SCHEDULER.current
         self._waiting.append(task)
@@ -219,7 +219,7 @@ class Process:
 
 
 class Pipe(io.RawIOBase):
-    """A pipe from one process to another, whose reader waits in simulated time."""
+    """A pipe between two processes, whose reader waits in simulated time."""
 
     def __init__(self, is_text: bool) -> None:
         super().__init__()
@@ -292,7 +292,7 @@ def _remove_from_graph(contexts: Sequence[Participant]) -> None:
 
 
 def current() -> Process:
-    """The process whose thread runs."""
+    """Return the process of the running thread."""
     return _of(SCHEDULER.current)
 
 
@@ -301,7 +301,7 @@ def _of(thread: SimulatedThread) -> Process:
 
 
 def end_of_current() -> Callable[[bool], object] | None:
-    """What ends the process whose thread runs; None for that of the tests."""
+    """Return a function that ends the process of the running thread; None for the tests' process."""
     process = current()
     return None if process is MAIN else process.end_in_midst
 
@@ -327,7 +327,7 @@ MAIN.pid = os.getpid()
 
 
 def process_of(pid: int) -> Process | None:
-    """The simulated process of a number."""
+    """Return the simulated process with an id; None if there is none."""
     return next((process for process in STARTED if process.pid == pid), None)
 
 
@@ -336,7 +336,7 @@ STARTED: list[Process] = [MAIN]
 
 
 def install() -> None:
-    """Make the thread that runs now the main thread of the tests' process."""
+    """Make the running thread the main thread of the tests' process."""
     MAIN.main_task = SCHEDULER.main
     SCHEDULER.main.process = MAIN
     MAIN.enter()

@@ -1,4 +1,4 @@
-"""Programs that the project starts: its Python programs become simulated processes, others run as they are.
+"""Programs that the project starts: its Python programs become simulated processes, others run normally.
 
 These are the `subprocess`, `os`, `signal` and `atexit` that modules of the project see.
 """
@@ -35,7 +35,7 @@ class _Program:
         self.code, self.file, self.argv, self.first_path, self.spec = code, file, argv, first_path, spec
 
     def run(self) -> None:
-        """Be `__main__`."""
+        """Run the program as `__main__`."""
         module = ModuleType("__main__")
         module.__file__ = self.file
         if self.spec is not None:
@@ -103,7 +103,7 @@ COMPILE: Callable[[bytes, str], CodeType] = _compile_plainly
 
 
 class Popen:
-    """`subprocess.Popen`, where a program of the project becomes a simulated process."""
+    """`subprocess.Popen`, by which a program of the project becomes a simulated process."""
 
     def __new__(cls, args: Any, *others: Any, **options: Any) -> Any:
         words = outside.words_of(args)
@@ -116,7 +116,7 @@ class Popen:
         return popen
 
     def __init__(self, *_: Any, **__: Any) -> None:
-        """Do nothing: `__new__` does all, and may make a real process."""
+        """Do nothing: `__new__` does everything, and may make a real process."""
 
     def __class_getitem__(cls, item: Any) -> Any:
         return cls
@@ -195,7 +195,7 @@ class Popen:
 
 
 class _Into:
-    """Writes text into a file that another process has opened."""
+    """Writes text to a file that another process has opened."""
 
     encoding = "utf-8"
 
@@ -224,6 +224,6 @@ def _subprocess() -> ModuleType:
 
 
 def install() -> None:
-    """Provide `subprocess` to those who see the simulation."""
+    """Provide `subprocess` to the modules that see the simulation."""
     provide("subprocess", _subprocess)
     outside.install(_program_of)

@@ -1,4 +1,4 @@
-"""`os`, `signal`, `atexit` and `socket` for modules of the project: each simulated process has its own."""
+"""`os`, `signal`, `atexit` and `socket` for the project's modules: each simulated process has its own."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def _fork() -> int:
 
 
 def _os() -> ModuleType:
-    """Without hooks at forks: a fork takes simulated threads along, so nothing is to be mended after it."""
+    """Return `os` without fork hooks: a fork copies simulated threads, so nothing needs repair after it."""
     module = varied(
         "os",
         kill=_kill,
@@ -97,7 +97,7 @@ def _atexit() -> ModuleType:
 
 
 class Socket(real_socket.socket):
-    """A real socket: what comes through it comes in real time."""
+    """A real socket: data arrives in real time."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         note("the project uses sockets, through which things come in real time")
@@ -109,6 +109,6 @@ def _socket() -> ModuleType:
 
 
 def install() -> None:
-    """Provide these modules to those who see the simulation."""
+    """Provide these modules to the modules that see the simulation."""
     for name, build in {"os": _os, "signal": _signal, "atexit": _atexit, "socket": _socket}.items():
         provide(name, build)

@@ -1,1 +1,1 @@
-"""How a cell looks in pictures: a model of its own, which no simulation ever loads."""
+"""The visual model of a cell, for pictures; no simulation loads it."""

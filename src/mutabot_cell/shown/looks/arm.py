@@ -1,4 +1,4 @@
-"""The Gen3's links: its maker's meshes, which robosuite carries."""
+"""Draws the Gen3's links with its maker's meshes, which robosuite provides."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _LINKS = {
 
 
 def dress_gen3(spec: mujoco.MjSpec, prefix: str) -> None:
-    """Draw the links' meshes where there is a Gen3 and its meshes are installed."""
+    """Draw the links' meshes if there is a Gen3 and its meshes are installed."""
     bodies = {name: spec.body(prefix + name) for name in _LINKS}
     meshes = folder_of("robosuite", "models/assets/robots/kinova3/meshes")
     if meshes is None or None in bodies.values():

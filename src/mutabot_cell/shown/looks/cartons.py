@@ -1,4 +1,4 @@
-"""Parts: a box with broken edges, a printed label on its top and a mark on its sides."""
+"""Draws parts as cartons: boxes with bevelled edges, a printed label on top and a mark on the sides."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def dress_part(spec: mujoco.MjSpec, part: Part) -> None:
 
 
 def _broken(size: Vector3, cut: float) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
-    """Corners of a box whose edges are cut off at 45 degrees, shape (24, 3), m."""
+    """Return the corners of a box whose edges are bevelled at 45 degrees, shape (24, 3), m."""
     halves = np.array(size) / 2
     corners = []
     for signs in product((-1, 1), repeat=3):
@@ -62,7 +62,7 @@ def _print_label(body: mujoco.MjsBody, size: Vector3) -> None:
 
 
 def _print_mark(body: mujoco.MjsBody, size: Vector3) -> None:
-    """The zigzag of a path on the two sides that look along y."""
+    """Draw a zigzag line on the two sides that face along y."""
     edge = min(size[0], size[2])
     for side in (-1, 1):
         for along, up, half, degrees in _STROKES:

@@ -1,4 +1,4 @@
-"""A conveyor: belt round two rollers, side rails, drive, stand."""
+"""Draws a conveyor: a belt round two rollers, side rails, drive, stand."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _RAIL, _SEAM, _SKIN = 0.035, 0.012, 0.0004
 
 @dataclass(frozen=True, slots=True)
 class Seam:
-    """The one seam of a belt, which runs with it.
+    """The seam of a belt, which moves with it.
 
     Attributes:
         name: of the belt's fixture.
@@ -37,7 +37,7 @@ class Seam:
     radius: float
 
     def pose(self, model: mujoco.MjModel, travel: float) -> None:
-        """Bring it to where it is after `travel` m; below the belt it is not seen."""
+        """Move the seam to where it is after `travel` m; it is hidden below the belt."""
         loop = 4 * self.end + 2 * math.pi * self.radius
         place = (_START * self.end + self.sign * travel + self.end) % loop - self.end
         is_above = place <= self.end
@@ -47,7 +47,7 @@ class Seam:
 
 
 def dress_belt(spec: mujoco.MjSpec, fixture: Fixture) -> Seam:
-    """Draw it as a conveyor whose surface is where the block's is; the seam is to be posed."""
+    """Draw a fixture as a conveyor with the same surface; return the seam, to be posed."""
     assert fixture.belt is not None
     body = spec.body(fixture.name)
     hide(spec.geom(fixture.name))
@@ -83,11 +83,11 @@ class _ConveyorAxes:
     def box(
         self, size: tuple[float, float, float], pos: tuple[float, float, float], material: str
     ) -> mujoco.MjsGeom:
-        """A block; half edges."""
+        """Draw a block, given its half edges."""
         return show(self._body, BOX, self._turned(size), self._turned(pos), material=material)
 
     def roller(self, radius: float, half: float, pos: tuple[float, float, float], material: str) -> None:
-        """A cylinder across it."""
+        """Draw a cylinder across the conveyor."""
         quat = ALONG_Y if self._along_x else ALONG_X
         show(self._body, CYLINDER, (radius, half, 0.0), self._turned(pos), material=material, quat=quat)
 

@@ -1,4 +1,4 @@
-"""Arms and tools of files: what their files show, and the cell leaves out of its simulation."""
+"""Draws arms and tools with the meshes of their files, which the simulation does not load."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .style import LOOKS, hide, named
 
 
 def dress_from_file(spec: mujoco.MjSpec, prefix: str, file: Path | None) -> None:
-    """Draw the meshes of a file instead of the shapes that are simulated.
+    """Draw the meshes of a file instead of the simulated shapes.
 
     Args:
         prefix: what stands in `spec` before the names of the file's bodies.
@@ -37,7 +37,7 @@ def _read(file: Path) -> mujoco.MjSpec:
 
 
 def _is_looked_at(geom: mujoco.MjsGeom) -> bool:
-    """Whether it is a mesh that touches nothing."""
+    """Return whether a shape is a mesh without contacts."""
     return not geom.contype and not geom.conaffinity and geom.type == mujoco.mjtGeom.mjGEOM_MESH
 
 

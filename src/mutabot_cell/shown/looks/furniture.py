@@ -1,4 +1,4 @@
-"""Tables, stands, pedestals and light barriers."""
+"""Draws tables, stands, pedestals and light barriers."""
 
 from __future__ import annotations
 
@@ -40,12 +40,12 @@ def dress_table(spec: mujoco.MjSpec, fixture: Fixture) -> None:
 
 
 def has_legs(fixture: Fixture) -> bool:
-    """Whether it stands upright, and above the floor."""
+    """Return whether a fixture is upright, and above the floor."""
     return fixture.centre[2] - fixture.size[2] / 2 > 0.1 and not any(fixture.angles[:2])
 
 
 def add_stand(body: mujoco.MjsBody, fixture: Fixture, inset: float) -> None:
-    """Four legs with feet, and rails between them; `inset` from the ends, m."""
+    """Draw four legs with feet, and rails between them; `inset` from the ends, m."""
     if not has_legs(fixture):
         return
     width, depth, height = fixture.size
@@ -87,7 +87,7 @@ def dress_pedestal(spec: mujoco.MjSpec, prefix: str, robot: RobotModel) -> None:
 
 
 def dress_barrier(spec: mujoco.MjSpec, barrier: LightBarrier) -> None:
-    """A housing at each end of the beam, and the beam."""
+    """Draw a housing at each end of the beam, and the beam."""
     start, end = np.array(barrier.start), np.array(barrier.end)
     along = (end - start) / np.linalg.norm(end - start)
     quat = np.zeros(4)

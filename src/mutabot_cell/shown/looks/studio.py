@@ -1,4 +1,4 @@
-"""Floor, sky, lights and the quality of pictures."""
+"""The floor, sky and lights of pictures, and their quality."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _ENDLESS = (0.0, 0.0, 0.05)
 
 
 def light_up(spec: mujoco.MjSpec) -> None:
-    """A hall with a key light that casts shadows, a fill light and one from behind that draws edges."""
+    """Add a key light that casts shadows, a fill light and a back light that outlines edges."""
     _quality(spec)
     _floor(spec)
     lights = (

@@ -1,4 +1,4 @@
-"""Materials, and short ways to add shapes that are only looked at."""
+"""Materials, and helpers that add shapes which are only visual."""
 
 from __future__ import annotations
 
@@ -37,17 +37,17 @@ _MATERIALS = {
 
 
 def named(name: str) -> str:
-    """The name of something added, told apart from all that is simulated."""
+    """Return the name for an added shape, different from all simulated names."""
     return _ADDED + name
 
 
 def is_added(name: str) -> bool:
-    """Whether it is such a name."""
+    """Return whether a name is that of an added shape."""
     return name.startswith(_ADDED)
 
 
 def add_materials(spec: mujoco.MjSpec) -> None:
-    """All of them, by names that `show` takes."""
+    """Add all materials, by the names that `show` takes."""
     for name, ((red, green, blue), specular, shininess, reflectance) in _MATERIALS.items():
         spec.add_material(
             name=named(name),
@@ -68,7 +68,7 @@ def show(
     rgba: tuple[float, ...] | None = None,
     quat: tuple[float, ...] = (1.0, 0.0, 0.0, 0.0),
 ) -> mujoco.MjsGeom:
-    """Add a shape that touches nothing and weighs nothing; half edges, or radius and half length, m."""
+    """Add a shape without contacts and mass; half edges, or radius and half length, m."""
     geom = body.add_geom(
         type=kind, size=size, pos=pos, quat=quat, contype=0, conaffinity=0, mass=0.0, group=LOOKS
     )
@@ -80,7 +80,7 @@ def show(
 
 
 def hide(geom: mujoco.MjsGeom) -> None:
-    """Draw it no more: something else stands for it."""
+    """Hide a shape that another one replaces."""
     geom.group = HIDDEN
 
 

@@ -1,4 +1,4 @@
-"""The path of a tool, drawn as a line into a scene."""
+"""Draws the path of a tool as a line into a scene."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _SHORTEST = 0.004
 
 
 def draw_trace(scene: mujoco.MjvScene, points: Sequence[Vector3], colour: Sequence[float] = _COLOUR) -> None:
-    """Draw a line through points, world frame, m; as much of its end as the scene has room for.
+    """Draw a line through points, world frame, m; only its end if the scene has too little room.
 
     Args:
         colour: red, green, blue and opacity from 0 to 1.

@@ -1,4 +1,4 @@
-"""The visual model: the cell's bodies with what is only there to look at, posed as the simulation is.
+"""The visual model: the cell's bodies with visual shapes, posed as the simulation is.
 
 It is another model than the one that is simulated, so that nothing of it can touch, weigh or cost anything
 there. Only a picture builds it.
@@ -25,7 +25,7 @@ from .style import HIDDEN, add_materials, is_added
 
 
 class VisualModel:
-    """Model and pose for pictures of one simulation.
+    """The model and pose for pictures of one simulation.
 
     Attributes:
         model, data: of MuJoCo, for its renderer; posed by `pose`.
@@ -46,7 +46,7 @@ class VisualModel:
         self._bodies = np.array([number for number, name in enumerate(names) if not is_added(name)])
 
     def pose(self) -> None:
-        """Bring everything to where it is now in the simulation, also what was moved by its model."""
+        """Pose everything as it is now in the simulation, also what was moved by changing its model."""
         simulated, state = self._simulation.model, self._simulation.data
         self.model.body_pos[self._bodies] = simulated.body_pos
         self.model.body_quat[self._bodies] = simulated.body_quat
