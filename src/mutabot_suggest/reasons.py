@@ -64,7 +64,7 @@ def _of_recordings(survivor: MutantResult, measured: Measured, suite: SuiteCheck
         return ""
     told = max(stories, key=lambda one: one.rank)
     own = [one for one in told.apart if not one.is_delay and one.deviation > 1.0]
-    if not own or told.story.startswith("the same movements"):
+    if told.story.startswith("the same movements") or not (own or told.story):
         return ONLY_TIME
     turned = max((one.aside or 0.0 for one in own if one.unit == "deg" and not one.is_value), default=0.0)
     for unit, names in (("m", _LENGTHS), ("deg", _ANGLES)):

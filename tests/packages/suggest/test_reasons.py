@@ -103,6 +103,12 @@ def test_where_only_times_differ_the_reason_is_a_deadline(suite: SuiteChecks) ->
     assert reason(suite, told) == "only times differ: add a deadline if the task has one"
 
 
+def test_what_slips_on_its_way_is_told_so_though_no_position_differs(suite: SuiteChecks) -> None:
+    late = Apart("box", "m", 1.0, 0.04, 2.0, 0.0, 0.0, 0.04, 0.0001, 0.05)
+    told = in_test("test_it", "box slipped 9.3 mm (original: 0.23 mm) in the grip", late)
+    assert reason(suite, told).startswith("box slipped 9.3 mm (original: 0.23 mm) in the grip: nothing that")
+
+
 def test_the_same_reason_is_told_once(capsys: pytest.CaptureFixture[str]) -> None:
     texts: list[str] = []
 
