@@ -25,7 +25,7 @@ BEGIN = """
     from std_srvs.srv import SetBool, SetBoolRequest
 
     def until(done):
-        end = time.monotonic() + 10
+        end = time.monotonic() + 60
         while not done():
             assert time.monotonic() < end
             time.sleep(0.002)

@@ -30,7 +30,7 @@ BEGIN = """
     LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
     def until(done, node, executor=None):
-        end = time.monotonic() + 10
+        end = time.monotonic() + 60
         while not done():
             assert time.monotonic() < end
             if executor is None:

@@ -61,7 +61,7 @@ FILES = {
         class Check(unittest.TestCase):
             def test_closed(self):
                 rospy.init_node("check")
-                end = time.monotonic() + 20
+                end = time.monotonic() + 60
                 while not rospy.has_param("/left/done") and time.monotonic() < end:
                     time.sleep(0.01)
                 self.assertTrue(rospy.get_param("/left/closed"))
@@ -101,7 +101,7 @@ TESTS = """
         command = [sys.executable, shutil.which("roslaunch"), "cell", "cell.launch"]
         launched = subprocess.Popen(command)
         try:
-            end = time.monotonic() + 20
+            end = time.monotonic() + 60
             while not rospy.has_param("/left/done"):
                 assert launched.poll() is None and time.monotonic() < end
                 time.sleep(0.01)

@@ -72,7 +72,7 @@ CHECKER = """
     from std_msgs.msg import Float64
 
     rospy.init_node("checker")
-    print(rospy.wait_for_message("/arm/pose", Float64, timeout=5).data)
+    print(rospy.wait_for_message("/arm/pose", Float64, timeout=60).data)
 """
 TESTS = """
     import subprocess
@@ -81,9 +81,9 @@ TESTS = """
     def test_the_arm_moves_by_a_step_and_the_gripper_closes():
         driver = subprocess.Popen([sys.executable, "robot.py"])
         try:
-            subprocess.run([sys.executable, "mission.py", "goal:=/arm/goal"], timeout=20, check=True)
+            subprocess.run([sys.executable, "mission.py", "goal:=/arm/goal"], timeout=120, check=True)
             checker = [sys.executable, "checker.py"]
-            done = subprocess.run(checker, timeout=20, check=True, stdout=subprocess.PIPE)
+            done = subprocess.run(checker, timeout=120, check=True, stdout=subprocess.PIPE)
             assert float(done.stdout) >= 0.7
         finally:
             driver.kill()
