@@ -13,5 +13,9 @@ class ProgramError(RuntimeError):
     """The program itself stops with an error, as a controller would: a mutant of it is killed."""
 
 
+class UnreachableError(ValueError):
+    """A pose is out of reach; the statement that goes there makes a ``ProgramError`` of it."""
+
+
 class UnsupportedError(LanguageError):
     """The program uses something that is not carried out; the message names it and its line."""

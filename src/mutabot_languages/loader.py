@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from os import PathLike
@@ -20,6 +21,9 @@ from .errors import LanguageError
 from .registry import LANGUAGES, language_for
 
 _MAIN = "main"
+#: pytest shows the test and what stopped the program, and no function of this package between them
+for _module in [one for name, one in sys.modules.items() if name.startswith(f"{__package__}.")]:
+    _module.__dict__["__tracebackhide__"] = True
 
 
 @dataclass(frozen=True, slots=True)

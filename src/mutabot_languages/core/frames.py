@@ -29,17 +29,17 @@ class Frame:
             cx * sy * cz + sx * cy * sz,
             cx * cy * sz - sx * sy * cz,
         )
-        return cls(_vector(position), rotation)
+        return cls(vector_of(position), rotation)
 
     @classmethod
     def of_vector(cls, position: Sequence[float], vector: Sequence[float]) -> Frame:
         """Of a rotation vector: axis times angle, rad."""
         angle = math.hypot(*vector)
         if angle < 1e-12:
-            return cls(_vector(position))
+            return cls(vector_of(position))
         factor = math.sin(angle / 2) / angle
         x, y, z = vector
-        return cls(_vector(position), (math.cos(angle / 2), x * factor, y * factor, z * factor))
+        return cls(vector_of(position), (math.cos(angle / 2), x * factor, y * factor, z * factor))
 
     @classmethod
     def of_quaternion(cls, position: Sequence[float], rotation: Sequence[float]) -> Frame:
@@ -48,7 +48,7 @@ class Frame:
         if length < 1e-9:
             raise ValueError("a quaternion of zeros is no rotation")
         w, x, y, z = (one / length for one in rotation)
-        return cls(_vector(position), (w, x, y, z))
+        return cls(vector_of(position), (w, x, y, z))
 
     def __mul__(self, other: Frame) -> Frame:
         """What stands at ``other`` in this frame, seen from where this frame is given."""
@@ -111,9 +111,15 @@ class Frame:
 IDENTITY = Frame()
 
 
-def _vector(values: Sequence[float]) -> Vector:
+def vector_of(values: Sequence[float]) -> Vector:
+    """Three numbers."""
     x, y, z = (float(one) for one in values)
     return (x, y, z)
+
+
+def cross(a: Sequence[float], b: Sequence[float]) -> Vector:
+    """The cross product of two vectors."""
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
 def _product(one: UnitQuaternion, other: UnitQuaternion) -> UnitQuaternion:

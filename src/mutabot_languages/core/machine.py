@@ -119,8 +119,6 @@ class Machine:
         self._limit = limit
         self._left = MOST_STEPS
         self._sites: dict[tuple[int, int], ProgramPlace] = {}
-        errors = type(station.cell).__mro__[0].__module__
-        self.station_errors = _cell_errors(errors)
 
     def step(self, node: ProgramNode, scope: RoutineScope) -> None:
         """Count a statement. Raises ProgramError when there were too many, or it takes too long."""
@@ -148,15 +146,6 @@ class Machine:
     def start(self, name: str, steps: Steps) -> None:
         """Start a task."""
         self.tasks[name] = steps
-
-
-def _cell_errors(module: str) -> tuple[type[BaseException], ...]:
-    """The errors of the cell, which are those of no program: they pass as they are."""
-    import sys  # noqa: PLC0415
-
-    package = sys.modules.get(module.partition(".")[0])
-    found = getattr(package, "CellError", None)
-    return (found,) if isinstance(found, type) else ()
 
 
 class Evaluation:
@@ -195,8 +184,9 @@ class Evaluation:
     def unsupported(self, node: ProgramNode, scope: RoutineScope, what: str = "") -> UnsupportedError:
         """Say that something is not carried out."""
         source = scope.unit.source
+        why = ", which no loaded file declares" if node.kind == "name" and not what else ""
         line = source.line_of(node.start)
-        return UnsupportedError(f"unsupported: {what or node.name} at line {line} of {source.name}")
+        return UnsupportedError(f"unsupported: {what or node.name} at line {line} of {source.name}{why}")
 
     def error(self, node: ProgramNode, scope: RoutineScope, text: str) -> ProgramError:
         """An error of the program at a node."""

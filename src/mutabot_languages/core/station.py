@@ -6,12 +6,14 @@ Every call is made in ``Station.call``, whose frame says which part of the progr
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Any, TypeVar
 
-from mutabot_languages.errors import ProgramError, UnsupportedError
+from mutabot_languages.errors import UnreachableError, UnsupportedError
 
-from .frames import IDENTITY, Frame
+from .frames import IDENTITY, Frame, cross, vector_of
 from .inverse import joint_target
 from .signals import CellMap, InputReader, signal_name
 
@@ -35,6 +37,11 @@ class ProgramPlace:
     def __init__(self, file: str, extent: tuple[int, int, int, int], routine: str) -> None:
         self.file, self.extent, self.routine = file, extent, routine
 
+    @property
+    def text(self) -> str:
+        """File and line, for messages."""
+        return f"{Path(self.file).name}:{self.extent[0]}"
+
 
 class Station:
     """A cell as programs see it.
@@ -48,6 +55,7 @@ class Station:
     Attributes:
         tool: the program's tool on its flange.
         base: the frame that targets are given in.
+        errors: those of the cell, which are no errors of a program.
         outputs: the last value of each output.
         notes: what was accepted without an effect, each once.
     """
@@ -59,6 +67,8 @@ class Station:
         inputs: Mapping[str, Any],
     ) -> None:
         self.cell = cell
+        package = sys.modules[type(cell).__module__.partition(".")[0]]
+        self.errors: tuple[type[Exception], ...] = getattr(package, "CellError", ())
         self._map = signals
         self._inputs = {signal_name(name): value for name, value in inputs.items()}
         x, y, z, *angles = signals.tool
@@ -83,7 +93,12 @@ class Station:
 
     def call(self, site: ProgramPlace, function: Callable[..., T], *arguments: Any, **named: Any) -> T:
         """Call something of the cell for a part of the program. The front end looks for this frame."""
-        return function(*arguments, **named)
+        try:
+            return function(*arguments, **named)
+        except self.errors as error:
+            if not isinstance(error, AssertionError):  # of a test's condition
+                error.args = (f"{site.text}: {error} (in {site.routine})",)
+            raise
 
     def note(self, text: str) -> None:
         """Note what has no effect here."""
@@ -116,19 +131,19 @@ class Station:
         """Where the program's tool point is with these joint angles, robot base frame."""
         degrees = self._all_joints(degrees)
         position, rotation = self.cell.arm.kinematics.tool([math.radians(one) for one in degrees])
-        return matrix_frame(position, rotation) * self._mounted.inverse() * self.tool
+        return matrix_frame(position.tolist(), rotation.tolist()) * self._mounted.inverse() * self.tool
 
     def inverse(self, target: Frame, near: list[float] | None = None) -> list[float]:
         """Joint angles, degrees, that bring the program's tool point to a pose; the nearest to others.
 
-        Raises ProgramError if it cannot be reached.
+        Raises UnreachableError if it cannot be reached.
         """
         arm = self.cell.arm
         start = [math.degrees(one) for one in arm.setpoint] if near is None else near
         found = joint_target(arm.kinematics, self.model, self.to_cell(target), start)
         if found is None:
             x, y, z = target.position
-            raise ProgramError(
+            raise UnreachableError(
                 f"unreachable: no joint angles bring the tool to ({x:.4f}, {y:.4f}, {z:.4f}) m "
                 "as it is turned"
             )
@@ -192,8 +207,8 @@ class Station:
         entry = self._map.inputs.get(key)
         if entry is None:
             raise UnsupportedError(
-                f'nothing says what the input {name} is: name it in the cell map ([in."{name}"]) or in '
-                "run(cell, inputs={…})"
+                f"{site.text}: nothing says what {name} is: if it is an input, name it in the cell map "
+                f'([in."{name}"]) or in run(cell, inputs={{…}})'
             )
         return self._reader(site, entry)()
 
@@ -235,16 +250,16 @@ class Station:
             self.call(site, self.cell.suction.on if entry["suction"] else self.cell.suction.off)
 
 
-def matrix_frame(position: Any, rotation: Any) -> Frame:
+def matrix_frame(position: Sequence[float], rotation: Sequence[Sequence[float]]) -> Frame:
     """The frame of a position and a rotation matrix, shape (3, 3)."""
-    (a, b, c), (d, e, f), (g, h, i) = rotation.tolist()
+    (a, b, c), (d, e, f), (g, h, i) = rotation
     candidates = (
         (1 + a + e + i, (1 + a + e + i, h - f, c - g, d - b)),
         (1 + a - e - i, (h - f, 1 + a - e - i, b + d, c + g)),
         (1 - a + e - i, (c - g, b + d, 1 - a + e - i, f + h)),
         (1 - a - e + i, (d - b, c + g, f + h, 1 - a - e + i)),
     )
-    return Frame.of_quaternion(position.tolist(), max(candidates)[1])
+    return Frame.of_quaternion(position, max(candidates)[1])
 
 
 def arc_points(start: Frame, via: Frame, end: Frame) -> list[Frame]:
@@ -254,18 +269,18 @@ def arc_points(start: Frame, via: Frame, end: Frame) -> list[Frame]:
     """
     a, b, c = start.position, via.position, end.position
     u, w = _minus(b, a), _minus(c, a)
-    normal = _cross(u, w)
+    normal = cross(u, w)
     area = math.hypot(*normal)
     if area < 1e-9:
         return [via, end]
     # the centre from the start: ((|u|² w - |w|² u) × (u × w)) / (2 |u × w|²)
     uu, ww = _dot(u, u), _dot(w, w)
     mixed = tuple(uu * q - ww * p for p, q in zip(u, w, strict=True))
-    to_centre = tuple(one / (2 * area * area) for one in _cross(mixed, normal))
+    to_centre = tuple(one / (2 * area * area) for one in cross(mixed, normal))
     centre = tuple(p + q for p, q in zip(a, to_centre, strict=True))
     axis = tuple(one / area for one in normal)
     radius = _minus(a, centre)
-    side = _cross(axis, radius)
+    side = cross(axis, radius)
     last = _minus(c, centre)
     angle = math.atan2(_dot(last, side), _dot(last, radius)) % (2 * math.pi)
     count = max(2, math.ceil(angle / (2 * math.pi) * _SEGMENTS))
@@ -275,13 +290,8 @@ def arc_points(start: Frame, via: Frame, end: Frame) -> list[Frame]:
         turned = start.between(end, part).rotation
         cos, sin = math.cos(angle * part), math.sin(angle * part)
         place = tuple(o + cos * p + sin * q for o, p, q in zip(centre, radius, side, strict=True))
-        points.append(Frame(_three(place), turned))
+        points.append(Frame(vector_of(place), turned))
     return [*points[:-1], end]
-
-
-def _three(values: tuple[float, ...]) -> tuple[float, float, float]:
-    x, y, z = values
-    return (x, y, z)
 
 
 def _minus(a: Any, b: Any) -> tuple[float, ...]:
@@ -290,10 +300,6 @@ def _minus(a: Any, b: Any) -> tuple[float, ...]:
 
 def _dot(a: Any, b: Any) -> float:
     return float(sum(p * q for p, q in zip(a, b, strict=True)))
-
-
-def _cross(a: Any, b: Any) -> tuple[float, float, float]:
-    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
 def _part(part: float) -> float:

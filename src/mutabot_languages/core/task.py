@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from mutabot_languages.errors import LanguageError
+from mutabot_languages.errors import LanguageError, ProgramError, UnreachableError
 
 from .machine import Evaluation
 from .scope import ControlFlow, Routine, RoutineScope, Steps, Variable
@@ -56,11 +56,12 @@ class ProgramTask(Evaluation):
             else:
                 yield from self.value(node, scope)
         except (TypeError, ValueError, ZeroDivisionError, OverflowError) as error:
-            if isinstance(error, self.machine.station_errors):
+            if isinstance(error, self.station.errors):
                 raise
-            raise self.error(node, scope, f"{type(error).__name__}: {error}") from error
+            kind = "" if isinstance(error, UnreachableError) else f"{type(error).__name__}: "
+            raise self.error(node, scope, f"{kind}{error}") from error
         except (AttributeError, LookupError) as error:
-            if isinstance(error, self.machine.station_errors):
+            if isinstance(error, self.station.errors):
                 raise
             # no operation of a program raises these: it is not known what a controller would do
             raise self.unsupported(node, scope, f"{node.kind} ({type(error).__name__}: {error})") from error
@@ -233,6 +234,50 @@ class ProgramTask(Evaluation):
     def _nothing(self, node: ProgramNode, scope: RoutineScope) -> Steps:
         return
         yield  # pragma: no cover
+
+
+def declare_data(
+    task: ProgramTask,
+    waiting: list[tuple[ProgramNode, RoutineScope]],
+    declare: Callable[[ProgramNode, RoutineScope], Steps],
+) -> Steps:
+    """Declare data until nothing is left; what names later data is declared after it."""
+    undeclared = task.machine.undeclared
+    while waiting:
+        left: list[tuple[ProgramNode, RoutineScope]] = []
+        for node, scope in waiting:
+            try:
+                if node.start in scope.unit.watched:
+                    scope.unit.watched[node.start]()
+                yield from declare(node, scope)
+            except (LanguageError, ProgramError) as error:
+                left.append((node, scope))
+                undeclared[_declared(node)] = error
+            except (TypeError, ValueError) as error:
+                left.append((node, scope))
+                undeclared[_declared(node)] = ProgramError(str(error))
+            else:
+                undeclared.pop(_declared(node), None)
+        if len(left) == len(waiting):  # what nobody uses is no error
+            return
+        waiting = left
+
+
+def call_main(task: ProgramTask, name: str, own: list[ProgramNode]) -> Steps:
+    """Call the routine with a name, else the first of these, which the first file has."""
+    first = task.machine.units[0]
+    scope = RoutineScope(first, "<module>")
+    found = task.find_routine(name, scope) or (Routine(own[0], first) if own else None)
+    if found is None:
+        known = ", ".join(task.machine.routines) or "none"
+        raise LanguageError(f"{first.source.name}: there is no routine {name!r}; there are: {known}")
+    yield from task.call_routine(found, [], found.node, scope)
+
+
+def _declared(node: ProgramNode) -> str:
+    while node.kind in ("assign", "index", "field"):
+        node = node.parts[0]
+    return node.name
 
 
 def _is_label(node: ProgramNode, name: Any) -> bool:

@@ -8,9 +8,8 @@ from typing import Any
 from mutabot_languages.core.language import RobotLanguage
 from mutabot_languages.core.machine import Machine
 from mutabot_languages.core.scope import ProgramUnit, Routine, RoutineScope, Steps, Variable
-from mutabot_languages.core.task import ProgramTask
+from mutabot_languages.core.task import ProgramTask, call_main, declare_data
 from mutabot_languages.core.tree import ProgramNode
-from mutabot_languages.errors import LanguageError, ProgramError
 
 from .dialect import KrlDialect, KrlMachine
 from .instructions import FUNCTIONS, IGNORED, spline
@@ -45,25 +44,7 @@ def _prepare(machine: Machine, task: ProgramTask) -> Steps:
                 unit.tree.value[node.name] = Routine(node, unit)
                 machine.routines.setdefault(node.name, Routine(node, unit))
     waiting = [(node, RoutineScope(unit, "<module>")) for unit in machine.units for node in _data(unit)]
-    while waiting:
-        left: list[tuple[ProgramNode, RoutineScope]] = []
-        for node, scope in waiting:
-            try:
-                yield from _declare(task, node, scope)
-            except (LanguageError, ProgramError) as error:
-                left.append((node, scope))
-                machine.undeclared[_declared(node)] = error
-            else:
-                machine.undeclared.pop(_declared(node), None)
-        if len(left) == len(waiting):  # what nobody uses is no error
-            return
-        waiting = left
-
-
-def _declared(node: ProgramNode) -> str:
-    while node.kind in ("assign", "index", "field"):
-        node = node.parts[0]
-    return node.name
+    yield from declare_data(task, waiting, lambda node, scope: _declare(task, node, scope))
 
 
 def _data(unit: ProgramUnit) -> list[ProgramNode]:
@@ -77,8 +58,6 @@ def _data(unit: ProgramUnit) -> list[ProgramNode]:
 
 
 def _declare(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-    if node.start in scope.unit.watched:
-        scope.unit.watched[node.start]()
     if node.kind == "declare":
         yield from task.dialect.declare(task, node, scope, is_global=True)
         if node.name in ("base_data", "tool_data"):
@@ -118,16 +97,8 @@ def _signal(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
 def _main(machine: Machine, task: ProgramTask, routine: str) -> Steps:
     """The routine with the name of the first file, or its first one."""
     first = machine.units[0]
-    own = [one for one in first.tree.bodies[0] if one.kind == "routine"]
-    name = routine.lower() or first.source.name.rpartition(".")[0].lower()
-    scope = RoutineScope(first, "<module>")
-    found = task.find_routine(name, scope)
-    if found is None and not routine and own:
-        found = Routine(own[0], first)
-    if found is None:
-        known = ", ".join(machine.routines) or "none"
-        raise LanguageError(f"{first.source.name}: there is no routine {name!r}; there are: {known}")
-    yield from task.call_routine(found, [], found.node, scope)
+    own = [one for one in first.tree.bodies[0] if one.kind == "routine" and not routine]
+    yield from call_main(task, routine.lower() or first.source.name.rpartition(".")[0].lower(), own)
 
 
 def _beside(file: Path) -> list[Path]:

@@ -15,6 +15,7 @@ from mutabot.api.reports import CommandContext, UsageError
 
 from .planning import PlannedText, planned_texts
 from .provider import variant_of
+from .rules import BY_NAME, FAMILY
 
 _Words = Annotated[
     list[str] | None,
@@ -69,6 +70,10 @@ def mutant_id(one: PlannedText) -> str:
 def _chosen(request: Request, words: list[str] | None) -> list[PlannedText]:
     files = Project(request.root, request.configuration.program).program_files()
     found = [one for one in planned_texts(request.root, files) if one.difference.reason is None]
+    if not words:
+        found = [
+            one for one in found if BY_NAME[one.difference.operator].family in (FAMILY, *request.families)
+        ]
     chosen = [one for one in found if all(_stands(word, mutant_id(one)) for word in words or ())]
     if not chosen:
         what = f"with {' '.join(words)}" if words else "of these languages"
@@ -78,6 +83,3 @@ def _chosen(request: Request, words: list[str] | None) -> list[PlannedText]:
 
 def _stands(word: str, name: str) -> bool:
     return re.search(rf"(?<![\w-]){re.escape(word)}(?![\w-])", name) is not None
-
-
-__all__ = ["diff", "export"]

@@ -84,8 +84,7 @@ class ProgramFile:
 
     def diff(self, difference: TextChange) -> list[str]:
         """The difference as a unified diff without context: lines without line feeds, else as in the file."""
-        old = _physical(self.text)
-        new = _physical(self.changed(difference))
+        old, new = (one.split("\n") for one in (self.text, self.changed(difference)))
         return [*difflib.unified_diff(old, new, f"a/{self.file}", f"b/{self.file}", n=0, lineterm="")]
 
     def is_sound(self, difference: TextChange) -> bool:
@@ -117,10 +116,6 @@ def outer_nodes(tree: ProgramNode) -> Iterator[ProgramNode]:
             yield from outer_nodes(node)
         else:
             yield node
-
-
-def _physical(text: str) -> list[str]:
-    return text.split("\n")
 
 
 def _line(text: str) -> str:

@@ -36,7 +36,7 @@ class PlannedText:
 
 
 def read_program(
-    root: Path, files: list[str], tell: Callable[[str], None] | None = None
+    root: Path, files: list[str], tell: Callable[[str], None] = lambda text: None
 ) -> list[ProgramFile]:
     """Read those of these files that are of our languages; what cannot be read is said."""
     found: list[ProgramFile] = []
@@ -47,9 +47,8 @@ def read_program(
         content = (root / file).read_bytes()
         text, encoding = decode(content)
         parsed = language.read(file, text)
-        for diagnostic in parsed.diagnostics if tell is not None else ():
-            if tell is not None:
-                tell(diagnostic.text)
+        for diagnostic in parsed.diagnostics:
+            tell(diagnostic.text)
         found.append(ProgramFile(file, language, content, encoding, text, parsed))
     for one in found:
         one.others.extend(other for other in found if other is not one and other.language is one.language)

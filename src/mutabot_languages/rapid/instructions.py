@@ -7,10 +7,10 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from mutabot_languages.core.frames import IDENTITY, Frame
+from mutabot_languages.core.frames import IDENTITY, Frame, cross
 from mutabot_languages.core.names import name_set
 from mutabot_languages.core.scope import ControlFlow, ProgramRaised, RoutineScope, Steps, Structure, Variable
-from mutabot_languages.core.station import TICK
+from mutabot_languages.core.station import TICK, matrix_frame
 from mutabot_languages.core.task import OF_DEGREES, ProgramTask
 from mutabot_languages.core.tree import ProgramNode
 
@@ -375,20 +375,9 @@ def _def_frame(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Ste
     origin, on_x, in_plane = places
     x = _unit(tuple(p - q for p, q in zip(on_x, origin, strict=True)))
     towards = tuple(p - q for p, q in zip(in_plane, origin, strict=True))
-    z = _unit(_cross(x, towards))
-    y = _cross(z, x)
-    from mutabot_languages.core.station import matrix_frame  # noqa: PLC0415
-
-    frame = matrix_frame(_Rows(origin), _Rows(tuple(zip(x, y, z, strict=True))))
-    return _pose_record(task, frame)
-
-
-class _Rows:
-    def __init__(self, rows: Any) -> None:
-        self._rows = rows
-
-    def tolist(self) -> Any:
-        return list(self._rows)
+    z = _unit(cross(x, towards))
+    y = cross(z, x)
+    return _pose_record(task, matrix_frame(origin, [*zip(x, y, z, strict=True)]))
 
 
 def _unit(vector: Any) -> Any:
@@ -396,10 +385,6 @@ def _unit(vector: Any) -> Any:
     if length < 1e-9:
         raise ValueError("points that fall together make no frame")
     return tuple(one / length for one in vector)
-
-
-def _cross(a: Any, b: Any) -> Any:
-    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
 # program flow

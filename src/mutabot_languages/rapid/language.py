@@ -5,9 +5,8 @@ from __future__ import annotations
 from mutabot_languages.core.language import RobotLanguage
 from mutabot_languages.core.machine import Dialect, Machine
 from mutabot_languages.core.scope import ProgramUnit, Routine, RoutineScope, Steps
-from mutabot_languages.core.task import ProgramTask
+from mutabot_languages.core.task import ProgramTask, call_main, declare_data
 from mutabot_languages.core.tree import ProgramNode
-from mutabot_languages.errors import LanguageError, ProgramError
 
 from .dialect import RapidDialect, RapidMachine, RapidTask
 from .instructions import FUNCTIONS, IGNORED
@@ -30,33 +29,9 @@ def _prepare(machine: Machine, task: ProgramTask) -> Steps:
                 waiting.append((node, scope))
             elif node.kind == "opaque":
                 yield from task.statement(node, scope)
-    yield from _data(task, waiting)
-
-
-def _data(task: ProgramTask, waiting: list[tuple[ProgramNode, RoutineScope]]) -> Steps:
-    """Declare data until nothing is left; what names later data is declared after it."""
-    while waiting:
-        left: list[tuple[ProgramNode, RoutineScope]] = []
-        for node, scope in waiting:
-            try:
-                _watch(node, scope)
-                yield from task.dialect.declare(task, node, scope, is_global=True)
-            except (TypeError, ValueError) as error:
-                left.append((node, scope))
-                task.machine.undeclared[node.name] = ProgramError(str(error))
-            except (LanguageError, ProgramError) as error:
-                left.append((node, scope))
-                task.machine.undeclared[node.name] = error
-            else:
-                task.machine.undeclared.pop(node.name, None)
-        if len(left) == len(waiting):  # what nobody uses is no error
-            return
-        waiting = left
-
-
-def _watch(node: ProgramNode, scope: RoutineScope) -> None:
-    if node.start in scope.unit.watched:
-        scope.unit.watched[node.start]()
+    yield from declare_data(
+        task, waiting, lambda node, scope: task.dialect.declare(task, node, scope, is_global=True)
+    )
 
 
 def _members(unit: ProgramUnit) -> list[ProgramNode]:
@@ -76,17 +51,10 @@ def _structure(dialect: Dialect, node: ProgramNode) -> None:
 
 def _main(machine: Machine, task: ProgramTask, routine: str) -> Steps:
     """The routine ``main``, or the first of the first file that takes no arguments."""
-    first = machine.units[0]
-    own = [one for one in _members(first) if one.kind == "routine" and one.value["kind"] == "proc"]
-    name = routine.lower() or "main"
-    scope = RoutineScope(first, "<module>")
-    found = task.find_routine(name, scope)
-    if found is None and not routine and own:
-        found = Routine(next((one for one in own if not one.parts), own[0]), first)
-    if found is None:
-        known = ", ".join(machine.routines) or "none"
-        raise LanguageError(f"{first.source.name}: there is no routine {name!r}; there are: {known}")
-    yield from task.call_routine(found, [], found.node, scope)
+    members = _members(machine.units[0])
+    own = [one for one in members if one.kind == "routine" and one.value["kind"] == "proc"]
+    own.sort(key=lambda one: bool(one.parts))
+    yield from call_main(task, routine.lower() or "main", [] if routine else own)
 
 
 RAPID = RobotLanguage(

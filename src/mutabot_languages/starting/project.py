@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from mutabot_languages.core.language import RobotLanguage
+from mutabot_languages.core.parser import ParsedFile
 from mutabot_languages.core.text import decode
 from mutabot_languages.core.tree import ProgramNode
 from mutabot_languages.registry import language_for
@@ -14,6 +17,9 @@ from mutabot_languages.registry import language_for
 from . import texts
 from .signals import cell_map_text, signals_of
 from .trial import LONGEST, ProgramTrial, tried
+
+#: files that are left out and named
+_MOST_LEFT = 6
 
 
 def project(root: Path, files: Sequence[Path]) -> tuple[dict[str, str], list[str]] | None:
@@ -25,19 +31,15 @@ def project(root: Path, files: Sequence[Path]) -> tuple[dict[str, str], list[str
 
     Returns None if none of them is in a language of this package.
     """
-    files = [one for one in files if language_for(one.name) is not None]
-    language = language_for(files[0].name) if files else None
-    if language is None:
-        return None
-    own = [one for one in files if language_for(one.name) is language]
-    parsed = {one: language.read(one.name, decode(one.read_bytes())[0]) for one in own}
+    parsed = {file: _read(file) for file in files if language_for(file.name) is not None}
     main = _main({file: one.tree for file, one in parsed.items()})
-    others = [one for one in own if one != main and one.parent == main.parent and _is_of(language.name, one)]
-    loaded = [main, *others]
+    language = language_for(main.name) if main is not None else None
+    if main is None or language is None:
+        return None
+    own = {file: one.tree for file, one in parsed.items() if language_for(file.name) is language}
+    loaded = _needed(main, language, own)
     belonging = list(dict.fromkeys([*loaded, *(one for file in loaded for one in language.beside(file))]))
-    for one in belonging:
-        parsed.setdefault(one, language.read(one.name, decode(one.read_bytes())[0]))
-    signals = signals_of([parsed[one] for one in belonging], language.name)
+    signals = signals_of([parsed.get(one) or _read(one) for one in belonging], language.name)
     names = [one.relative_to(root).as_posix() for one in belonging]
     beside = main.parent / "cell_map.toml"
     is_mapped = beside.exists()
@@ -53,32 +55,65 @@ def project(root: Path, files: Sequence[Path]) -> tuple[dict[str, str], list[str
             [one.relative_to(root).as_posix() for one in loaded], found
         )
         told += _told(found, main.name)
-    left = [one.name for one in files if one not in belonging]
+    left = [one.relative_to(root).as_posix() for one in files if one not in belonging]
     if left:
-        told.append(f"left out, another program: {', '.join(left)}; name its files: mutabot init FILE…")
+        more = f" and {len(left) - _MOST_LEFT} more" if len(left) > _MOST_LEFT else ""
+        told.append(
+            f"left out, as {main.name} needs nothing of them: {', '.join(left[:_MOST_LEFT])}{more}; for "
+            "another program, name its files: mutabot init FILE…"
+        )
     return made, told
 
 
-def _main(trees: dict[Path, ProgramNode]) -> Path:
-    """The file with a routine ``main``, else the first with a routine of its name that no other calls."""
-    called = {
-        (node.name, file) for file, tree in trees.items() for node in tree.walk() if node.kind == "call"
-    }
-    own = {
-        file: {node.name for node in tree.walk() if node.kind == "routine"} for file, tree in trees.items()
-    }
+def _read(file: Path) -> ParsedFile:
+    language = language_for(file.name)
+    assert language is not None
+    return language.read(file.name, decode(file.read_bytes())[0])
 
-    def rank(file: Path) -> tuple[bool, bool, bool]:
+
+def _main(trees: dict[Path, ProgramNode]) -> Path | None:
+    """The file with a routine ``main``, else the first with a routine of its name that no other calls.
+
+    None if nothing in these files can be carried out.
+    """
+    called = {file: _names(tree, "call") for file, tree in trees.items()}
+    own = {file: _names(tree, "routine") for file, tree in trees.items()}
+
+    def rank(file: Path) -> tuple[bool, bool, bool, int]:
         stem = file.stem.lower()
-        is_called = any(name == stem and other != file for name, other in called)
-        return "main" not in own[file], not own[file], is_called
+        is_called = any(stem in names for other, names in called.items() if other != file)
+        return "main" not in own[file], not own[file], is_called, len(file.parts)
 
-    return min(trees, key=rank)
+    programs = [file for file in trees if own[file] or called[file]]
+    return min(programs, key=rank, default=None)
 
 
-def _is_of(language: str, file: Path) -> bool:
-    """Whether a file beside the main one is loaded with it: modules, and programs that it may call."""
-    return language == "rapid" or (language == "krl" and file.suffix.lower() == ".src")
+def _needed(main: Path, language: RobotLanguage, trees: dict[Path, ProgramNode]) -> list[Path]:
+    """The file, and those that have what it names and does not have itself, the nearest first."""
+    dialect, found, waiting = language.dialect(), [main], [main]
+    has = {file: _names(tree, "routine", *_data(file)) for file, tree in trees.items()}
+    near = sorted(trees, key=lambda one: (os.path.relpath(one, main.parent).count(os.sep), one))
+    while waiting:
+        tree = trees[waiting.pop(0)]
+        lacking = _names(tree, "call", "name", "text") - _names(tree, "routine", "declare", "parameter")
+        lacking -= {*dialect.functions, *dialect.ignored, *(name for file in found for name in has[file])}
+        for file in near:
+            if file not in found and lacking & has[file] and "main" not in has[file]:
+                lacking -= has[file]
+                found.append(file)
+                waiting.append(file)
+    return found
+
+
+def _data(file: Path) -> list[str]:
+    """Which data of a file others may name: of KRL, that of ``$config.dat`` alone."""
+    return [] if file.suffix.lower() in (".src", ".sub", ".dat") and file.name[0] != "$" else ["declare"]
+
+
+def _names(tree: ProgramNode, *kinds: str) -> set[str]:
+    """The names of nodes, and the texts: RAPID may call by them."""
+    found = (node.value if node.kind == "text" else node.name for node in tree.walk() if node.kind in kinds)
+    return {str(one).lower() for one in found}
 
 
 def _test_text(files: Iterable[str], found: ProgramTrial) -> str:
@@ -110,7 +145,10 @@ def _told(found: ProgramTrial, name: str) -> list[str]:
         if found.is_endless
         else f"ends after {found.seconds:.1f} s"
     )
-    return [f"{name} {ends} with the arm {found.arm}", *(f"  {one}" for one in found.notes[:5])]
+    idle = (
+        [] if found.seconds else ["it does nothing in the cell: name the file that does: mutabot init FILE…"]
+    )
+    return [f"{name} {ends} with the arm {found.arm}", *(f"  {one}" for one in found.notes[:5]), *idle]
 
 
 def _numbers(values: Iterable[float]) -> str:

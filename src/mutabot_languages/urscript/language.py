@@ -5,8 +5,7 @@ from __future__ import annotations
 from mutabot_languages.core.language import RobotLanguage
 from mutabot_languages.core.machine import Machine
 from mutabot_languages.core.scope import RoutineScope, Steps
-from mutabot_languages.core.task import ProgramTask
-from mutabot_languages.core.tree import ProgramNode
+from mutabot_languages.core.task import ProgramTask, call_main
 from mutabot_languages.errors import LanguageError
 
 from .dialect import UrDialect
@@ -24,14 +23,9 @@ def _prepare(machine: Machine, task: ProgramTask) -> Steps:
 
 
 def _main(machine: Machine, task: ProgramTask, routine: str) -> Steps:
-    """Statements at the top run as they stand; a file of definitions alone runs its last one."""
+    """Statements at the top run as they stand; a file of functions alone runs its last without arguments."""
     if routine:
-        if routine not in machine.routines:
-            known = ", ".join(machine.routines) or "none"
-            raise LanguageError(f"there is no function {routine!r}; there are: {known}")
-        call = ProgramNode("call", routine, 0, 0)
-        found = machine.routines[routine]
-        yield from task.call_routine(found, [], call, RoutineScope(found.unit, "<module>"))
+        yield from call_main(task, routine, [])
         return
     unit = machine.units[0]
     body = unit.tree.bodies[0]
@@ -41,8 +35,13 @@ def _main(machine: Machine, task: ProgramTask, routine: str) -> Steps:
     calls = [one for one in body if one.kind == "call"]
     yield from task.run([one for one in body if one.kind != "routine"], scope)
     if own and not calls:
-        last = machine.routines[own[-1].name]
-        yield from task.call_routine(last, [], own[-1], scope)
+        ends = [one for one in own if not one.parts]
+        if not ends:
+            raise LanguageError(
+                f"{unit.source.name}: nothing stands at its top, and each of its functions takes arguments: "
+                "load the file that calls them, or add a call"
+            )
+        yield from call_main(task, ends[-1].name, [])
 
 
 URSCRIPT = RobotLanguage("urscript", (".script", ".urscript"), URScriptParser, UrDialect, _prepare, _main)

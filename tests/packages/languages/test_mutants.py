@@ -188,6 +188,9 @@ def test_diff_and_export_show_and_write_them(tmp_path: Path) -> None:
         command = [sys.executable, "-m", "mutabot", *words]
         return subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
 
+    shown = mutabot("diff").stdout
+    assert ":forget-wait\n" in shown
+    assert ":drop-any\n" not in shown  # of a family that is not asked for
     shown = mutabot("diff", "forget-wait").stdout.splitlines()
     assert shown[0] == "# pick.src:pick:wait for#1:forget-wait"
     assert shown[-2:] == ["-WAIT FOR $IN[25]==TRUE", "+WAIT SEC 0"]

@@ -138,10 +138,50 @@ def test_what_has_no_effect_is_noted(tmp_path: Path) -> None:
 
 
 def test_a_pose_out_of_reach_stops_the_program(tmp_path: Path) -> None:
-    with pytest.raises(ProgramError, match="unreachable"):
-        run(tmp_path, "a.script", "movej(p[3, 0, 0.3, 0, 3.14, 0])\n")
-    with pytest.raises(MotionRefused):
-        run(tmp_path, "a.script", "movel(p[3, 0, 0.3, 0, 3.14, 0])\n")
+    with pytest.raises(ProgramError, match=r"^a.script:2: unreachable: no joint angles .* \(in <module>\)$"):
+        run(tmp_path, "a.script", "sleep(0.1)\nmovej(p[3, 0, 0.3, 0, 3.14, 0])\n")
+    with pytest.raises(MotionRefused, match=r"^a.script:2: motion refused: out of reach .* \(in <module>\)$"):
+        run(tmp_path, "a.script", "sleep(0.1)\nmovel(p[3, 0, 0.3, 0, 3.14, 0])\n")
+
+
+def test_pytest_shows_nothing_of_the_machine_where_a_program_stops(tmp_path: Path) -> None:
+    with pytest.raises(ProgramError) as caught:
+        run(tmp_path, "a.script", "def a():\n  b = 1 / 0\nend\n")
+    shown = caught.traceback.filter(caught)
+    assert {Path(one.path).name for one in shown} == {"test_running.py"}
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "message"),
+    [
+        (
+            "a.src",
+            "DEF a()\nPTP home\nEND",
+            "unsupported: home at line 2 of a.src, which no loaded file declares",
+        ),
+        (
+            "a.mod",
+            "MODULE A\nPROC main()\nIF TestDI(di1) Stop;\nENDPROC\nENDMODULE",
+            "a.mod:3: nothing says what di1 is",
+        ),
+        (
+            "a.script",
+            "def a(b):\n  sleep(b)\nend\n",
+            "a.script: nothing stands at its top, and each of its functions",
+        ),
+        ("a.src", "DEF b()\nWAIT SEC 0\n", "there is no routine 'c'; there are: b"),
+    ],
+)
+def test_what_a_program_lacks_is_said(tmp_path: Path, name: str, text: str, message: str) -> None:
+    routine = "c" if "'c'" in message else ""
+    (tmp_path / name).write_text(text)
+    with pytest.raises(LanguageError, match=message):
+        load(tmp_path / name).run(Cell(), routine)
+
+
+def test_the_last_function_without_arguments_of_a_file_of_functions_runs(tmp_path: Path) -> None:
+    text = "def go():\n  blink(0.2)\nend\ndef blink(t):\n  sleep(t)\nend\n"
+    assert run(tmp_path, "a.script", text)[1].seconds == pytest.approx(0.2, abs=0.02)
 
 
 def test_a_program_that_never_ends_is_stopped_and_one_with_an_end_is_not(tmp_path: Path) -> None:

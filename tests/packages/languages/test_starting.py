@@ -94,6 +94,39 @@ def test_modules_of_rapid_are_one_program_that_begins_in_the_one_with_main(
     compile(test, "test_b.py", "exec")
 
 
+def test_files_belong_to_the_program_that_calls_them_wherever_they_are(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    texts = {
+        "main.src": "DEF main( )\nStep_1( )\nPTP home\nEND\n",
+        "sub/Step_1().src": "DEF Step_1( )\nBAS(#TOOL,1)\nEND\n",
+        "sub/step_2.src": "DEF step_2( )\nEND\n",
+        "copy/main.src": "DEF main( )\nStep_1( )\nEND\nDEF Step_1( )\nEND\n",
+        "system/$config.dat": "DEFDAT $CONFIG\nDECL E6AXIS HOME={A1 0,A2 -90}\nENDDAT\n",
+        "system/bas.src": "DEF bas(a:IN)\nEND\n",
+        "mesh.dat": "12 13 14\n",
+    }
+    for name, text in texts.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_bytes(text.replace("\n", "\r\n").encode("latin-1"))
+    files, lines = begun(tmp_path, monkeypatch, ProgramTrial("gen3", 1.0, (0, 0, 0), (0, 0, 0)))
+    program = ["main.src", "sub/Step_1().src", "system/$config.dat"]
+    assert sorted(tomllib.loads(files["mutabot.toml"])["program"]) == program
+    assert lines[-1].startswith("left out, as main.src needs nothing of them: copy/main.src, mesh.dat,")
+
+
+def test_a_copy_of_a_module_beside_it_is_no_part_of_the_program(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("a.mod", "b - Copy.mod"):
+        (tmp_path / name).write_text(
+            "MODULE A\nPROC main()\ngrip;\nENDPROC\nPROC grip()\nENDPROC\nENDMODULE\n"
+        )
+    files, lines = begun(tmp_path, monkeypatch, ProgramTrial("gen3"))
+    assert tomllib.loads(files["mutabot.toml"])["program"] == ["a.mod"]
+    assert "it does nothing in the cell: name the file that does: mutabot init FILE…" in lines
+
+
 def test_why_a_program_does_not_run_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "a.script").write_text("socket_open('a', 1)\n")
     problem = "UnsupportedError: unsupported: socket_open at line 1 of a.script"
