@@ -26,8 +26,13 @@ The operators of textbooks change program text and know nothing of robots. Use t
 has what [real bugs](real-bugs.md) of robot programs ask for beyond these. It is planted only on request.
 
 No file is changed: while the program is imported, each place is compiled as *the original, unless an
-alternative is chosen*. Tracebacks and `inspect.getsource` show your text. Values computed during import
-(constants, taught points, defaults of functions) have mutants too; all tests judge them.
+alternative is chosen*. Tracebacks show your text. Values computed during import (constants, taught points,
+defaults of functions) have mutants too; all tests judge them.
+
+A file that tests read as text (`inspect.getsource`, `exec` or `ast.parse` of what they have read, a copy that
+they import; in their process or below it) is really changed, for the process of one mutant and all below it:
+each mutant runs in [processes of its own](engines.md), and all tests from the first reader on judge. Your
+files stay as they are.
 
 An alternative with the original's value has not acted. mutabot knows this where the original is a part of the
 alternative, or can be [evaluated beforehand](engines.md#mutants-of-the-program-text); any other alternative

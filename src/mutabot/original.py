@@ -167,6 +167,19 @@ class Original:
         """Return the files of the program whose text could not be instrumented, with the reason."""
         return {file: why for _, one in sorted(self.text.items()) for file, why in one.refused.items()}
 
+    def readers(self, round: int, file: str) -> list[str]:
+        """Return the tests of a round that may use the text of a file otherwise than by importing it.
+
+        All from the first on that reads it, itself or in a process below it, also tests that are set aside:
+        what a mutant does to code that was compiled does not show there.
+        """
+        executed = self.executed.get(round)
+        return executed.from_reader_of(file) if executed is not None else []
+
+    def is_read(self, file: str) -> bool:
+        """Return whether tests may use the text of a file otherwise than by importing it, see ``readers``."""
+        return any(self.readers(round, file) for round in range(len(self.tests)))
+
     def simulated(self, round: int, test: str) -> float:
         """Return the simulated seconds of a test; 0 without a clock, or if the test let no time pass."""
         return self.ends[round, test].simulated or 0.0

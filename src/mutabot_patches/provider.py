@@ -223,11 +223,13 @@ def _reaching(
 ) -> list[list[str]] | None:
     """Return the tests of each round that call what a patch changes, also in processes below the tests.
 
-    None if a process that runs cannot become the mutant, or if who calls it is not known.
+    None if a process that runs cannot become the mutant, or if who calls it is not known: tests that read a
+    file as text need not call what stands in it.
     """
     numbers = {known.get((file, extent)) for file, extent, _ in one.beginnings}
     is_unknown = not numbers or None in numbers or len(original.text) < len(original.tests)
-    if is_unknown or {file.path for file in one.patch.files} & {*original.refused_files()}:
+    files = {file.path for file in one.patch.files}
+    if is_unknown or files & {*original.refused_files()} or any(map(original.is_read, files)):
         return None
     found = list[list[str]]()
     for round, tests in enumerate(original.tests):

@@ -62,6 +62,7 @@ class SourceFaults(FaultProvider):
         looked_at = original.texts.get(self.name, ())
         if not looked_at:
             return Planned()
+        from .changed import changing, reach_readers
         from .refine import plant, planted_of, refine
 
         why = original.refused_files()
@@ -74,8 +75,13 @@ class SourceFaults(FaultProvider):
             for place in text.places
             for index in range(len(place.alternatives))
         ]
-        mutants = [replace(one, order=(OF_TEXT.index(one.mutant.family),)) for one in plant(texts)]
-        return Planned([*mutants, *left_out], texts)
+        found = (
+            changing(project.root, text) if original.is_read(text.file) else plant([text]) for text in texts
+        )
+        mutants = [replace(one, order=(OF_TEXT.index(one.mutant.family),)) for each in found for one in each]
+        planned = Planned([*mutants, *left_out], texts)
+        reach_readers(planned, original, texts)
+        return planned
 
     def _operators(self, project: Project) -> list[str]:
         from .registry import names

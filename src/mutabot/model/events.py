@@ -540,11 +540,12 @@ class Raised(Event):
 
 @frozen
 class Found(Event):
-    """Targets of the vocabulary, its modules, and nodes that exist in the process."""
+    """Targets of the vocabulary, its modules, and nodes that exist in the process; files read as text."""
 
     targets: tuple[str, ...] = ()
     modules: tuple[str, ...] = ()
     nodes: tuple[str, ...] = ()
+    texts: tuple[str, ...] = ()
 
 
 @frozen

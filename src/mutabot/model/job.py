@@ -162,6 +162,11 @@ class Job:
         is_of_text = all(one.reference == TEXT_FAULT for one in self.active.values())
         return is_of_text and not (self.vocabulary.operations or self.vocabulary.clock)
 
+    @property
+    def is_of_original(self) -> bool:
+        """Whether it runs the original and forks no mutants: what tests read as text is looked at."""
+        return self.mutant is None and self.forking is None
+
     def below(self, mutant: Mutant, activation: Activation) -> Job:
         """Return the job of the processes below a fork that is this mutant."""
         text = self.instrumentation.only(activation.places) if self.instrumentation is not None else None

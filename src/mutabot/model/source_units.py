@@ -16,11 +16,11 @@ from copy import copy
 from functools import cached_property
 from typing import NamedTuple
 
-#: in the place of a line: the module level, or the text of the whole file
-MODULE, WHOLE = -1, 0
+#: in the place of a line: the module level, the text of the whole file, or that it was read as text
+MODULE, WHOLE, AS_TEXT = -1, 0, -2
 #: in the place of a file: all Python files of the project may have been executed
 ALL_FILES = "*"
-#: units that were executed: by file, the lines of their ``def``, ``MODULE`` or ``WHOLE``
+#: units that were executed: by file, the lines of their ``def``, ``MODULE``, ``WHOLE`` or ``AS_TEXT``
 Executed = Mapping[str, tuple[int, ...]]
 
 #: decorators that leave it to others when a function is called, and do not look into it
@@ -64,14 +64,23 @@ class ExecutedByTests:
     def __init__(self, told: Iterable[tuple[str, Executed | None]]) -> None:
         self._numbers: dict[str, int] = {}
         self._by_test: list[Executed | None] = []
+        self._read: dict[str, int] = {}  # by file, the first test that reads it as text
         for number, (test, executed) in enumerate(told):
             self._numbers[test] = number
             self._by_test.append(executed)
+            for file, lines in (executed or {}).items():
+                if AS_TEXT in lines:
+                    self._read.setdefault(file, number)
 
     def by(self, tests: Iterable[str]) -> Executed | None:
         """Return the units that these tests depend on; None if those of any test are unknown."""
         last = max((self._numbers[test] for test in tests if test in self._numbers), default=-1)
         return together(self._by_test[: last + 1])
+
+    def from_reader_of(self, file: str) -> list[str]:
+        """Return the tests from the first on that reads a file as text; none if no test does."""
+        first = self._read.get(file)
+        return [] if first is None else [*self._numbers][first:]
 
 
 FunctionNode = ast.FunctionDef | ast.AsyncFunctionDef

@@ -16,11 +16,11 @@ import sys
 from types import CodeType, FrameType
 from typing import Any
 
-from mutabot.model.source_units import ALL_FILES, MODULE, WHOLE, Executed, functions_of
-from mutabot.runtime import real_folder
+from mutabot.model.source_units import ALL_FILES, AS_TEXT, MODULE, WHOLE, Executed, functions_of
 from mutabot.runtime.processes.environment import FRAMES, listen
 from mutabot.runtime.program_text import loading
 from mutabot.runtime.program_text.compiling import SourceStep
+from mutabot.runtime.text_reads import TextReads, is_own
 
 #: the built-in name of the bytes, one for each function
 RAN = "__mutabot_ran__"
@@ -45,7 +45,8 @@ class ExecutedUnits(SourceStep):
     is_optional = True
 
     def __init__(self, root: str) -> None:
-        self._root = os.path.join(os.path.realpath(root), "")
+        self._reads = TextReads(root, self._note_read)
+        self._name = self._reads.name
         self._ran = bytearray()
         self._places: list[_PLACES] = []
         self._common: set[_PLACES] = set()
@@ -69,7 +70,8 @@ class ExecutedUnits(SourceStep):
                 self._keep({(name, WHOLE)})
         loading.add(self)
         loading.hook_pytest(self.wants, self.change)
-        listen(("open", "import", "exec", *STARTS), self._on_audit_event)
+        self._reads.install()
+        listen(("import", "exec", *STARTS), self._on_audit_event)
 
     def wants(self, path: str) -> bool:
         """Return whether a file is the project's own."""
@@ -137,34 +139,24 @@ class ExecutedUnits(SourceStep):
             number = self._ran.find(1, number + 1)
         return found
 
-    def _name(self, path: str) -> str | None:
-        """Return the path of a file of the project, relative to it; None for others."""
-        real = path
-        if not path.startswith("<"):  # a link in the project is a file of its own
-            folder, last = os.path.split(os.path.abspath(path))
-            real = os.path.join(real_folder(folder), last)
-        if not real.startswith(self._root) or "/site-packages/" in real or "/.mutabot/" in real:
-            return None
-        return real[len(self._root) :]
+    def _note_read(self, name: str, is_text: bool) -> None:
+        found = {(name, WHOLE), (name, AS_TEXT)} if is_text else {(name, WHOLE)}
+        if self._in_call:
+            self._test |= found
+        else:
+            self._keep(found)
 
     def _on_audit_event(self, event: str, arguments: tuple[Any, ...]) -> None:
         """Record an audit event that outcomes may depend on, beside executed units."""
-        if event == "open":
-            path, _, flags = arguments
-            if isinstance(path, str | bytes | os.PathLike) and not flags & (os.O_WRONLY | os.O_TRUNC):
-                name = None if _is_own() else self._name(os.fsdecode(path))
-                if name is not None and not (name.endswith(".py") and _is_import()):
-                    if self._in_call:
-                        self._test.add((name, WHOLE))
-                    else:
-                        self._keep({(name, WHOLE)})
-        elif event == "import" and arguments[0] in _SPAWNERS:
+        if event == "import" and arguments[0] in _SPAWNERS:
             self._keep({(ALL_FILES, WHOLE)})
         elif event == "exec" and isinstance(arguments[0], CodeType):
             name = self._name(arguments[0].co_filename)
             if name is not None and name not in self._loaded:
                 self._keep({(name, WHOLE)})
-        elif event in STARTS and not (_is_own() or _is_foreign(event, arguments) or self._is_of_library()):
+        elif event in STARTS and not (
+            is_own(sys._getframe(FRAMES)) or _is_foreign(event, arguments) or self._is_of_library()
+        ):
             self._keep({(ALL_FILES, WHOLE)})
 
     def _is_of_library(self) -> bool:
@@ -178,25 +170,6 @@ class ExecutedUnits(SourceStep):
                 return False
             frame = frame.f_back
         return False
-
-
-def _who(readers: tuple[str, ...]) -> str:
-    """Return the name of the module that opened a file, skipping ``readers``, which open files for others."""
-    frame: FrameType | None = sys._getframe(2 + FRAMES)
-    while frame is not None and str(frame.f_globals.get("__name__", "")).partition(".")[0] in readers:
-        frame = frame.f_back
-    return str(frame.f_globals.get("__name__", "")) if frame is not None else ""
-
-
-def _is_own() -> bool:
-    """Return whether mutabot causes the event, possibly through modules that read program text."""
-    return _who(("linecache", "tokenize", "codecs")).startswith("mutabot.")
-
-
-def _is_import() -> bool:
-    """Return whether a program text is opened by the import system or by pytest."""
-    name = _who(("pathlib", "linecache", "tokenize", "codecs"))
-    return name.startswith(("_pytest.", "_frozen_importlib_external", "importlib._bootstrap_external"))
 
 
 def _is_foreign(event: str, arguments: tuple[Any, ...]) -> bool:

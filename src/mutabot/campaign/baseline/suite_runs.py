@@ -16,10 +16,11 @@ from mutabot.campaign.baseline.writes import written_through
 from mutabot.campaign.probe_readings import probe_intervals_of
 from mutabot.campaign.request import Progress, Request
 from mutabot.config.mistakes import problem_error
-from mutabot.errors import BaselineError, NothingToDoError
+from mutabot.errors import BaselineError, NothingToDoError, in_short
 from mutabot.execution.task import ABNORMAL, Result, Task, tail_of
 from mutabot.families import OF_CALLS
 from mutabot.languages.python import unused_calls
+from mutabot.languages.registry import program_files
 from mutabot.model import Instrumentation, Span
 from mutabot.model.call import CAMPAIGN_SEED_VARIABLE, DEFAULT_SEED, ROUND_VARIABLE, derive
 from mutabot.model.deadline import Limit
@@ -308,6 +309,12 @@ def _read(suite: _Suite, texts: Mapping[str, tuple[ProgramText, ...]]) -> Baseli
             f"runs cannot keep their files to themselves ({why}): each mutant runs in a process of its own, "
             "one after the other, and what one leaves, others may find. User namespaces would allow it, in a "
             "container --cap-add SYS_ADMIN --security-opt apparmor=unconfined"
+        )
+    files = program_files(request.root, request.configuration.program)
+    read = [file for file in files if baseline.is_read(file)]
+    if read and not {*request.families}.isdisjoint(OF_CALLS):
+        progress.note(
+            f"tests read the text of {in_short(read, 2)}: what they do with it has no mutants of calls"
         )
     not_along = next((end.not_along for end in ends if end.not_along), None)
     if not_along is not None:

@@ -100,6 +100,7 @@ class _Candidate:
     """A test where a pair of controls could act; ``first`` is the number of the first test at its place."""
 
     round: int
+    is_apart: bool
     is_early: bool
     has_processes: bool
     seconds: float
@@ -116,7 +117,7 @@ class _Candidate:
             return self.round, self.has_processes, -self.first
         if forked:
             return self.round, self.first
-        return self.round, self.is_early, self.has_processes, self.seconds
+        return self.round, self.is_apart, self.is_early, self.has_processes, self.seconds
 
 
 def controls_of(baseline: Baseline, mutants: Iterable[Mutant], *, forked: bool = False) -> list[Control]:
@@ -127,19 +128,23 @@ def controls_of(baseline: Baseline, mutants: Iterable[Mutant], *, forked: bool =
     come after. What is forked before any test has an identity of its own, which runs the whole suite; the
     other pair is then forked as late as possible, when there is most that a fork could share.
     """
-    planned = {Place.of(one) for one in mutants if not forked or not baseline.is_apart(one)}
+    apart: dict[Place, bool] = {}  # of several mutants at a place, the first tells how its controls act
+    for mutant in mutants:
+        if not forked or not baseline.is_apart(mutant):
+            apart.setdefault(Place.of(mutant), baseline.is_apart(mutant))
     numbers = [{test: number for number, test in enumerate(tests)} for tests in baseline.tests]
     found: dict[tuple[str, bool], list[_Candidate]] = {}
     for (round, place), tests in baseline.reaching.items():
         ends = [baseline.ends[round, test] for test in tests]
         passing = [end for end in ends if end.outcome == "passed"]
-        if not passing or place not in planned:
+        if not passing or place not in apart:
             continue
         quickest, first = passing[0], min(map(numbers[round].__getitem__, tests))
         is_early = place in baseline.early
         has_processes = forked and any(end.processes for end in ends)
         seconds = min(end.wall for end in passing)
-        one = _Candidate(round, is_early, has_processes, seconds, first, place, quickest.test)
+        facts = (round, apart[place], is_early, has_processes, seconds, first)
+        one = _Candidate(*facts, place, quickest.test)
         way = (baseline.faults.providers.get(place, CALLS), forked and is_early)
         found.setdefault(way, []).append(one)
     controls: list[Control] = []

@@ -29,6 +29,7 @@ from mutabot.runtime.processes.environment import STARTS, Now, carry, listen, st
 from mutabot.runtime.program_text.instrument import SessionText
 from mutabot.runtime.program_text.loading import hook_script
 from mutabot.runtime.program_text.text_mutant import TextMutant
+from mutabot.runtime.text_reads import TextReads
 
 if TYPE_CHECKING:
     from mutabot.runtime.event_file import EventWriter
@@ -146,6 +147,7 @@ class Member:
         self._targets: set[str] = set()
         self._reported = Evidence()
         self._places: set[int] = set()
+        self._texts: set[str] = set()
         self._exceeded = False
         self._is_over = False
 
@@ -179,6 +181,8 @@ class Member:
             self._watch_calls(session)
         atexit.register(self.end)
         self._watch_exits()
+        if session.job.is_of_original:
+            TextReads(session.job.root, self._read).install()
 
     def _watch_calls(self, session: Session) -> None:
         """Report each call that the session records."""
@@ -201,6 +205,12 @@ class Member:
         messages.on_node = lambda name: self.file.send(events.Found(nodes=(name,)))
         if messages.on_heard is not None:
             messages.on_heard = partial(heard, messages.on_heard)
+
+    def _read(self, name: str, is_text: bool) -> None:
+        """Report a file that this process reads as text."""
+        if is_text and _member is self and name not in self._texts:
+            self._texts.add(name)
+            self.file.send(events.Found(texts=(name,)))
 
     def turn(self) -> None:
         """Check whether another test has begun."""

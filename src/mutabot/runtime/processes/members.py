@@ -12,6 +12,7 @@ from mutabot.model import events
 from mutabot.model.activation import Activation
 from mutabot.model.event_file import FOLDER
 from mutabot.model.fold import ChildRecord, Children, FactsOfTest, calls_of, fold, is_alive
+from mutabot.model.source_units import AS_TEXT, WHOLE, Executed, together
 from mutabot.runtime.processes.environment import Announced, ProcessWatch, carry, write_wake
 
 if TYPE_CHECKING:
@@ -45,6 +46,7 @@ class Members:
         self._present: list[ChildRecord] = []
         self._texts: list[events.TextsSeen] = []
         self._unseen: set[str] = set()
+        self._read: set[str] = set()
         self._acted = has_acted
         carry(self.folder)
         self._watch = ProcessWatch(self._report_unseen)
@@ -68,7 +70,10 @@ class Members:
         end = replace(end, processes=tuple((one.began.pid, one.name) for one in here))
         for one in here:
             one.forget()
-        return replace(end, failure=end.failure or self.children.doubt)
+        read: Executed = dict.fromkeys(sorted(self._read), (AS_TEXT, WHOLE))
+        self._read.clear()
+        executed = together([end.executed, read]) if read else end.executed
+        return replace(end, failure=end.failure or self.children.doubt, executed=executed)
 
     def have_begun(self) -> bool:
         """Return whether any member has begun until now."""
@@ -102,6 +107,7 @@ class Members:
                     for targets in self._session.targets:
                         targets.found_elsewhere(event.targets)
                     self._session.inspection.elsewhere.update(event.modules)
+                    self._read.update(event.texts)
                 case events.CallsAsked() | events.NotInstrumented() | events.Problem() | events.Remark():
                     self._session.pipe.send(event)
 
@@ -138,7 +144,7 @@ def _write_wake(folder: str, job: Job) -> None:
     files = [os.path.realpath(os.path.join(job.root, path)) for path in (*job.program, *job.oracle)]
     for path in (*job.program, *job.oracle):
         names.update(part.removesuffix(".py") for part in path.split("/") if part not in (".", "..", ""))
-    write_wake(folder, _JOIN, job.key, names, files)
+    write_wake(folder, _JOIN, job.key, names, files, has_readers=job.is_of_original)
 
 
 def _top(target: str) -> str:

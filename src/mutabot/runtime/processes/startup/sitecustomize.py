@@ -8,7 +8,7 @@ module that the vocabulary names. Only then the rest of mutabot is loaded.
 The file ``wake`` of the folder that the environment names says what is of interest, a line each:
 ``join MODULE`` with a function of that name, which is then called with the folder, ``key KEY`` of the seals,
 ``path FOLDER`` where packages of ours can be found, ``own NAME`` of such a package, ``name MODULE``, ``file
-PATH`` of a file or folder.
+PATH`` of a file or folder, and ``readers`` if a process is of interest, too, that opens such a file.
 """
 
 import os
@@ -43,6 +43,12 @@ class _Finder:
             if found is not None:
                 return found
         return None
+
+    def on_audit_event(self, event: str, arguments: "tuple[object, ...]") -> None:
+        path = arguments[0] if event == "open" else None
+        if isinstance(path, str) and path.endswith(".py") and self in sys.meta_path:
+            if self.is_of_interest(path):
+                _wake(self)
 
     def is_of_interest(self, path: str) -> bool:
         real = os.path.realpath(path)
@@ -111,12 +117,15 @@ def enter(command: "str | None" = None) -> None:
             lines = [line.rstrip("\n").partition(" ") for line in file]
     except OSError:  # the campaign is over
         return
-    told: "dict[str, list[str]]" = {"join": [""], "key": [""], "path": [], "own": [], "name": [], "file": []}
+    told: "dict[str, list[str]]" = {"join": [""], "key": [""]}
+    told.update((key, []) for key in ("path", "own", "name", "file", "readers"))
     for key, _, value in lines:
         told[key].append(value)
     finder = _Finder(folder, told)
     sys.meta_path.append(_MutabotFinder(told["path"], told["own"]))
     sys.meta_path.insert(0, finder)
+    if told["readers"]:
+        sys.addaudithook(finder.on_audit_event)
     script = command if command is not None else getattr(sys, "argv", [""])[0]
     if script and script[0] != "-" and finder.is_of_interest(script):
         _wake(finder)

@@ -1,0 +1,116 @@
+"""Which reads of program text count: those after which somebody has it as text."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+from tests.plugins.test_faults import write
+
+#: each reads the program in its way, in a function of its own
+READERS = """
+    import codecs, importlib.util, importlib.resources, inspect, linecache, logging, os, pkgutil
+    import py_compile, runpy, shutil, tokenize, traceback, zipfile
+    from pathlib import Path
+
+    HERE = Path(__file__).parent
+    PROGRAM = HERE / "mission.py"
+
+    def imports():
+        import mission
+    def imports_by_its_place():
+        spec = importlib.util.spec_from_file_location("other", PROGRAM)
+        spec.loader.exec_module(importlib.util.module_from_spec(spec))
+    def runs():
+        runpy.run_path(str(PROGRAM))
+    def fails():
+        import mission
+        try:
+            mission.fail()
+        except ValueError:
+            assert "raise" in traceback.format_exc()
+            logging.getLogger("x").exception("it fails")
+    def writes():
+        with open(PROGRAM, "ab"):
+            pass
+    def reads():
+        PROGRAM.read_text()
+    def opens():
+        open(PROGRAM, "rb").read()
+    def opens_a_descriptor():
+        os.close(os.open(PROGRAM, os.O_RDONLY))
+    def opens_with_tokenize():
+        tokenize.open(PROGRAM).read()
+    def opens_with_codecs():
+        codecs.open(PROGRAM).read()
+    def gets_source():
+        import mission
+        inspect.getsource(mission.fail)
+    def gets_lines():
+        linecache.getline(str(PROGRAM), 1)
+    def gets_source_of_a_traceback():
+        fails()
+        gets_source()
+    def asks_its_loader():
+        importlib.util.find_spec("mission").loader.get_source("mission")
+    def asks_for_data():
+        pkgutil.get_data("package", "part.py")
+    def asks_for_a_resource():
+        importlib.resources.files("package").joinpath("part.py").read_text()
+    def copies():
+        shutil.copy(PROGRAM, HERE / "copied.txt")
+    def copies_everything():
+        shutil.copytree(HERE / "package", HERE / "other")
+    def compiles():
+        py_compile.compile(str(PROGRAM), str(HERE / "compiled.pyc"))
+    def packs():
+        zipfile.ZipFile(HERE / "packed.zip", "w").write(PROGRAM)
+"""
+MAIN = """
+    import json, sys
+    import readers
+    from mutabot.runtime.text_reads import TextReads
+
+    told = set()
+    TextReads(sys.argv[1], lambda name, is_text: told.add(name) if is_text else None).install()
+    getattr(readers, sys.argv[2])()
+    print(json.dumps(sorted(told)))
+"""
+NONE = ("imports", "imports_by_its_place", "runs", "fails", "writes")
+OF_PACKAGE = ("asks_for_data", "asks_for_a_resource", "copies_everything")
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[str]]:
+    """What each of the readers reads as text."""
+    files = {
+        "mission.py": "def fail():\n    raise ValueError\n",
+        "package/__init__.py": "",
+        "package/part.py": "",
+        "readers.py": READERS,
+        "main.py": MAIN,
+    }
+    folder = write(tmp_path_factory.mktemp("reads"), files)
+    names = [line.split()[1].removesuffix("():") for line in READERS.splitlines() if " def " in line]
+    started = {
+        name: subprocess.Popen(
+            [sys.executable, "main.py", str(folder), name], cwd=folder, stdout=subprocess.PIPE, text=True
+        )
+        for name in names
+    }
+    return {name: json.loads(one.communicate()[0]) for name, one in started.items()}
+
+
+def test_imports_and_what_shows_lines_read_no_text(found: dict[str, list[str]]) -> None:
+    assert {name: found[name] for name in NONE} == {name: [] for name in NONE}
+
+
+def test_whatever_else_reads_has_the_text(found: dict[str, list[str]]) -> None:
+    others = {name: read for name, read in found.items() if name not in NONE}
+    wanted = {name: ["package/part.py"] if name in OF_PACKAGE else ["mission.py"] for name in others}
+    wanted["copies_everything"] = ["package/__init__.py", "package/part.py"]
+    assert len(others) == 15
+    assert others == wanted
