@@ -43,7 +43,7 @@ from unittest.mock import patch
 from tests.packages.hardware.robot_server import GUARD, RobotServer, robot_server, write_project
 
 from mutabot.cli.app import main as mutabot
-from mutabot_hardware.leave import Leave
+from mutabot_hardware.permission import Permissions
 
 #: it goes on whatever comes of a command
 PROGRAM = """
@@ -181,9 +181,9 @@ class Tail:
 def _hold(folder: Path, server: RobotServer, draw: Random, held: int, found: Found) -> None:
     """One campaign, with stops while its mutants run, each of which is taken back."""
     before, tail, is_over = len(server.received), Tail(_file(folder)), threading.Event()
-    made: list[Leave] = []
+    made: list[Permissions] = []
 
-    class Kept(Leave):
+    class Kept(Permissions):
         def __enter__(self) -> Self:
             made.append(self)
             return super().__enter__()
@@ -198,7 +198,7 @@ def _hold(folder: Path, server: RobotServer, draw: Random, held: int, found: Fou
                 last = len(server.received)
 
     holder = threading.Thread(target=hold)
-    with patch("mutabot_hardware.executor.Leave", Kept):
+    with patch("mutabot_hardware.executor.Permissions", Kept):
         holder.start()
         _quietly(folder, "--fresh", "--hardware", "repeat")
         is_over.set()
@@ -210,7 +210,9 @@ def _hold(folder: Path, server: RobotServer, draw: Random, held: int, found: Fou
         found.wrong.append(f"{got} received, {tail.sent} with leave")
 
 
-def _hold_once(leave: Leave, tail: Tail, draw: Random, found: Found, received: Callable[[], int]) -> None:
+def _hold_once(
+    leave: Permissions, tail: Tail, draw: Random, found: Found, received: Callable[[], int]
+) -> None:
     leave.stop(_MOMENT)
     allowed = tail.read()
     time.sleep(draw.uniform(0.002, _LASTS))

@@ -23,8 +23,8 @@ sys.path.insert(0, str(ROOT / "tests"))
 
 from mutabot.journal.journal import Journal  # noqa: E402
 from mutabot.results.results import read_results  # noqa: E402
-from mutabot_world.judged import WorldEnd, WorldLadder, ladders, suites  # noqa: E402
-from mutabot_world.sizes import amount  # noqa: E402
+from mutabot_world.ladders import WorldEnd, WorldLadder, combined_ladders, ladders  # noqa: E402
+from mutabot_world.units import with_unit  # noqa: E402
 from suites.corpus import copied  # noqa: E402
 
 #: what the paper names
@@ -124,7 +124,7 @@ def measured(name: str, copy: Path, only: Sequence[str], jobs: int) -> list[Worl
     if done.returncode:
         raise SystemExit(f"{name}: exit code {done.returncode}: {done.stdout[-1000:]}")
     with Journal.open(copy / ".mutabot" / "journal.sqlite") as journal:
-        return suites(ladders(read_results(journal), what.tolerances))
+        return combined_ladders(ladders(read_results(journal), what.tolerances))
 
 
 def table(found: Sequence[WorldLadder]) -> Iterator[str]:
@@ -147,14 +147,14 @@ def without(found: Sequence[WorldLadder]) -> Iterator[str]:
 def _row(one: WorldLadder) -> Iterator[str]:
     sizes = sorted(one.found)
     yield f"{one.parameter} {one.direction.replace('-', '−')}".strip()
-    yield f"{sizes[0]:g} to {amount(sizes[-1], one.unit)}"
-    yield "none" if one.robust_to is None else amount(one.robust_to, one.unit)
+    yield f"{sizes[0]:g} to {with_unit(sizes[-1], one.unit)}"
+    yield "none" if one.robust_to is None else with_unit(one.robust_to, one.unit)
     least, most = (one.unseen[0], one.unseen[-1]) if one.unseen else (0.0, 0.0)
-    span = amount(most, one.unit) if least == most else f"{least:g} to {amount(most, one.unit)}"
+    span = with_unit(most, one.unit) if least == most else f"{least:g} to {with_unit(most, one.unit)}"
     yield span if one.unseen else ""
-    some = [amount(size, one.unit) for size, end in one.ends.items() if end is WorldEnd.NOTICED]
+    some = [with_unit(size, one.unit) for size, end in one.ends.items() if end is WorldEnd.NOTICED]
     never = f"never, but {' and '.join(some)} is" if some else "never"
-    yield never if one.noticed_from is None else amount(one.noticed_from, one.unit)
+    yield never if one.noticed_from is None else with_unit(one.noticed_from, one.unit)
     yield _happened(one)
 
 

@@ -18,10 +18,10 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from mutabot_cell import Cell
-from mutabot_cell.shown.camera import View
-from mutabot_cell.shown.looks.trace import draw_trace
-from mutabot_cell.shown.looks.visual import VisualModel
-from mutabot_motion.pictures.lettering import letters
+from mutabot_cell.display.camera import View
+from mutabot_cell.display.looks.trace import draw_trace
+from mutabot_cell.display.looks.visual import VisualModel
+from mutabot_motion.pictures.fonts import font_of_size
 
 ROOT = Path(__file__).parents[1]
 #: its box is red
@@ -209,8 +209,8 @@ def _label(image: Image.Image) -> None:
     for number, (name, text, colour) in enumerate(lines):
         y = HEIGHT - 66 + 30 * number
         draw.rectangle((20, y + 4, 34, y + 18), fill=colour)
-        letters(20).draw(draw, (46, y - 2), name, colour)
-        letters(18).draw(draw, (150, y), text, (233, 236, 239))
+        font_of_size(20).draw(draw, (46, y - 2), name, colour)
+        font_of_size(18).draw(draw, (150, y), text, (233, 236, 239))
 
 
 if __name__ == "__main__":

@@ -56,9 +56,9 @@ class _OtherUnit(ValueOperator):
         return context.quantity.map_numbers(value, lambda number: like(number, convert(number, other)))
 
     def describe(self, subject: Subject, before: Any | None, after: Any | None) -> str:
-        told = super().describe(subject, before, after)
+        description = super().describe(subject, before, after)
         how = "taken for" if subject.variant.startswith(_TAKEN) else "given in"
-        return f"{told} ({how} {self.units[subject.required_quantity.unit or '']})"
+        return f"{description} ({how} {self.units[subject.required_quantity.unit or '']})"
 
 
 def _both_ways(units: Mapping[str, str]) -> dict[str, str]:

@@ -34,8 +34,8 @@ class Exchange(ValueOperator):
 
     def describe(self, subject: Subject, before: Any | None, after: Any | None) -> str:
         one, other = subject.required_quantity, _other_of(subject)
-        told = f"{one.label} {one.text(before)} and {other.label} {other.text(after)} exchanged"
-        return told if subject.is_written else f"reads {told}"
+        description = f"{one.label} {one.text(before)} and {other.label} {other.text(after)} exchanged"
+        return description if subject.is_written else f"reads {description}"
 
 
 def _other_of(subject: Subject) -> Quantity:

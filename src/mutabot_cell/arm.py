@@ -24,9 +24,9 @@ from mutabot_cell.motion.trajectory import Motion
 
 from .errors import BadArgument, MotionRefused, PathLost, ProtectiveStop
 from .force_sensor import ForceSensor
-from .foresight import Glance, InputPlan
 from .geometry import Array, Pose, pose_of, rotation_from_euler
 from .guard import Guard
+from .lookahead import InputPlan, QuickCheck
 from .move import Move
 from .robot import Robot
 from .simulation import STEPS_PER_TICK, TICK, Simulation
@@ -79,9 +79,11 @@ class Arm:
         self.set_payload(0.0)
         simulation.before_tick.append(self._drive)
         simulation.after_tick.append(self._watch)
-        simulation.foresight.drives(self._drive, InputPlan(self._write, self._keep))
+        simulation.lookahead.plan_inputs(self._drive, InputPlan(self._write, self._keep))
         guard = self.guard
-        simulation.foresight.checks(self._watch, Glance(self._until, guard.note, guard.quiet, guard.passed))
+        simulation.lookahead.add_check(
+            self._watch, QuickCheck(self._until, guard.note, guard.quiet, guard.passed)
+        )
 
     def commanded_joints(self) -> tuple[float, ...]:
         """Return the setpoints of the joints, degrees, not wrapped."""
@@ -326,10 +328,10 @@ class Arm:
         shift = np.array((x, y, z), dtype=float)
         if not shift.any():
             raise BadArgument("Expected a way to go but got x=0, y=0, z=0")
-        steps = self._steered(speed)
+        steps = self._compliant_steps(speed)
         start, rotation = steps.tool()
         self.kinematics.follow(self._setpoint, Line(start, rotation, shift, np.zeros(3)))
-        motion = UntilContact(steps, shift, speed, force, self._felt, TICK)
+        motion = UntilContact(steps, shift, speed, force, self._measured_force, TICK)
         self._carry_out(motion)
         return motion.touched
 
@@ -365,9 +367,10 @@ class Arm:
         _check_numbers("forces", [0.0 if force is None else force for force in forces], 3)
         _check_positive("seconds", seconds)
         _check_positive("travel", travel)
-        self._carry_out(Push(self._steered(speed), forces, speed, travel, seconds, self._felt, TICK))
+        steps = self._compliant_steps(speed)
+        self._carry_out(Push(steps, forces, speed, travel, seconds, self._measured_force, TICK))
 
-    def _steered(self, speed: float) -> JointSteps:
+    def _compliant_steps(self, speed: float) -> JointSteps:
         """Return the joints' steps, for a motion that the force sensor controls."""
         _check_positive("speed", speed)
         if speed > MOST_FELT_SPEED:
@@ -381,7 +384,7 @@ class Arm:
         self._online, self._move = motion, Move(self)
         self._move.wait()
 
-    def _felt(self) -> Array:
+    def _measured_force(self) -> Array:
         """Return the force on the tool by the zeroed sensor: base frame, N, shape (3,)."""
         wrench = self._force_sensor.wrench()
         _, rotation = self.kinematics.tool(self._setpoint)

@@ -14,7 +14,7 @@ from .errors import BadArgument, SensorError
 from .geometry import Array
 from .scene import Belt
 from .simulation import TICK, Simulation
-from .wakefulness import PartsOnBelt
+from .waking import PartsOnBelt
 
 _KEPT_TICKS = 500
 _SPEED_WINDOW = 0.1

@@ -16,12 +16,12 @@ import mujoco
 import numpy as np
 import ruckig
 
+from mutabot_cell.display.feed import make_feed
 from mutabot_cell.models.kinova import gen3
 from mutabot_cell.models.noise import SeededNoise
 from mutabot_cell.models.robot import RobotModel
-from mutabot_cell.shown.feed import tell_of
 
-from . import originals
+from . import integrity
 from .belt import ConveyorBelt
 from .errors import BadArgument
 from .force_sensor import Wrench, true_wrench
@@ -195,7 +195,7 @@ class Cell:
             if fixture.belt is not None
         }
         self.truth = Truth(self.simulation, self.robots, placed.parts, self._belts)
-        self.feed = tell_of(self.simulation, placed)
+        self.feed = make_feed(self.simulation, placed)
         for name, system in self.robots.items():
             if system.vacuum() is not None:
                 self.feed.value(f"{prefix_of(name)}vacuum", system.suction.true_vacuum, unit="Pa")
@@ -364,4 +364,4 @@ def world() -> dict[str, float]:
     return {} if cell is None else cell.truth.world()
 
 
-originals.note(copy, daqp, hashlib, math, mujoco, np, np.linalg, ruckig)
+integrity.note(copy, daqp, hashlib, math, mujoco, np, np.linalg, ruckig)

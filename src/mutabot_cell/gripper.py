@@ -9,8 +9,8 @@ from mutabot_cell.models.noise import SeededNoise
 
 from .curve import Curve
 from .errors import BadArgument
-from .foresight import Glance, InputPlan
 from .geometry import Array
+from .lookahead import InputPlan, QuickCheck
 from .robot import Robot
 from .simulation import TICK, Simulation
 from .stretch import LONGEST, Stretch
@@ -51,8 +51,8 @@ class Gripper:
         self.set_speed(fingers.speed if speed is None else speed)
         simulation.before_tick.append(self._drive)
         simulation.after_tick.append(self._detect)
-        simulation.foresight.drives(self._drive, InputPlan(self._write, self._keep))
-        simulation.foresight.checks(self._detect, Glance(lambda: LONGEST, passed=self._detect_in))
+        simulation.lookahead.plan_inputs(self._drive, InputPlan(self._write, self._keep))
+        simulation.lookahead.add_check(self._detect, QuickCheck(lambda: LONGEST, passed=self._detect_in))
 
     def set_force(self, newtons: float) -> None:
         """Set the grip force at each pad, N; the 2F-85 has 20..235 N.

@@ -128,7 +128,7 @@ class Guard:
             self._pushes[number] = self._external()
 
     def quiet(self, stretch: Stretch, known: int, ticks: int) -> int:
-        """Return how many ticks of a stretch need no stop; see `foresight.Glance`."""
+        """Return how many ticks of a stretch need no stop; see `lookahead.QuickCheck`."""
         dofs, now = self._robot.dofs, slice(known, ticks)
         external = self._pushes[now] if self._looks_closer else stretch.constraints[now, dofs]
         pushes = (external / self._torque_limit).ravel()
@@ -150,7 +150,7 @@ class Guard:
         return ticks
 
     def passed(self, stretch: Stretch, ticks: int) -> None:
-        """Warm the motors for the ticks that have passed; see `foresight.Glance`."""
+        """Warm the motors for the ticks that have passed; see `lookahead.QuickCheck`."""
         self._heat = next((heat for number, heat in reversed(self._heats) if number < ticks), self._heat)
 
     def _warmer(self, heat: Array, torques: Array) -> Array:

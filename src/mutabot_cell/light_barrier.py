@@ -8,8 +8,8 @@ import mujoco
 import numpy as np
 
 from .errors import SensorError
-from .foresight import Glance
 from .geometry import Array
+from .lookahead import QuickCheck
 from .scene import LightBarrier
 from .simulation import TICK, Simulation
 
@@ -28,7 +28,7 @@ class LightBarriers:
         self._periods = {_period(barrier) for barrier in self._barriers.values()} - {1}
         if self._periods:  # the others look when they are asked
             simulation.after_tick.append(self._look)
-            simulation.foresight.checks(self._look, Glance(self._until))
+            simulation.lookahead.add_check(self._look, QuickCheck(self._until))
 
     @property
     def names(self) -> tuple[str, ...]:

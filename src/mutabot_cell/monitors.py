@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from .errors import ConditionBroken
-from .foresight import Glance
+from .lookahead import QuickCheck
 from .simulation import Simulation
 from .stretch import LONGEST
 
@@ -31,7 +31,7 @@ class Monitors:
         self._watched: list[Condition] = []
         self.broken: list[ConditionBroken] = []
         simulation.after_tick.append(self._check)
-        simulation.foresight.checks(self._check, Glance(lambda: 1 if self._watched else LONGEST))
+        simulation.lookahead.add_check(self._check, QuickCheck(lambda: 1 if self._watched else LONGEST))
 
     def always(
         self, condition: Callable[[], object], name: str, values: MonitoredValues | None = None

@@ -1,4 +1,4 @@
-"""Writes pictures of the cell to files. On a machine without a screen see `shown.camera`."""
+"""Writes pictures of the cell to files. On a machine without a screen see `display.camera`."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from .cell import Cell
+from .display.camera import Camera, Pixels, View
 from .parts import Vector3
-from .shown.camera import Camera, Pixels, View
 
 _USUAL = View()
 

@@ -15,8 +15,8 @@ from mutabot_cell.models.options import PHYSICS_STEP
 from mutabot_cell.models.robot import RobotModel
 
 from .errors import SimulationDiverged
-from .foresight import Foresight
 from .geometry import Array
+from .lookahead import Lookahead
 from .robot import Robot
 from .scene import Scene
 from .stepping import Stepping
@@ -46,7 +46,7 @@ class Simulation:
         before_tick: called before each tick, in order; they write `setpoints`.
         after_tick: called after each tick, in order; they may raise.
         travels: by the name of a belt's fixture, how far it has run, m; for pictures.
-        foresight: says of hooks how they do without being called at each tick.
+        lookahead: says of hooks how they do without being called at each tick.
         camera_interval: from one picture of the camera to the next, s; see `set_camera`.
         camera_latency: age of a picture when it can be read first, s.
     """
@@ -65,7 +65,7 @@ class Simulation:
         self.before_tick: list[Callable[[], None]] = []
         self.after_tick: list[Callable[[], None]] = []
         self.travels: dict[str, Callable[[], float]] = {}
-        self.foresight = Foresight()
+        self.lookahead = Lookahead()
         self._stepping = Stepping(self.model, self.data)
         self._stretch = Stretch(self.model, self.data, self._stepping, STEPS_PER_TICK)
         self._ticks = self._quiet = 0
@@ -145,19 +145,19 @@ class Simulation:
 
     def _take_stretch(self, most: int) -> bool:
         """Run at most a number of ticks, up to the first that needs a check; False if none ran."""
-        stretch, foresight = self._stretch, self.foresight
-        ticks = foresight.write(self.before_tick, self.after_tick, stretch.inputs[:most])
+        stretch, lookahead = self._stretch, self.lookahead
+        ticks = lookahead.write(self.before_tick, self.after_tick, stretch.inputs[:most])
         if ticks < 2:
             return False
         self._quiet = 0
-        if not stretch.run(ticks, foresight.notes):
+        if not stretch.run(ticks, lookahead.notes):
             stretch.go_back(0)
             return False
         quiet = self._quiet_until(ticks - 1)
         if quiet < ticks - 1:
             ticks = quiet + 1
             stretch.go_back(ticks)
-        foresight.keep(stretch, ticks)
+        lookahead.keep(stretch, ticks)
         self.setpoints[:] = stretch.inputs[ticks - 1]
         for number in range(-(self._ticks + 1) % FRAME_TICKS, ticks, FRAME_TICKS):
             self._frames.append((self._ticks + 1 + number, stretch.places[number].copy()))
@@ -183,7 +183,7 @@ class Simulation:
         """Return a lower bound of the ticks at the start of the stretch that need no check."""
         known = self._quiet
         if known < ticks:
-            self._quiet = self.foresight.quiet(self._stretch, known, self._sane(known, ticks))
+            self._quiet = self.lookahead.quiet(self._stretch, known, self._sane(known, ticks))
         return self._quiet
 
     def _sane(self, known: int, ticks: int) -> int:

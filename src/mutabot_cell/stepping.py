@@ -18,7 +18,7 @@ from mutabot.api.processes import SharedMemory
 
 from .fingerprint import Fingerprint
 from .geometry import Array
-from .originals import Originals
+from .integrity import CodeRecord
 
 MOVING = int(mujoco.mjtState.mjSTATE_FULLPHYSICS | mujoco.mjtState.mjSTATE_WARMSTART)
 """What of a state changes within a tick."""
@@ -63,7 +63,7 @@ class Stepping:
     def recall(self, inputs: Array) -> Array | None:
         """Return the values kept for this state of the physics and these inputs; None if there are none."""
         self._key = None
-        if self._memory is None or not self._is_told_by_state():
+        if self._memory is None or not self._depends_on_state_alone():
             return None
         mujoco.mj_getState(self._model, self._data, self._start, _STATE)
         everything = b"".join((self._fingerprint.now(), self._start.tobytes(), inputs.tobytes()))
@@ -71,14 +71,14 @@ class Stepping:
         kept = self._memory.get(self._key)
         return None if kept is None else np.frombuffer(kept)
 
-    def _is_told_by_state(self) -> bool:
+    def _depends_on_state_alone(self) -> bool:
         """Return whether the state alone decides: no sleeping islands, callbacks, or replaced functions."""
         sleeps = self._model.opt.enableflags & _SLEEP
-        return not sleeps and _is_native() and _ORIGINALS.are_in_place(self, self._fingerprint)
+        return not sleeps and _is_native() and _ORIGINALS.are_unchanged(self, self._fingerprint)
 
     def keep(self, values: Array) -> None:
         """Keep values that follow from the state and inputs of the last `recall`."""
-        if self._memory is not None and self._key is not None and self._is_told_by_state():
+        if self._memory is not None and self._key is not None and self._depends_on_state_alone():
             self._memory.put(self._key, values.tobytes())
 
     def step(self, inputs: Array, before: Array) -> None:
@@ -136,4 +136,4 @@ _measure_no_time()
 _is_native = _Pointers().are_original
 _OWN = (__name__, Fingerprint.__module__, SharedMemory.__module__)
 #: what steps depend on
-_ORIGINALS = Originals(_OWN, (mujoco, np, hashlib))
+_ORIGINALS = CodeRecord(_OWN, (mujoco, np, hashlib))

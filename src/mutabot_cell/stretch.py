@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 
 from .geometry import Array
-from .originals import STRETCHES, are_original
+from .integrity import STRETCHES, are_original
 from .stepping import MOVING, Stepping
 
 LONGEST = 50

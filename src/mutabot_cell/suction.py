@@ -15,8 +15,8 @@ from mutabot_cell.models.effectors import SEALED_GAP, SuctionCup
 from mutabot_cell.models.noise import SeededNoise
 from mutabot_cell.models.vacuum import Vacuum
 
-from .foresight import Glance
 from .geometry import Array
+from .lookahead import QuickCheck
 from .robot import Robot
 from .simulation import TICK, Simulation
 from .stretch import LONGEST
@@ -57,7 +57,7 @@ class Suction:
         self._dofs = robot.dofs
         self._torque = np.zeros(model.nv)
         simulation.after_tick.append(self._pull)
-        simulation.foresight.checks(self._pull, Glance(lambda: 1 if self._acts() else LONGEST))
+        simulation.lookahead.add_check(self._pull, QuickCheck(lambda: 1 if self._acts() else LONGEST))
 
     def on(self) -> None:
         """Start the ejector. Return at once; the vacuum comes within some tenths of a second."""

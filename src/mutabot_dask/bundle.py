@@ -141,13 +141,13 @@ def warnings(shipment: Shipment, bundle: Bundle) -> Iterator[str]:
 
 
 @dataclass(frozen=True, slots=True)
-class Forecast:
+class BundlePreview:
     """The preview of what workers will be sent; see ``Preview`` of the core."""
 
     shipment: Shipment
 
     @classmethod
-    def of(cls, request: Request) -> Forecast:
+    def of(cls, request: Request) -> BundlePreview:
         """Make the bundle of a project. Raises UsageError if git cannot list its files."""
         return cls(Shipment.of(request))
 
@@ -167,7 +167,7 @@ class Forecast:
         bundle = Bundle.make(shipment)
         variables = sorted(decided())
         missed = self.lacking(opened)
-        said = [
+        lines = [
             f"workers are sent {summary(bundle)}",
             f"and the variables {', '.join(variables)}",
             *warnings(shipment, bundle),
@@ -181,7 +181,7 @@ class Forecast:
             "opened_but_left_out": shipment.missed(opened or ()),
         }
         data = {key: [_printable(name) for name in value] for key, value in names.items()}
-        lines = [f"cluster   {text}" for text in said]
+        lines = [f"cluster   {text}" for text in lines]
         return lines, {**data, "bytes": len(bundle.data), "variables": variables}
 
 

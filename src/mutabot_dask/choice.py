@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Self
 
 from mutabot.api.processes import ExecutorChoice, Request, Table
 
-from .bundle import Forecast
+from .bundle import BundlePreview
 from .settings import ClusterSettings, ClusterTable
 
 if TYPE_CHECKING:
@@ -39,6 +39,6 @@ class ClusterChoice(ExecutorChoice):
         return Cluster.opened(request, self.settings, tell)
 
     @classmethod
-    def preview(cls, request: Request) -> Forecast:
+    def preview(cls, request: Request) -> BundlePreview:
         """Return the preview of what workers are sent; see ``ExecutorChoice``."""
-        return Forecast.of(request)
+        return BundlePreview.of(request)

@@ -44,7 +44,7 @@ class Cluster(RemoteExecutor):
     @property
     def remarks(self) -> list[str]:
         """Messages about workers that differ or cannot be used; see ``Executor``."""
-        return list(self._connection.roster.told)
+        return list(self._connection.roster.reported)
 
     def answers(self, tasks: Iterator[Task]) -> Iterator[Answer | Task]:
         """Yield the answers to tasks; see ``RemoteExecutor``."""

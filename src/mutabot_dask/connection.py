@@ -21,7 +21,7 @@ from .local import LocalCluster, address_in
 from .roster import Roster
 from .settings import ClusterSettings
 from .shipping import Shipment
-from .unit import Ground
+from .unit import SharedData
 
 #: seconds to wait for those that are there to say who they are, and for a scheduler that is gone
 _INTRODUCTION, _RETURN = 30.0, 60.0
@@ -71,7 +71,7 @@ class ClusterConnection:
                     f"the connection to {self.link.address} is not encrypted: whoever can reach its port "
                     "can run programs on the workers; tls:// closes it (docs/cluster.md, TLS)"
                 )
-            self._meet()
+            self._check_versions()
             self._ends = stack.pop_all()
 
     @property
@@ -84,23 +84,23 @@ class ClusterConnection:
         self._ends.close()
 
     @cached_property
-    def ground(self) -> Ground:
+    def ground(self) -> SharedData:
         """The data shared by all units. The first access sends the project to the workers."""
         root, shipment = self._request.root, Shipment.of(self._request)
         bundle = self.roster.bundle = Bundle.make(shipment)
         for text in (f"workers are sent {summary(bundle)}", *warnings(shipment, bundle)):
             self.tell(text)
         paths = module_folders(root)
-        return Ground(bundle.digest, str(root), bundle.inner, self._request.arguments, decided(), paths)
+        return SharedData(bundle.digest, str(root), bundle.inner, self._request.arguments, decided(), paths)
 
     def give_up(self, why: str) -> None:
         """Leave the remaining tasks to this machine."""
         self.is_given_up = True
         self.tell(f"{why}: the campaign goes on on this machine, {self._request.jobs} at a time")
 
-    def look_after(self) -> None:
+    def restart_workers(self) -> None:
         """Restart workers on this machine that have ended."""
-        if self._local is not None and self._local.look_after_workers():
+        if self._local is not None and self._local.restart_lost_workers():
             self.tell("the workers on this machine were gone, and are started again")
 
     def reconnect(self) -> bool:
@@ -124,7 +124,7 @@ class ClusterConnection:
                 with interruptible():
                     time.sleep(1.0)
         before = self.roster
-        self.roster = Roster(self.link, before.versions, self.tell, before.bundle, before.told)
+        self.roster = Roster(self.link, before.versions, self.tell, before.bundle, before.reported)
         return True
 
     def _address(self) -> str:
@@ -133,7 +133,7 @@ class ClusterConnection:
             return self._local.start()
         return address_in(Path(self._settings.address)) if self._settings.is_file else self._settings.address
 
-    def _meet(self) -> None:
+    def _check_versions(self) -> None:
         """Ask the connected workers for their versions. Raises UsageError if one does not match."""
         if self._local is not None:
             return
@@ -144,8 +144,8 @@ class ClusterConnection:
         while not self.roster.is_settled and time.monotonic() < until:
             with interruptible():
                 time.sleep(0.05)
-            while not self.link.news.empty():
-                self.roster.take(self.link.news.get())
+            while not self.link.replies.empty():
+                self.roster.take(self.link.replies.get())
             self.roster.update()
         if self.roster.refusals:
             address, why = next(iter(self.roster.refusals.items()))
@@ -157,7 +157,7 @@ class ClusterConnection:
         if not self.link.is_lost and self._local is None:
             self.roster.dismiss()
             until = time.monotonic() + _FAREWELL
-            while not self.roster.is_quiet and time.monotonic() < until:
+            while not self.roster.is_idle and time.monotonic() < until:
                 time.sleep(0.02)
         self.link.close()
 

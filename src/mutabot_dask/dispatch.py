@@ -17,10 +17,10 @@ from secrets import token_hex
 
 from mutabot.api.processes import Answer, Result, Task, interruptible
 
-from . import far
+from . import worker_side
 from .connection import ClusterConnection
-from .link import News, shown
-from .unit import Misfit, UnitAnswer, WorkUnit
+from .link import WorkerReply, one_line
+from .unit import InvalidData, UnitAnswer, WorkUnit
 
 #: how often a unit is tried: at first, and three times elsewhere
 TRIES = 4
@@ -99,15 +99,15 @@ class Dispatch:
         busy = {worker for worker, _ in self._running.values()}
         fit = self._connection.roster.fit
         for worker in (one for one in fit if one not in busy):
-            trial = self._due(worker, fit)
+            trial = self._next_trial(worker, fit)
             if trial is None:
                 continue
             trial.unit = WorkUnit(self._ground, trial.task, token_hex(16))
             trial.until = time.monotonic() + longest(trial.task)
-            number = self._connection.link.ask(worker, far.run_unit, trial.unit.data())
+            number = self._connection.link.ask(worker, worker_side.run_unit, trial.unit.data())
             self._running[number] = worker, trial
 
-    def _due(self, worker: str, fit: Collection[str]) -> _RunningTask | None:
+    def _next_trial(self, worker: str, fit: Collection[str]) -> _RunningTask | None:
         """Return the next trial for a worker: first one lost once; one lost more often when all have begun.
 
         Losses come together, as where a cluster is taken away piece by piece: later tries are better later.
@@ -132,11 +132,11 @@ class Dispatch:
         roster, link = self._connection.roster, self._connection.link
         try:
             with interruptible():
-                news = link.news.get(timeout=_PERIOD)
+                reply = link.replies.get(timeout=_PERIOD)
             while True:
-                if not roster.take(news):
-                    self._take(news)
-                news = link.news.get_nowait()
+                if not roster.take(reply):
+                    self._take(reply)
+                reply = link.replies.get_nowait()
         except queue.Empty:
             pass
         gone = roster.update()
@@ -148,31 +148,31 @@ class Dispatch:
                 why = "its worker was lost" if worker in gone else "no answer in all the time it may take"
                 self._lost(trial, worker, why)
 
-    def _take(self, news: News) -> None:
-        worker, trial = self._running.pop(news.asked, ("", None))
+    def _take(self, reply: WorkerReply) -> None:
+        worker, trial = self._running.pop(reply.asked, ("", None))
         if trial is None or trial.unit is None:
             return
-        if news.data is None:
-            if news.is_foreign:
-                self._connection.roster.refuse(worker, news.why)
-            self._lost(trial, worker, f"its worker gave no answer: {news.why}")
+        if reply.data is None:
+            if reply.is_foreign:
+                self._connection.roster.refuse(worker, reply.why)
+            self._lost(trial, worker, f"its worker gave no answer: {reply.why}")
             return
         try:
-            answer = UnitAnswer.of(news.data, trial.unit)
-        except Misfit as error:
-            self._misfit(trial, worker, shown(str(error)))
+            answer = UnitAnswer.of(reply.data, trial.unit)
+        except InvalidData as error:
+            self._reject(trial, worker, one_line(str(error)))
             return
         if answer.fault is not None:
             trial.answer = None if answer.is_unfit else answer.found
             if answer.is_unfit:
                 self._connection.roster.refuse(worker, answer.fault)
-            self._lost(trial, worker, shown(answer.fault))
+            self._lost(trial, worker, one_line(answer.fault))
             return
-        self._connection.roster.has_run(worker)
+        self._connection.roster.record_run(worker)
         self._connection.done += 1
         self._settled.append(answer.found or Answer([], Result(trial.task, lost=answer.lost)))
 
-    def _misfit(self, trial: _RunningTask, worker: str, why: str) -> None:
+    def _reject(self, trial: _RunningTask, worker: str, why: str) -> None:
         """Reject a wrong answer, and refuse the worker from now on."""
         self._connection.roster.refuse(worker, f"its answer does not fit: {why}")
         lost = f"the answer of its worker does not fit: {why} ({worker})"
@@ -182,7 +182,7 @@ class Dispatch:
         trial.faults.append(f"{why} ({worker})")
         trial.avoided.add(worker)
         trial.lost_at = time.monotonic()
-        self._connection.roster.has_failed(worker, trial.number, trial.avoided, why)
+        self._connection.roster.record_failure(worker, trial.number, trial.avoided, why)
         if len(trial.faults) < TRIES:
             self._again.append(trial)
             self._again = deque(sorted(self._again, key=lambda one: len(one.faults)))
@@ -202,7 +202,7 @@ class Dispatch:
             if not cluster.reconnect():
                 cluster.give_up(f"the scheduler at {cluster.link.address} does not come back")
                 return False
-        cluster.look_after()
+        cluster.restart_workers()
         if self._running or cluster.roster.fit:
             self._lonely_since = None
             return True

@@ -23,7 +23,7 @@ _BYTES = {pickle.dumps(bytes, protocol) for protocol in range(pickle.HIGHEST_PRO
 _SAID = 1000
 
 
-class Unreadable(Exception):  # noqa: N818  # it is a value
+class Placeholder(Exception):  # noqa: N818  # it is a value
     """A placeholder for an object that was not unpickled, or for one of its parts.
 
     Attributes:
@@ -52,7 +52,7 @@ class _SafeUnpickler(pickle.Unpickler):
     """An unpickler that imports and calls nothing: placeholders replace classes and functions."""
 
     def find_class(self, module: str, name: str) -> Any:
-        return type(str(name)[:100], (Unreadable,), {})
+        return type(str(name)[:100], (Placeholder,), {})
 
 
 def install() -> None:
@@ -74,10 +74,10 @@ def install() -> None:
         setattr(found, name, replacement)
 
 
-def words(error: object) -> str:
+def describe(error: object) -> str:
     """Return a description of an exception in one line; of other objects, what they are."""
     said = str(error).strip().splitlines() if isinstance(error, Exception) else []
-    kind = error.kind if isinstance(error, Unreadable) and error.kind else type(error).__name__
+    kind = error.kind if isinstance(error, Placeholder) and error.kind else type(error).__name__
     return f"{kind}: {said[0]}" if said else kind
 
 
@@ -88,7 +88,7 @@ def _loaded(data: Any, **given: Any) -> Any:
             return bytes
         return _SafeUnpickler(io.BytesIO(data), buffers=given.get("buffers") or ()).load()
     except Exception as error:
-        return Unreadable(f"no readable data ({type(error).__name__})")
+        return Placeholder(f"no readable data ({type(error).__name__})")
 
 
 def _deserialized(header: Any, frames: Any, deserializers: Any = None) -> Any:
@@ -101,15 +101,15 @@ def _deserialized(header: Any, frames: Any, deserializers: Any = None) -> Any:
             case "pickle":
                 return _loaded(data)
             case "error":
-                return Unreadable(data[:_SAID].decode("utf-8", "replace"))
+                return Placeholder(data[:_SAID].decode("utf-8", "replace"))
     except Exception as error:
-        return Unreadable(f"no readable data ({type(error).__name__})")
-    return Unreadable("an object that is not read")
+        return Placeholder(f"no readable data ({type(error).__name__})")
+    return Placeholder("an object that is not read")
 
 
 def _exception(exception: Any = None, traceback: Any = None, **_: Any) -> tuple[type[Any], Any, None]:
     """Replace the deserialization of exceptions; tracebacks are dropped."""
     found = _loaded(exception) if isinstance(exception, bytes | bytearray) else exception
     if not isinstance(found, BaseException):
-        found = Unreadable(found if type(found) is str else "an object that is not read")
+        found = Placeholder(found if type(found) is str else "an object that is not read")
     return type(found), found, None

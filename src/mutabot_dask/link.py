@@ -53,13 +53,13 @@ try:
     from importlib import import_module
     answer = import_module({!r}).{}(*given)
 except BaseException as error:
-    said = (str(error).strip().splitlines() or [""])[0][:1000]
-    answer = b"!" + (type(error).__name__ + ": " + said).encode("utf-8", "replace")
+    text = (str(error).strip().splitlines() or [""])[0][:1000]
+    answer = b"!" + (type(error).__name__ + ": " + text).encode("utf-8", "replace")
 """
 
 
 @dataclass(frozen=True, slots=True)
-class News:
+class WorkerReply:
     """An answer to a request.
 
     Attributes:
@@ -83,7 +83,7 @@ class Link:
         address: of its scheduler.
 
     Attributes:
-        news: answers, as they come.
+        reply: answers, as they come.
 
     Raises UsageError if nobody answers there.
     """
@@ -93,15 +93,15 @@ class Link:
     def __init__(self, settings: ClusterSettings, address: str) -> None:
         guard.install()
         self.address = address
-        self.news: queue.SimpleQueue[News] = queue.SimpleQueue()
-        _be_quiet()
+        self.replies: queue.SimpleQueue[WorkerReply] = queue.SimpleQueue()
+        _silence_log()
         self._client = _client(settings, address)
         self._asked: dict[int, Any] = {}
         self._fetching = ThreadPoolExecutor(_FETCHERS, thread_name_prefix="mutabot-fetch")
         self._there: Mapping[str, int] = {}
         self._heard = time.monotonic()
         self._is_closed = threading.Event()
-        self._calling = threading.Thread(target=self._call_roll, name="mutabot-roll", daemon=True)
+        self._calling = threading.Thread(target=self._update_workers, name="mutabot-roll", daemon=True)
         try:
             self._call_once()
         except Exception as error:
@@ -157,13 +157,13 @@ class Link:
 
     def _fetched(self, number: int, future: Any) -> None:
         try:
-            news = _news(number, future.result(timeout=_SILENCE))
+            reply = _reply(number, future.result(timeout=_SILENCE))
         except Exception as error:  # whatever a worker raises is only told
-            news = News(number, None, shown(guard.words(error)), _is_foreign(error))
+            reply = WorkerReply(number, None, one_line(guard.describe(error)), _is_foreign(error))
         if self._asked.pop(number, None) is not None:
-            self.news.put(news)
+            self.replies.put(reply)
 
-    def _call_roll(self) -> None:
+    def _update_workers(self) -> None:
         while not self._is_closed.wait(_PERIOD):
             with suppress(Exception):
                 self._call_once()
@@ -174,20 +174,20 @@ class Link:
         self._heard = time.monotonic()
 
 
-def _news(number: int, found: Any) -> News:
+def _reply(number: int, found: Any) -> WorkerReply:
     if type(found) is not bytes:
-        return News(number, None, f"it answered with {guard.words(found)}", is_foreign=True)
+        return WorkerReply(number, None, f"it answered with {guard.describe(found)}", is_foreign=True)
     if found.startswith(_RAISED):
-        return News(number, None, shown(found[1:_WORDS].decode("utf-8", "replace")))
-    return News(number, found)
+        return WorkerReply(number, None, one_line(found[1:_WORDS].decode("utf-8", "replace")))
+    return WorkerReply(number, found)
 
 
 def _is_foreign(error: Exception) -> bool:
     """Return whether a worker's error came neither from our functions, which return data, nor its loss."""
-    return isinstance(error, guard.Unreadable) and error.kind not in _LOSSES
+    return isinstance(error, guard.Placeholder) and error.kind not in _LOSSES
 
 
-def shown(text: str) -> str:
+def one_line(text: str) -> str:
     """Return a worker's message as one line without control characters."""
     return "".join(one if one.isprintable() else "�" for one in text[:_WORDS])
 
@@ -232,7 +232,7 @@ def _why_not(settings: ClusterSettings, address: str, error: Exception) -> str:
     return f"no scheduler answers at {address}: {text}; {hint}"
 
 
-def _be_quiet() -> None:
+def _silence_log() -> None:
     """Silence Dask's log: mutabot reports the same events itself."""
     for name in (
         "distributed",

@@ -77,15 +77,15 @@ class LocalCluster:
         until = time.monotonic() + _PATIENCE
         while not file.is_file() or not file.read_bytes():
             if self._scheduler.poll() is not None or time.monotonic() > until:
-                said = (self._folder / "scheduler.log").read_text(errors="replace").strip().splitlines()
-                raise UsageError(f"a scheduler could not be started on this machine: {''.join(said[-1:])}")
+                log = (self._folder / "scheduler.log").read_text(errors="replace").strip().splitlines()
+                raise UsageError(f"a scheduler could not be started on this machine: {''.join(log[-1:])}")
             with interruptible():
                 time.sleep(0.05)
         self._address = address_in(file)
         self._start_workers()
         return self._address
 
-    def look_after_workers(self) -> bool:
+    def restart_lost_workers(self) -> bool:
         """Restart the workers if their supervising process has ended; return whether that was so."""
         if self._workers is None or self._workers.poll() is None:
             return False

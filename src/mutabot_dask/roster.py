@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 
-from . import far
+from . import worker_side
 from .bundle import Bundle
 from .environment import differences
-from .link import Link, News, shown
-from .unit import Introduction, Misfit
+from .link import Link, WorkerReply, one_line
+from .unit import Introduction, InvalidData
 
 #: how often a worker may fail to say who it is, or to take the project
 _FAILURES = 3
@@ -64,7 +64,7 @@ class Roster:
     versions: Mapping[str, str]
     tell: Callable[[str], None]
     bundle: Bundle | None = None
-    told: dict[str, None] = field(default_factory=dict)
+    reported: dict[str, None] = field(default_factory=dict)
     _workers: dict[str, _ClusterWorker] = field(default_factory=dict)
     _asked: dict[int, str] = field(default_factory=dict)
 
@@ -84,7 +84,7 @@ class Roster:
         return not self._asked and all(one.is_known or one.refused for one in self._workers.values())
 
     @property
-    def is_quiet(self) -> bool:
+    def is_idle(self) -> bool:
         """Whether all requests have been answered."""
         return not self._asked
 
@@ -107,27 +107,27 @@ class Roster:
                 self._introduce(address)
         return gone
 
-    def take(self, news: News) -> bool:
+    def take(self, reply: WorkerReply) -> bool:
         """Process an answer; return whether it was for the roster."""
-        address = self._asked.pop(news.asked, None)
+        address = self._asked.pop(reply.asked, None)
         if address is None:
             return False
         worker = self._workers[address]
-        worker.asked.discard(news.asked)
-        if news.data is not None and news.data != far.TAKEN:
+        worker.asked.discard(reply.asked)
+        if reply.data is not None and reply.data != worker_side.TAKEN:
             try:
-                self._introduced(address, worker, Introduction.of(news.data))
-            except Misfit as error:
+                self._introduced(address, worker, Introduction.of(reply.data))
+            except InvalidData as error:
                 self.refuse(address, f"its answer does not fit: {error}")
             return True
-        if news.is_foreign:
-            self.refuse(address, news.why)
-        worker.fault = worker.fault or (news.why if news.data is None else None)
+        if reply.is_foreign:
+            self.refuse(address, reply.why)
+        worker.fault = worker.fault or (reply.why if reply.data is None else None)
         if not worker.asked:
-            self._has_answered(address, worker)
+            self._record_answer(address, worker)
         return True
 
-    def _has_answered(self, address: str, worker: _ClusterWorker) -> None:
+    def _record_answer(self, address: str, worker: _ClusterWorker) -> None:
         """Record that a worker has answered all requests."""
         fault, worker.fault = worker.fault, None
         if fault is None:
@@ -143,16 +143,16 @@ class Roster:
         worker = self._workers.get(address)
         if worker is not None and worker.refused is None:
             worker.refused, worker.is_fit = why, False
-            self._tell_once(shown(f"worker {address} is not used: {why}"))
+            self._tell_once(one_line(f"worker {address} is not used: {why}"))
 
-    def has_run(self, address: str) -> None:
+    def record_run(self, address: str) -> None:
         """Note that a worker has run a unit."""
         worker = self._workers.get(address)
         if worker is not None:
             worker.is_proven = True
             worker.failed.clear()
 
-    def has_failed(self, address: str, unit: int, tried: Collection[str], why: str) -> None:
+    def record_failure(self, address: str, unit: int, tried: Collection[str], why: str) -> None:
         """Record that a unit failed on a worker. After two in a row the worker is excluded.
 
         What fails at two workers that have run others says nothing of them.
@@ -163,14 +163,14 @@ class Roster:
         worker = self._workers.get(address)
         proven = [one for one in tried if one in self._workers and self._workers[one].is_proven]
         if len(proven) > 1:
-            self._acquit(unit)
+            self._clear_failures(unit)
         elif worker is not None:
             worker.failed.add(unit)
             if len(worker.failed) >= _FAILED_UNITS and worker.refused is None:
                 worker.is_left_out = True
                 self.refuse(address, f"{len(worker.failed)} units failed there one after the other: {why}")
 
-    def _acquit(self, unit: int) -> None:
+    def _clear_failures(self, unit: int) -> None:
         for address, worker in self._workers.items():
             worker.failed.discard(unit)
             if worker.is_left_out and len(worker.failed) < _FAILED_UNITS:
@@ -180,10 +180,10 @@ class Roster:
     def dismiss(self) -> None:
         """End the campaign on the workers, which need to keep nothing of it."""
         for address in self.usable:
-            self._ask(address, far.leave)
+            self._ask(address, worker_side.leave)
 
     def _introduce(self, address: str) -> None:
-        self._ask(address, far.introduce, self.bundle.digest if self.bundle is not None else "")
+        self._ask(address, worker_side.introduce, self.bundle.digest if self.bundle is not None else "")
 
     def _ask(self, address: str, function: Callable[..., bytes], *arguments: object) -> None:
         number = self.link.ask(address, function, *arguments)
@@ -202,12 +202,12 @@ class Roster:
         elif self.bundle is not None:
             chunks = self.bundle.chunks()
             for index, chunk in enumerate(chunks):
-                self._ask(address, far.receive, self.bundle.digest, index, len(chunks), chunk)
+                self._ask(address, worker_side.receive, self.bundle.digest, index, len(chunks), chunk)
 
     def _tell_once(self, text: str) -> None:
-        if text in self.told or len(self.told) > _TOLD:
+        if text in self.reported or len(self.reported) > _TOLD:
             return
-        if len(self.told) == _TOLD:
+        if len(self.reported) == _TOLD:
             text = "more workers differ, or are not used: they are not told one by one"
-        self.told[text] = None
+        self.reported[text] = None
         self.tell(text)

@@ -18,12 +18,12 @@ _MOST_BYTES = 1 << 20
 _SHOWN = 200
 
 
-class Misfit(ValueError):  # noqa: N818  # it is a finding
+class InvalidData(ValueError):  # noqa: N818  # it is a finding
     """Raised for invalid data."""
 
 
 @dataclass(frozen=True, slots=True)
-class Ground:
+class SharedData:
     """The data shared by all units of a campaign.
 
     Attributes:
@@ -50,7 +50,7 @@ class WorkUnit:
     ``ticket`` is what the answer must bear: who was not given the unit does not know it.
     """
 
-    ground: Ground
+    ground: SharedData
     task: Task
     ticket: str = ""
 
@@ -65,7 +65,7 @@ class WorkUnit:
         found = json.loads(line)
         ground: dict[str, Any] = found["ground"]
         lists = {name: tuple(one) for name, one in ground.items() if isinstance(one, list)}
-        return cls(Ground(**ground | lists), Task.of_bytes(task), found["ticket"])
+        return cls(SharedData(**ground | lists), Task.of_bytes(task), found["ticket"])
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,22 +88,22 @@ class UnitAnswer:
 
     def data(self, root: str) -> bytes:
         """Return the answer as bytes; ``root`` is the project's folder on the controller."""
-        said = {"ticket": self.ticket, "fault": self.fault, "is_unfit": self.is_unfit, "lost": self.lost}
-        return _message(said, self.found.to_bytes(root) if self.found is not None else b"")
+        fields = {"ticket": self.ticket, "fault": self.fault, "is_unfit": self.is_unfit, "lost": self.lost}
+        return _message(fields, self.found.to_bytes(root) if self.found is not None else b"")
 
     @classmethod
     def of(cls, data: bytes, unit: WorkUnit) -> UnitAnswer:
-        """Read an answer from bytes. Raises Misfit if it does not answer this unit."""
+        """Read an answer from bytes. Raises InvalidData if it does not answer this unit."""
         line, _, answer = data.partition(b"\n")
-        said = _read(line, {"ticket": (str,), "fault": _TEXT, "is_unfit": (bool,), "lost": _TEXT})
-        if said["ticket"] != unit.ticket:
-            raise Misfit("it is the answer to something else")
-        if not answer and said["fault"] is None and said["lost"] is None:
-            raise Misfit("it says nothing of its task")
+        fields = _read(line, {"ticket": (str,), "fault": _TEXT, "is_unfit": (bool,), "lost": _TEXT})
+        if fields["ticket"] != unit.ticket:
+            raise InvalidData("it is the answer to something else")
+        if not answer and fields["fault"] is None and fields["lost"] is None:
+            raise InvalidData("it says nothing of its task")
         try:
-            return cls(Answer.of(answer, unit.task) if answer else None, **said)
+            return cls(Answer.of(answer, unit.task) if answer else None, **fields)
         except ValueError as error:
-            raise Misfit(str(error)) from None
+            raise InvalidData(str(error)) from None
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,33 +124,33 @@ class Introduction:
 
     @classmethod
     def of(cls, data: bytes) -> Introduction:
-        """Read an introduction from bytes. Raises Misfit if they are invalid."""
-        said = _read(data.rstrip(b"\n"), {"versions": (dict,), "has": (bool,)})
-        if any(type(version) is not str for version in said["versions"].values()):
-            raise Misfit("versions: a text was expected for each")
-        return cls(**said)
+        """Read an introduction from bytes. Raises InvalidData if they are invalid."""
+        fields = _read(data.rstrip(b"\n"), {"versions": (dict,), "has": (bool,)})
+        if any(type(version) is not str for version in fields["versions"].values()):
+            raise InvalidData("versions: a text was expected for each")
+        return cls(**fields)
 
 
 _TEXT = (str, type(None))
 
 
-def _message(said: Mapping[str, Any], more: bytes = b"") -> bytes:
-    return json.dumps(said, separators=(",", ":")).encode() + b"\n" + more
+def _message(fields: Mapping[str, Any], more: bytes = b"") -> bytes:
+    return json.dumps(fields, separators=(",", ":")).encode() + b"\n" + more
 
 
 def _read(line: bytes, kinds: Mapping[str, tuple[type, ...]]) -> dict[str, Any]:
-    """Return the fields in a line, with checked types and storable texts. Raises Misfit."""
+    """Return the fields in a line, with checked types and storable texts. Raises InvalidData."""
     if len(line) > _MOST_BYTES:
-        raise Misfit(f"a line of {len(line)} bytes, more than {_MOST_BYTES}")
+        raise InvalidData(f"a line of {len(line)} bytes, more than {_MOST_BYTES}")
     try:
         found = json.loads(line.decode("utf-8"))
     except (ValueError, RecursionError) as error:
-        raise Misfit(f"no JSON ({type(error).__name__}: {error})"[:_SHOWN]) from None
+        raise InvalidData(f"no JSON ({type(error).__name__}: {error})"[:_SHOWN]) from None
     if not isinstance(found, dict) or found.keys() != kinds.keys():
-        raise Misfit(f"an object with {', '.join(kinds)} was expected")
+        raise InvalidData(f"an object with {', '.join(kinds)} was expected")
     for name, item in found.items():
         if type(item) not in kinds[name]:
-            raise Misfit(f"{name}: {kinds[name][0].__name__} was expected, not {type(item).__name__}")
+            raise InvalidData(f"{name}: {kinds[name][0].__name__} was expected, not {type(item).__name__}")
     return {name: _storable(item) if isinstance(item, str) else item for name, item in found.items()}
 
 

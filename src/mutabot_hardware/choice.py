@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Self, cast, get_args
 from mutabot.api.processes import ExecutorChoice, Request, Table
 from mutabot.api.reports import UsageError
 
-from .guard import why_idle
+from .guard import idle_part
 from .tables import GuardTable, HardwareTable, Unasked
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ class HardwareChoice(ExecutorChoice):
                 "hardware: nothing runs without a guard; write a table guard with limits, boxes, forbidden "
                 "operations or orders"
             )
-        if why := why_idle(guard, request.vocabulary.operations):
+        if why := idle_part(guard, request.vocabulary.operations):
             raise UsageError(f"{why}; a rule that keeps nothing back protects nothing")
         if request.engine == "fork":
             raise UsageError("hardware: copies of a program cannot share a robot; leave out --engine fork")

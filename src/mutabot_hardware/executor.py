@@ -17,8 +17,8 @@ from mutabot.api.processes import Request, Result, Task, Workers
 from mutabot.api.reports import MutabotError, UsageError
 
 from .attendant import Attendant
-from .leave import Leave
 from .log import NAME, HardwareLog
+from .permission import Permissions
 from .rehearsal import Rehearsal
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ class Heartbeat:
     """
 
     attendant: Attendant
-    leave: Leave
+    leave: Permissions
     function: str
     period: float
     missing: str | None = None
@@ -82,7 +82,7 @@ class HardwareExecutor:
     request: Request
     table: HardwareTable
     unasked: Unasked
-    leave: Leave
+    leave: Permissions
     tell: Callable[[str], None]
     log: HardwareLog
     rehearsal: Rehearsal
@@ -103,7 +103,7 @@ class HardwareExecutor:
         home.mkdir(exist_ok=True)
         journal = request.root / table.rehearsal if table.rehearsal is not None else None
         log = HardwareLog(home / NAME)
-        with Leave(log) as leave:
+        with Permissions(log) as leave:
             executor = cls(request, table, unasked, leave, tell, log, Rehearsal.read(journal))
             executor._check()
             yield executor
@@ -133,7 +133,7 @@ class HardwareExecutor:
                 yield Result(task, lost=why)
                 continue
             result = None
-            for event in self._moved(task):
+            for event in self._run_safely(task):
                 result = event if isinstance(event, Result) else result
                 yield event
             surprise = self._surprise(result) if result is not None else None
@@ -172,7 +172,7 @@ class HardwareExecutor:
         return None if self._ask(task, is_again=is_again) else "it was not confirmed"
 
     def _ask(self, task: Task, *, is_again: bool) -> bool:
-        print("\n".join(self._shown(task, is_again=is_again)), file=sys.stderr)
+        print("\n".join(self._description(task, is_again=is_again)), file=sys.stderr)
         while True:
             # a line of its own: the bar is drawn anew below it, over what is typed
             print("  run it? type y, n, or q to quit, and Enter", file=sys.stderr, flush=True)
@@ -182,7 +182,7 @@ class HardwareExecutor:
             if answer in ("q", "quit", ""):
                 raise HardwareStoppedError("hardware: stopped by the user; nothing was moving")
 
-    def _shown(self, task: Task, *, is_again: bool) -> Iterator[str]:
+    def _description(self, task: Task, *, is_again: bool) -> Iterator[str]:
         """Yield the lines that describe a mutant to the user before it runs."""
         mutant, tests = task.job.mutant, task.job.tests
         which = "all tests" if tests is None else f"{len(tests)} {'test' if len(tests) == 1 else 'tests'}"
@@ -198,7 +198,7 @@ class HardwareExecutor:
         if is_again:
             yield "  before      it was begun before and did not come to its end"
 
-    def _moved(self, task: Task) -> Iterator[Any]:
+    def _run_safely(self, task: Task) -> Iterator[Any]:
         """Run a task between two safe states."""
         mutant = task.job.mutant
         name: dict[str, Any] = {"original": list(task.job.tests or ())}

@@ -12,7 +12,7 @@ EXTENSION = Extension(
     },
     guards={
         "guard": "mutabot_hardware.guard:TableGuard",
-        "hardware": "mutabot_hardware.watch:HardwareGuard",
+        "hardware": "mutabot_hardware.command_guard:HardwareGuard",
     },
     executors={
         "hardware": Described(

@@ -8,7 +8,7 @@ from typing import Any
 from mutabot.api.processes import CallGuard
 from mutabot.api.values import Call, Operation
 
-from .rules import BoxRule, LimitRule, OrderRule, RuleFinding, described, fits, is_one
+from .rules import BoxRule, LimitRule, OrderRule, RuleFinding, described, fits, is_among
 from .tables import GuardTable
 from .targets import UnreadableTarget
 
@@ -18,20 +18,20 @@ def rules_of(table: GuardTable) -> list[LimitRule | BoxRule]:
     return [*(LimitRule(one) for one in table.limit), *(BoxRule(one) for one in table.box)]
 
 
-def why_idle(table: GuardTable, operations: Iterable[Operation]) -> str | None:
+def idle_part(table: GuardTable, operations: Iterable[Operation]) -> str | None:
     """Return which part of a table concerns no operation, so that it never blocks a command; None if none."""
     commands = [one for one in operations if one.command]
     for rule in rules_of(table):
         if not any(rule.concerns(one) for one in commands):
             kind = "limit" if isinstance(rule, LimitRule) else "box"
-            said = rule.table.model_dump(exclude_defaults=True, exclude_none=True)
-            which = ", ".join(f"{key} = {value}" for key, value in said.items())
+            rule_values = rule.table.model_dump(exclude_defaults=True, exclude_none=True)
+            which = ", ".join(f"{key} = {value}" for key, value in rule_values.items())
             return f"guard.{kind} concerns no quantity that the vocabulary describes: {which}"
     named = [*table.forbid, *(name for one in table.order for name in (*one.operations, *one.after))]
-    lost = next((name for name in named if not any(is_one(one, [name]) for one in commands)), None)
+    lost = next((name for name in named if not any(is_among(one, [name]) for one in commands)), None)
     if lost is not None:
         return f"guard: the vocabulary describes no command {lost}"
-    if table.tool is not None and not any(_says_tool(one, table.tool) for one in commands):
+    if table.tool is not None and not any(_sets_tool(one, table.tool) for one in commands):
         return (
             f"guard.tool: the vocabulary describes no command with a quantity as in {table.tool!r}; "
             "it needs the target of an operation, a space, and the name of a quantity"
@@ -39,7 +39,7 @@ def why_idle(table: GuardTable, operations: Iterable[Operation]) -> str | None:
     return None
 
 
-def _says_tool(operation: Operation, tool: str) -> bool:
+def _sets_tool(operation: Operation, tool: str) -> bool:
     """Return whether an operation has a quantity that says which tool is mounted."""
     target, *names = tool.split()
     return operation.target == target and any(one.name in names for one in described(operation))

@@ -43,10 +43,10 @@ class RuleFinding:
 
 def fits(call: Call, operations: Iterable[str]) -> bool:
     """Return whether a call is of one of these operations."""
-    return is_one(call.operation, operations)
+    return is_among(call.operation, operations)
 
 
-def is_one(operation: Operation, operations: Iterable[str]) -> bool:
+def is_among(operation: Operation, operations: Iterable[str]) -> bool:
     """Return whether an operation is one of these."""
     return any(fnmatchcase(operation.target, one) for one in operations)
 
@@ -74,12 +74,12 @@ class LimitRule:
 
     def concerns(self, operation: Operation) -> bool:
         """Return whether the rule limits a quantity of an operation."""
-        return is_one(operation, self.table.operations) and any(map(self._is_meant, described(operation)))
+        return is_among(operation, self.table.operations) and any(map(self._is_meant, described(operation)))
 
     def of(self, call: Call, tool: str | None) -> Iterator[RuleFinding]:
         """Yield the results for a call. Raises UnreadableTarget."""
         table = self.table
-        if not fits(call, table.operations) or not _holds(table.tool, tool):
+        if not fits(call, table.operations) or not _applies(table.tool, tool):
             return
         for quantity, value in written(call):
             if self._is_meant(quantity):
@@ -113,12 +113,12 @@ class BoxRule:
 
     def concerns(self, operation: Operation) -> bool:
         """Return whether the rule concerns a target of an operation."""
-        return is_one(operation, self.table.operations) and any(map(self._is_place, described(operation)))
+        return is_among(operation, self.table.operations) and any(map(self._is_place, described(operation)))
 
     def of(self, call: Call, tool: str | None) -> Iterator[RuleFinding]:
         """Yield the results for a call. Raises UnreadableTarget."""
         table = self.table
-        if not fits(call, table.operations) or not _holds(table.tool, tool):
+        if not fits(call, table.operations) or not _applies(table.tool, tool):
             return
         places = [one for one in (call.pattern or call.operation).arguments if self._is_place(one)]
         moved = [one for one in places if one.name in call.values]
@@ -184,7 +184,7 @@ class OrderRule:
             self.is_open = True
 
 
-def _holds(wanted: str | None, tool: str | None) -> bool:
+def _applies(wanted: str | None, tool: str | None) -> bool:
     """Return whether a rule for one tool applies: also while it is unknown which one is mounted."""
     return wanted is None or tool is None or wanted == tool
 

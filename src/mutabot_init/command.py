@@ -10,9 +10,9 @@ import typer
 
 from mutabot.api.reports import CommandContext
 
-from .beside import started
 from .layout import other_files
 from .propose import propose, refuse_existing
+from .proposers import started
 from .template import start
 
 

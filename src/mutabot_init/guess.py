@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from .watched import WatchedPart
+from .observations import WatchedPart
 from .words import (
     DIRECTIONS,
     GRIPPER,
@@ -215,11 +215,11 @@ def _moved(
 def _mode(setting: NameContext) -> str | None:
     if setting.relative:
         return "by" if True in setting.relative else "to"
-    told = {MODES[word] for word in setting.words if word in MODES}
-    if len(told) == 1 or "by" in setting.words:
-        return "by" if "by" in setting.words else told.pop()
-    said = {word for word in ("relative", "absolute") if re.search(rf"\b{word}", setting.doc.lower())}
-    return {"relative": "by", "absolute": "to"}[said.pop()] if len(said) == 1 else None
+    modes = {MODES[word] for word in setting.words if word in MODES}
+    if len(modes) == 1 or "by" in setting.words:
+        return "by" if "by" in setting.words else modes.pop()
+    documented = {word for word in ("relative", "absolute") if re.search(rf"\b{word}", setting.doc.lower())}
+    return {"relative": "by", "absolute": "to"}[documented.pop()] if len(documented) == 1 else None
 
 
 def measured(table: TomlTable, dimension: str, unit: str | None, name: str, setting: NameContext) -> Guess:
@@ -230,25 +230,25 @@ def measured(table: TomlTable, dimension: str, unit: str | None, name: str, sett
     about = _about(name, setting.doc)
     if dimension == "angle" and setting.angle_unit:
         return Guess({**table, "unit": setting.angle_unit})
-    said = units_in(about, dimension)
+    units = units_in(about, dimension)
     if dimension in _SCALED and "percent" in units_in(about, "ratio"):
-        asked = [f"the unit: {', '.join(said)}, or a ratio in percent?"] if said else []
-        return Guess({**table, "unit": said[0]} if said else {"kind": "ratio", "unit": "percent"}, asked)
+        asked = [f"the unit: {', '.join(units)}, or a ratio in percent?"] if units else []
+        return Guess({**table, "unit": units[0]} if units else {"kind": "ratio", "unit": "percent"}, asked)
     if dimension == "time" and _COUNT.search(about):
         return Guess({**table, "unit": "s"}, ["a time, in which unit (s, ms), or a number of steps?"])
     limits = _documented_range(about, setting) if dimension in _SCALED else None
     if limits is not None and limits[1] in _TOPS[1:]:
         return Guess({"kind": "output", "range": limits})
-    if limits is not None and limits[1] in (1.0, 100.0) and not said:
+    if limits is not None and limits[1] in (1.0, 100.0) and not units:
         unit = "fraction" if limits[1] == 1.0 else "percent"
         return Guess({"kind": "ratio", "unit": unit, "range": limits})
-    said = said or units_in(setting.doc, dimension)
-    if len(said) == 1:
-        return Guess({**table, "unit": said[0]})
-    shown = _unit_by_size(dimension, setting.values) if not said else None
+    units = units or units_in(setting.doc, dimension)
+    if len(units) == 1:
+        return Guess({**table, "unit": units[0]})
+    shown = _unit_by_size(dimension, setting.values) if not units else None
     if shown is not None:
         return Guess({**table, "unit": shown}, note="unit inferred from the values")
-    return Guess({**table, "unit": (said or fitting)[0]}, [f"the unit: {', '.join(said or fitting)}?"])
+    return Guess({**table, "unit": (units or fitting)[0]}, [f"the unit: {', '.join(units or fitting)}?"])
 
 
 def _about(name: str, doc: str) -> str:
@@ -293,13 +293,13 @@ def _opening(unit: str | None, name: str, setting: NameContext) -> Guess:
     if len(values) == 2 and set(values) == {0, 1}:
         return Guess({"kind": "opening", "values": values})
     about = _about(name, setting.doc)
-    said, limits = [unit] if unit else units_in(about, "length"), _documented_range(about, setting)
-    if limits in ([0.0, 1.0], [0.0, 100.0]) and not said:
+    units, limits = [unit] if unit else units_in(about, "length"), _documented_range(about, setting)
+    if limits in ([0.0, 1.0], [0.0, 100.0]) and not units:
         unit = "fraction" if limits[1] == 1.0 else "percent"
         return Guess({"kind": "opening", "unit": unit, "range": limits})
-    table: TomlTable = {"kind": "opening", **({"unit": said[0]} if said else {}), "range": ["…", "…"]}
+    table: TomlTable = {"kind": "opening", **({"unit": units[0]} if units else {}), "range": ["…", "…"]}
     asked = "what is fully closed, what is fully open?"
-    return Guess(table, [asked if said else f"{asked} in which unit (fraction, percent, mm, m)?"])
+    return Guess(table, [asked if units else f"{asked} in which unit (fraction, percent, mm, m)?"])
 
 
 def _output(setting: NameContext) -> Guess:
@@ -372,14 +372,14 @@ def guess_elements(part: WatchedPart, name: str, setting: NameContext, *, writte
         return {f"{at}[0:{length}]": Guess({"kind": "speed", "unit": "…"}, ["the unit, and the axis?"])}
     if noun in ("none", "acceleration", "force", "torque", "time", "speed") or verb == "speed":
         return {}
-    for about, told in ((words, noun), (setting.words, verb)):
-        is_turning = told == "joints" or (told == "angle" and length > 3)
-        is_turning = is_turning or (told == "place" and ("joint" in about or _is_no_pose(setting.values)))
+    for about, meaning in ((words, noun), (setting.words, verb)):
+        is_turning = meaning == "joints" or (meaning == "angle" and length > 3)
+        is_turning = is_turning or (meaning == "place" and ("joint" in about or _is_no_pose(setting.values)))
         is_turning = is_turning or bool({"movej", "servoj", "getj", "j"} & set(about))
         if is_turning and 1 <= length <= _MOST_JOINTS and not setting.is_of_gripper:
             axis = "j1" if length == 1 else f"j1..j{length}"
             return {f"{at}[0:{length}]": _element("rotation", "angle", axis, name, setting, written)}
-        if told == "place" and length in (2, 3, 6, 7) and not setting.is_of_gripper:
+        if meaning == "place" and length in (2, 3, 6, 7) and not setting.is_of_gripper:
             return _pose(at, name, length, setting, written)
     return {}
 
@@ -391,8 +391,8 @@ def _is_no_pose(values: Sequence[Any]) -> bool:
 
 def _element(kind: str, read: str, axis: str, name: str, setting: NameContext, written: bool) -> Guess:
     if written:
-        told = replace(setting, words=(*setting.words, "to")) if _mode(setting) is None else setting
-        return _moved(kind, axis, None, None, name, told)
+        context = replace(setting, words=(*setting.words, "to")) if _mode(setting) is None else setting
+        return _moved(kind, axis, None, None, name, context)
     dimension = "length" if kind == "translation" else "angle"
     return measured({"kind": read, "axis": axis}, dimension, None, name, setting)
 

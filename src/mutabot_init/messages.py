@@ -13,7 +13,7 @@ from typing import Any
 from mutabot.api.values import Form
 
 from .guess import Guess, NameContext, TomlTable, guess_argument, guess_elements, guess_reading
-from .watched import Use, Values, WatchedPart
+from .observations import Use, Values, WatchedPart
 from .words import GRIPPER, READERS, VERBS, words_of
 
 Meant = dict[str, Guess]
@@ -135,7 +135,7 @@ def _described(use: Use) -> Iterator[DescribedPart]:
             meant = meaning(part, place) if values.always(part) else {}
             for path, guess in meant.items():
                 yield DescribedPart(table, path, part, guess if guess.table else None)
-            if not meant and not is_nothing(part, place):
+            if not meant and not is_irrelevant(part, place):
                 yield DescribedPart(table, part.path, part, None)
 
 
@@ -184,14 +184,14 @@ class MessagePlace:
         return bool(_BY & set(self.words))
 
     @property
-    def tells_nothing(self) -> bool:
+    def is_plain_reply(self) -> bool:
         """Whether it is the response to a command, which only reports success."""
         return self.form is Form.CALL and not self.is_written and not READERS & set(self.words)
 
 
 def meaning(part: WatchedPart, place: MessagePlace) -> Meant:
     """Return what a part means, by path; an empty guess for an unknown path, nothing for an unknown whole."""
-    if place.tells_nothing:
+    if place.is_plain_reply:
         return {}
     field_ = part.within[-1] if part.within else ("", "")
     if part.type == "geometry_msgs/Quaternion":
@@ -251,7 +251,7 @@ def _is_header(part: WatchedPart, name: str) -> bool:
     return bool(part.within) and part.within[-1] == (_HEADER, name)
 
 
-def is_nothing(part: WatchedPart, place: MessagePlace) -> bool:
+def is_irrelevant(part: WatchedPart, place: MessagePlace) -> bool:
     """Return whether a part is irrelevant: fields of the middleware itself, and texts for people."""
     if part.within and part.within[-1][0] in (_HEADER, "std_msgs/MultiArrayLayout"):
         return True

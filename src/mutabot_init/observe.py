@@ -10,7 +10,7 @@ from typing import Any
 from mutabot.api.processes import Observed, observe
 
 from .layout import Layout
-from .watched import Use, Values, WatchedCallable, WatchedCalls
+from .observations import Use, Values, WatchedCallable, WatchedCalls
 
 #: seconds that the tests may take; what was seen by then counts
 LIMIT = 180.0

@@ -12,7 +12,7 @@ from typing import Any
 
 from .guess import Guess, NameContext, guess_argument, guess_elements, guess_reading
 from .layout import with_compared
-from .watched import Command, WatchedCallable, WatchedPart
+from .observations import Command, WatchedCallable, WatchedPart
 from .words import (
     CAMERAS,
     COMMANDS,
@@ -161,10 +161,10 @@ def _computes(call: WatchedCallable) -> bool:
     """Return whether it makes or computes something from its arguments, without the robot."""
     is_constructor = call.is_of_class and call.owner != "" and call.result.type == call.owner
     is_pure = call.only_computes and bool(call.arguments)
-    return is_constructor or ((is_pure or _packs(call)) and not _reads(call))
+    return is_constructor or ((is_pure or _fills_buffer(call)) and not _reads(call))
 
 
-def _packs(call: WatchedCallable) -> bool:
+def _fills_buffer(call: WatchedCallable) -> bool:
     """Return whether it is a function that puts a value into a buffer, which something else sends."""
     words, first = words_of(call.name), next(iter(call.arguments.values()), None)
     is_buffer = first is not None and any(part.type == "bytearray" for part in first.parts.values())
@@ -265,12 +265,12 @@ def _find_current(proposal: Proposal, found: dict[str, Proposal]) -> None:
             return
 
 
-def _with_axes(guesses: Mapping[str, Guess], told: Mapping[str, str]) -> set[tuple[str, str]]:
+def _with_axes(guesses: Mapping[str, Guess], kinds: Mapping[str, str]) -> set[tuple[str, str]]:
     """Return the descriptions of quantities, each with an axis."""
     return {
-        (told[guess.table["kind"]], axis)
+        (kinds[guess.table["kind"]], axis)
         for guess in guesses.values()
-        if guess.table["kind"] in told
+        if guess.table["kind"] in kinds
         for axis in _axes(guess.table.get("axis", ""))
     }
 
@@ -281,14 +281,14 @@ def _axes(axis: str) -> list[str]:
 
 def _find_opposite(proposal: Proposal, found: dict[str, Proposal]) -> None:
     owner, name = proposal.target.removesuffix(proposal.call.name), proposal.call.name
-    for other in _swapped(name):
+    for other in _with_opposites(name):
         candidate = found.get(f"{owner}{other}")
         if candidate is not None and set(candidate.call.arguments) == set(proposal.call.arguments):
             proposal.opposite = candidate.target
             return
 
 
-def _swapped(text: str) -> Iterator[str]:
+def _with_opposites(text: str) -> Iterator[str]:
     """Yield the text with each of its words that has an opposite replaced by that."""
     for pair in OPPOSITES:
         for one, other in (pair, pair[::-1]):
@@ -305,7 +305,9 @@ def _swapped(text: str) -> Iterator[str]:
 def _setting(call: WatchedCallable, part: WatchedPart, annotation: str) -> NameContext:
     module, _, qualname = call.target.partition(":")
     owner = [*words_of(module.rpartition(".")[2]), *words_of(qualname.rpartition(".")[0])]
-    degrees = _said("degrees", call) | {not one for one in _said("radians", call) | _said("is_radian", call)}
+    degrees = _truth_values("degrees", call) | {
+        not one for one in _truth_values("radians", call) | _truth_values("is_radian", call)
+    }
     return NameContext(
         words=words_of(call.name),
         owner=tuple(owner),
@@ -313,12 +315,12 @@ def _setting(call: WatchedCallable, part: WatchedPart, annotation: str) -> NameC
         annotation=annotation if "[" in annotation else annotation.rpartition(".")[2],
         values=part.values,
         names=frozenset(call.arguments),
-        relative=_said("relative", call),
+        relative=_truth_values("relative", call),
         angle_unit=("deg" if True in degrees else "rad") if len(degrees) == 1 else "",
     )
 
 
-def _said(name: str, call: WatchedCallable) -> frozenset[bool]:
+def _truth_values(name: str, call: WatchedCallable) -> frozenset[bool]:
     """Return the truth values that an argument with this name had."""
     parts = call.arguments[name].parts.values() if name in call.arguments else ()
     return frozenset(value for part in parts for value in part.values if isinstance(value, bool))
@@ -348,7 +350,7 @@ def patterns_of(texts: Sequence[str]) -> list[tuple[str, Guess]]:
         if len(_FIELD.findall(notation)) == 1:
             words = words_of(_FIELD.sub("", notation))
             guess = guess_argument("value", NameContext(words, values=numbers))
-        opposite = next((one for one in _swapped(notation) if one in notations), None)
+        opposite = next((one for one in _with_opposites(notation) if one in notations), None)
         if opposite is not None:
             guess.table["opposite"] = opposite
         found.append((notation, guess))

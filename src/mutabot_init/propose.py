@@ -13,7 +13,6 @@ from typing import Any
 from mutabot.api.reports import MutabotError, UsageError
 from mutabot.api.values import Vocabulary, load_vocabulary, shipped_vocabularies
 
-from .beside import brought_proposers
 from .layout import (
     NOTHING_WRITTEN,
     Layout,
@@ -24,10 +23,11 @@ from .layout import (
     refuse_mistakes,
 )
 from .messages import MessageEntry, entries
+from .observations import ANY, WatchedCallable
 from .observe import LIMIT, merged, watch
 from .operations import Proposal, commands_of, proposals, tells_commands
+from .proposers import brought_proposers
 from .text import counted, questions_in, value_text, vocabulary_text
-from .watched import ANY, WatchedCallable
 
 CONFIGURATION, VOCABULARY = "mutabot.toml", "robot.toml"
 #: what a test file tells that imports one that is no Python
@@ -95,7 +95,7 @@ def known_vocabularies(layout: Layout, calls: Sequence[WatchedCallable]) -> list
     ]
 
 
-class _Look:
+class _Findings:
     """The findings about a project.
 
     Attributes:
@@ -120,7 +120,7 @@ class _Look:
             raise UsageError(f"{what} (while pytest collects {collected}); {NOTHING_WRITTEN}")
         self.seen = merged(self.run.seen)
         self.program = [self.layout.relative(path) for path in self.layout.program]
-        self.calls = without_doubles([call for call in self.seen.calls if call.sites])
+        self.calls = without_duplicates([call for call in self.seen.calls if call.sites])
         self.known = known_vocabularies(self.layout, self.calls)
         self.named = entries(self.seen.uses)
         groups = compared_with(self.layout)
@@ -220,7 +220,7 @@ def propose(
     if root != given:
         tell(f"project: {root}")
     refuse_existing(root)
-    found = _Look(root, program, limit, tell)
+    found = _Findings(root, program, limit, tell)
     text = found.text()
     if found.needs_vocabulary:
         _write(root / VOCABULARY, text)
@@ -228,7 +228,7 @@ def propose(
     return _told(found, questions_in(text) if found.needs_vocabulary else 0)
 
 
-def without_doubles(calls: Sequence[WatchedCallable]) -> list[WatchedCallable]:
+def without_duplicates(calls: Sequence[WatchedCallable]) -> list[WatchedCallable]:
     """Remove methods of arbitrary objects, such as mocks, if the robot's own method was observed."""
     owned = {
         call.name
@@ -287,7 +287,7 @@ def _loads(text: str) -> bool:
     return True
 
 
-def _configuration(found: _Look) -> str:
+def _configuration(found: _Findings) -> str:
     listed = {"program": found.program, "oracle": found.oracle, "tests": found.layout.arguments or ["tests"],
               "vocabulary": found.vocabulary}  # fmt: skip
     notes = {
@@ -298,7 +298,7 @@ def _configuration(found: _Look) -> str:
     return "\n".join([*lines, "rounds = 1", "seed = 1", *found.beside]) + "\n"
 
 
-def _told(found: _Look, questions: int) -> list[str]:
+def _told(found: _Findings, questions: int) -> list[str]:
     run = found.run
     how = " (guessed; to choose other files: mutabot init FILE…)" if found.layout.guessed else ""
     counts = ", ".join(f"{count} {outcome}" for outcome, count in run.outcomes.items())
@@ -339,7 +339,7 @@ def _told(found: _Look, questions: int) -> list[str]:
     ]
 
 
-def _counted(found: _Look) -> str:
+def _counted(found: _Findings) -> str:
     mine, rest = _by_side([call for call in found.seen.calls if call.sites])
     times = counted(sum(call.count for call in mine), "time")
     names = {(entry.key, entry.name) for entry in found.named if not entry.of_tests}

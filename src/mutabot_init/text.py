@@ -9,8 +9,8 @@ from typing import Any, TypeGuard
 
 from .guess import Guess
 from .messages import DescribedPart, MessageEntry
+from .observations import ANY, WatchedPart
 from .operations import Proposal
-from .watched import ANY, WatchedPart
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 #: the longest text that is shown as an example, and values of each part
@@ -201,13 +201,13 @@ def _pattern_lines(proposal: Proposal) -> list[str]:
     rows = []
     for text, guess in proposal.patterns:
         asked = guess.questions and guess.table
-        told = {} if asked else guess.table
+        fields = {} if asked else guess.table
         opposite = {key: value for key, value in guess.table.items() if key == "opposite"}
         rest = value_text({key: value for key, value in guess.table.items() if key != "opposite"})
         notes = [f"question: {' '.join(guess.questions)} {rest}"] if asked else []
         notes += [f"seen: {guess.note}"] if guess.note else []
         rows.append(
-            f"  {value_text({'text': text, **told, **opposite})},"
+            f"  {value_text({'text': text, **fields, **opposite})},"
             + (f"  # {'; '.join(notes)}" if notes else "")
         )
     lines = ["patterns = [", *rows, "]"]

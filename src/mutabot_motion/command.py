@@ -27,8 +27,8 @@ from mutabot.api.reports import (
 )
 
 from .filming import film
-from .shown import Shown
-from .sights import check, module, sights_of
+from .view import MotionView
+from .viewers import check, module, viewers_of
 
 #: tests that are named where several fit
 _LISTED = 5
@@ -44,7 +44,7 @@ def choose(
     result: MutantResult,
     round: int | None = None,
     test: str | None = None,
-) -> Shown:
+) -> MotionView:
     """Return the test, round and recordings of a mutant to show.
 
     Args:
@@ -57,7 +57,7 @@ def choose(
     Raises UsageError for a test that does not run the mutant, and if none does.
     """
     mutant = result.mutant
-    where = round if round is not None else _telling_round(result)
+    where = round if round is not None else _clearest_round(result)
     outcome = next((one for one in result.outcomes if one.round == where), None)
     named: list[str] = []
     if outcome is not None:
@@ -68,10 +68,10 @@ def choose(
         tests = list(dict.fromkeys([*named, *kept, *_reached_by(results, result)]))
         if not tests:
             raise UsageError(f"no test reaches mutant {mutant.number} ({mutant.id}): there is nothing to see")
-        name = tests[0] if test is None else _one_of(tests, test)
+        name = tests[0] if test is None else _matching_test(tests, test)
         original, mutated = recordings.pair(mutant.id, where, name)
     diverged = next((one for one in outcome.diverged if one.test == name), None) if outcome else None
-    return Shown(
+    return MotionView(
         mutant.number,
         mutant.id,
         mutant.description,
@@ -85,30 +85,28 @@ def choose(
     )
 
 
-def missing_in(shown: Shown) -> list[str]:
+def missing_in(view: MotionView) -> list[str]:
     """Return what is missing in the recordings, one line each. Raises UsageError if nothing was recorded."""
-    which = f"{shown.test} in round {shown.round + 1}"
-    if shown.original is None:
+    which = f"{view.test} in round {view.round + 1}"
+    if view.original is None:
         raise UsageError(f"nothing is recorded of {which}: {_WHAT_TO_DO}")
     found = []
-    if shown.mutant is None and shown.story:
-        found.append(
-            f"what mutant {shown.number} did found no room: set `evidence` to more, and run it again"
-        )
-    elif shown.mutant is None:
+    if view.mutant is None and view.story:
+        found.append(f"what mutant {view.number} did found no room: set `evidence` to more, and run it again")
+    elif view.mutant is None:
         found.append(f"nothing that is recorded of {which} differs: only the original is shown")
-    if not shown.original.recording.tracks:
+    if not view.original.recording.tracks:
         found.append("no simulator tells where things are: only calls are shown, see docs/motion.md")
     return found
 
 
-def _telling_round(result: MutantResult) -> int:
+def _clearest_round(result: MutantResult) -> int:
     """Return the round that shows the mutant's effect best, from 0; of equal ones the first."""
     ranks = []
     for one in result.outcomes:
-        told = one.told
-        deviation = one.deviation or 0.0 if told is not None else 0.0
-        is_clear = told is not None and not told.scatters
+        difference = one.told
+        deviation = one.deviation or 0.0 if difference is not None else 0.0
+        is_clear = difference is not None and not difference.scatters
         ranks.append((bool(one.acted), is_clear, deviation, -one.round))
     return -max(ranks)[-1] if ranks else 0
 
@@ -119,7 +117,7 @@ def _reached_by(results: Results, result: MutantResult) -> tuple[str, ...]:
     return results.reached_by(result.mutant)
 
 
-def _one_of(tests: list[str], wanted: str) -> str:
+def _matching_test(tests: list[str], wanted: str) -> str:
     """Return the test with this node id, or the only one whose id contains it."""
     if wanted in tests:
         return wanted
@@ -168,43 +166,43 @@ def motion(
     Without --test and --round, it is the test and the round with the largest deviation. --video runs both and
     films them. The others run nothing: they show the test as the campaign recorded it.
     """
-    sights = list(sights_of(context.journal.parent, rerun=rerun, rrd=rrd, mcap=mcap))
+    viewers = list(viewers_of(context.journal.parent, rerun=rerun, rrd=rrd, mcap=mcap))
     if video is not None:
         module("pictures.video")
         check(video, ".mp4", ".gif")
-    elif not sights:
+    elif not viewers:
         raise UsageError("say how to show it: --video, --rerun, --rrd or --mcap")
     results = context.results(earlier=True)
     result = results.mutant(mutant)
     wanted = None if round is None else results.round_index(round)
-    shown = choose(context, results, result, wanted, test)
-    if sights:
-        lines = chain(missing_in(shown), (sight(shown) for sight in sights))
+    view = choose(context, results, result, wanted, test)
+    if viewers:
+        lines = chain(missing_in(view), (viewer(view) for viewer in viewers))
         context.tell(f"mutabot: {line}" for line in lines)
     if video is not None:
         request = context.request_again(results, jobs)
         with context.progress() as progress:
-            said = list(_film(request, result, shown, video, progress))
+            remarks = list(_film(request, result, view, video, progress))
         if video.suffix.lower() == ".mp4":
-            context.keep_film(results, result.mutant.id, video, shown.round, shown.test)
-            said.append("`mutabot report --html` shows it in the mutant's page")
-        context.tell(f"mutabot: {line}" for line in said)
+            context.keep_film(results, result.mutant.id, video, view.round, view.test)
+            remarks.append("`mutabot report --html` shows it in the mutant's page")
+        context.tell(f"mutabot: {line}" for line in remarks)
 
 
 def _film(
-    request: Request, result: MutantResult, shown: Shown, file: Path, progress: Progress
+    request: Request, result: MutantResult, view: MotionView, file: Path, progress: Progress
 ) -> Iterator[str]:
     """Film the test and round that are shown; yield lines on the result."""
     with TemporaryDirectory(prefix="mutabot-film-") as folder:
-        with CampaignRun.open(replace(request, rounds=shown.round + 1), progress) as campaign:
-            original, other = film(campaign, result, shown.round, shown.test, Path(folder))
-        shown = replace(
-            shown,
+        with CampaignRun.open(replace(request, rounds=view.round + 1), progress) as campaign:
+            original, other = film(campaign, result, view.round, view.test, Path(folder))
+        view = replace(
+            view,
             # of a process that died, what the campaign has recorded is there still
-            original=original.recording or shown.original,
-            mutant=other.recording or shown.mutant,
+            original=original.recording or view.original,
+            mutant=other.recording or view.mutant,
             ended=(original.ended, other.ended),
         )
         problems = dict.fromkeys([*original.problems, *other.problems])
         video = module("pictures.video")
-        yield from video.show(file, shown, (original.film, other.film), list(problems), progress)
+        yield from video.show(file, view, (original.film, other.film), list(problems), progress)

@@ -31,7 +31,7 @@ _GRAPHICS = (("egl", "EGL"), ("osmesa", "OSMesa"))
 
 
 @dataclass(frozen=True, slots=True)
-class Take:
+class FilmedTest:
     """A filmed test.
 
     Attributes:
@@ -62,7 +62,7 @@ def choose_graphics() -> None:
 
 def film(
     campaign: CampaignRun, result: MutantResult, round: int, test: str, folder: Path
-) -> tuple[Take, Take]:
+) -> tuple[FilmedTest, FilmedTest]:
     """Film a test of the original and of a mutant, into a folder.
 
     Args:
@@ -83,28 +83,28 @@ def film(
     more = _PER_PICTURE * _RATE * (baseline.simulated(round, test) + 1.0)
     choose_graphics()  # for what is filmed alone
     found = {}
-    with followed(campaign.progress, folder, baseline.simulated(round, test)):
+    with following_progress(campaign.progress, folder, baseline.simulated(round, test)):
         for done in campaign.executor.run(_tasks(planned, test, more, folder)):
-            found[done.task.key] = _take(done, test)
+            found[done.task.key] = _filmed_test(done, test)
     return found["original"], found["mutant"]
 
 
 @contextmanager
-def followed(progress: Progress, folder: Path, seconds: float) -> Iterator[None]:
+def following_progress(progress: Progress, folder: Path, seconds: float) -> Iterator[None]:
     """Advance the progress by a step for each simulated second that is filmed, of both sides.
 
     What the pictures show is known here only from their files: these are looked at now and then.
     """
     total, is_over = 2 * ceil(seconds), threading.Event()
     progress.stage("film, simulated seconds", total)
-    told = 0
+    advanced = 0
 
     def follow(until: int = 0) -> None:
-        nonlocal told
+        nonlocal advanced
         ends = {name: Film(folder / f"{name}.film").end for name in _SIDES}
         line = ", ".join(f"{name} {end:.0f} s" for name, end in ends.items() if end)
-        for _ in range(told, max(until, min(total - 1, int(sum(ends.values()))))):
-            told += 1
+        for _ in range(advanced, max(until, min(total - 1, int(sum(ends.values()))))):
+            advanced += 1
             progress.advance(line)
 
     def watch() -> None:
@@ -132,15 +132,17 @@ def _tasks(planned: Task, test: str, more: float, folder: Path) -> Iterator[Task
         yield replace(planned, key=name, job=job, deadlines=deadlines, deadline=limit)
 
 
-def _take(result: Result, test: str) -> Take:
+def _filmed_test(result: Result, test: str) -> FilmedTest:
     pictures = result.task.job.pictures
     assert pictures is not None
     shot = Film(Path(pictures.file))
     end = next((one for one in result.ends if one.test == test), None)
     if end is None:
-        return Take(shot, None, result.death(), (result.death(),))
+        return FilmedTest(shot, None, result.death(), (result.death(),))
     recorded = RecordedPaths.from_text(end.recording) if end.recording is not None else None
     problems = tuple(recorded.recording.problems) if recorded is not None else ()
     ended = f"timed out: {end.timeout}" if end.timeout is not None else end.outcome
     lines = (end.message or "").strip().splitlines()
-    return Take(shot, recorded, f"{ended}: {lines[0]}" if ended == "failed" and lines else ended, problems)
+    return FilmedTest(
+        shot, recorded, f"{ended}: {lines[0]}" if ended == "failed" and lines else ended, problems
+    )

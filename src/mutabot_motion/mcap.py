@@ -14,7 +14,7 @@ from foxglove import channels, messages
 
 from mutabot.api.reports import RecordedPaths
 
-from .shown import BLOCK, COLOURS, Coordinates, DrawnBlock, Shown, Weight, events, things_in, values_in
+from .view import BLOCK, COLOURS, Coordinates, DrawnBlock, MotionView, Weight, events, things_in, values_in
 
 READER = "Foxglove"
 _WORLD = "world"
@@ -22,31 +22,31 @@ _WORLD = "world"
 _LINE, _DOT = 0.006, 0.024
 
 
-def write(file: Path, shown: Shown) -> None:
+def write(file: Path, view: MotionView) -> None:
     """Write a recording to a file; its times are those of the recording's clock, from 0."""
     context = foxglove.Context()
     file.unlink(missing_ok=True)
     with foxglove.open_mcap(str(file), context=context) as writer:
-        writer.write_metadata("mutabot", shown.about)
-        _FileTopics(shown, context).log()
+        writer.write_metadata("mutabot", view.about)
+        _FileTopics(view, context).log()
 
 
 class _FileTopics:
     """The topics of a file."""
 
-    def __init__(self, shown: Shown, context: Any) -> None:
-        self._shown, self._context = shown, context
+    def __init__(self, view: MotionView, context: Any) -> None:
+        self._view, self._context = view, context
 
     def log(self) -> None:
         """Write the messages in the order of their times."""
-        found = [line for side, recorded in self._shown.sides for line in self._lines(side, recorded)]
+        found = [line for side, recorded in self._view.sides for line in self._lines(side, recorded)]
         for time, channel, message in [*self._scene(), *sorted(found, key=lambda line: line[0])]:
             channel.log(message, log_time=round(time * 1e9))
 
     def _scene(self) -> Iterator[tuple[float, Any, Any]]:
         """Yield the surroundings and the paths, which exist from the start."""
-        yield self._shapes("/blocks", [_block(one) for one in self._shown.blocks])
-        for side, recorded in self._shown.sides:
+        yield self._shapes("/blocks", [_block(one) for one in self._view.blocks])
+        for side, recorded in self._view.sides:
             paths = [_path(recorded, name, _colour(side)) for name in things_in(recorded)]
             yield self._shapes(f"/{side}/paths", paths)
 
@@ -76,7 +76,7 @@ class _FileTopics:
                 parent_frame_id=_WORLD,
                 child_frame_id=frame,
                 translation=_vector(row[:3]),
-                rotation=_turn(row),
+                rotation=_orientation(row),
             )
             yield time, frames, moved
 
@@ -98,7 +98,7 @@ class _FileTopics:
             Weight.FAULT: messages.LogLevel.Warning,
         }
         channel = channels.LogChannel(f"/{side}/log", context=self._context)
-        for one in events(self._shown, recorded):
+        for one in events(self._view, recorded):
             line = messages.Log(
                 timestamp=messages.Timestamp.from_epoch_secs(one.time), level=levels[one.weight],
                 message=one.text, name=side, file=one.file, line=one.line,
@@ -137,10 +137,10 @@ def _path(recorded: RecordedPaths, name: str, colour: Any) -> Any:
 
 def _pose(row: Sequence[float]) -> Any:
     """Return the pose in a row of a track."""
-    return messages.Pose(position=_vector(row[:3]), orientation=_turn(row))
+    return messages.Pose(position=_vector(row[:3]), orientation=_orientation(row))
 
 
-def _turn(row: Sequence[float]) -> Any:
+def _orientation(row: Sequence[float]) -> Any:
     """Return the orientation in a row; identity if the row is only a position."""
     w, x, y, z = row[3:7] if len(row) == 7 else (1.0, 0.0, 0.0, 0.0)
     return messages.Quaternion(x=x, y=y, z=z, w=w)

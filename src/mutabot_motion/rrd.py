@@ -18,8 +18,8 @@ from rerun import blueprint as layout
 
 from mutabot.api.reports import RecordedPaths, UsageError
 
-from .shown import BLOCK, COLOURS, DrawnBlock, Shown, Weight, events, things_in, values_in
-from .sights import has_screen
+from .view import BLOCK, COLOURS, DrawnBlock, MotionView, Weight, events, things_in, values_in
+from .viewers import has_screen
 
 READER = "Rerun"
 #: seconds after which a viewer that cannot begin has ended
@@ -28,21 +28,21 @@ _BEGINNING = 4.0
 _LINE, _DOT, _AXIS = 0.003, 0.012, 0.06
 
 
-def write(file: Path, shown: Shown) -> None:
+def write(file: Path, view: MotionView) -> None:
     """Write a recording to a file, with the layout of the viewer."""
-    about = "\n\n".join(f"**{name}** {text}" for name, text in shown.about.items())
-    name = f"mutant {shown.number}, round {shown.round + 1}: {shown.test}"
-    with rerun.RecordingStream("mutabot", recording_id=f"{shown.id} {shown.round} {shown.test}") as stream:
+    about = "\n\n".join(f"**{name}** {text}" for name, text in view.about.items())
+    name = f"mutant {view.number}, round {view.round + 1}: {view.test}"
+    with rerun.RecordingStream("mutabot", recording_id=f"{view.id} {view.round} {view.test}") as stream:
         stream.set_log_time_enabled(False)
         stream.set_log_tick_enabled(False)
-        stream.save(str(file), default_blueprint=_layout(shown))
+        stream.save(str(file), default_blueprint=_layout(view))
         stream.send_recording_name(name)
         stream.log("about", rerun.TextDocument(about, media_type="text/markdown"), static=True)
         stream.log("/", rerun.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
-        for block in shown.blocks:
+        for block in view.blocks:
             _log_block(stream, block)
-        for side, recorded in shown.sides:
-            _Side(stream, shown, side, recorded).log()
+        for side, recorded in view.sides:
+            _Side(stream, view, side, recorded).log()
         stream.flush()
         stream.disconnect()
 
@@ -51,9 +51,9 @@ class _Side:
     """Original or mutant in a recording for Rerun."""
 
     def __init__(
-        self, stream: rerun.RecordingStream, shown: Shown, name: str, recorded: RecordedPaths
+        self, stream: rerun.RecordingStream, view: MotionView, name: str, recorded: RecordedPaths
     ) -> None:
-        self._stream, self._shown, self._name, self._recorded = stream, shown, name, recorded
+        self._stream, self._view, self._name, self._recorded = stream, view, name, recorded
         self._colour = COLOURS[name]
 
     def log(self) -> None:
@@ -105,7 +105,7 @@ class _Side:
 
     def _log_events(self) -> None:
         levels = {Weight.READING: "DEBUG", Weight.COMMAND: "INFO", Weight.FAULT: "WARN"}
-        found = events(self._shown, self._recorded)
+        found = events(self._view, self._recorded)
         if found:
             where = [f" ({one.file}:{one.line})" if one.file else "" for one in found]
             texts = [f"{one.text}{place}" for one, place in zip(found, where, strict=True)]
@@ -113,7 +113,7 @@ class _Side:
             self._stream.send_columns(self._path("log"), [self._times(one.time for one in found)], lines)
 
     def _times(self, times: Iterable[float]) -> rerun.TimeColumn:
-        return rerun.TimeColumn(self._shown.clock, duration=list(times))
+        return rerun.TimeColumn(self._view.clock, duration=list(times))
 
     def _path(self, *parts: str) -> str:
         return str(rerun.new_entity_path([self._name, *parts]))
@@ -133,18 +133,16 @@ def _log_block(stream: rerun.RecordingStream, block: DrawnBlock) -> None:
     stream.log(rerun.new_entity_path(["blocks", name]), box, static=True)
 
 
-def _layout(shown: Shown) -> Any:
-    below = [layout.TextLogView(origin=side, name=side) for side, _ in shown.sides]
-    values = layout.TimeSeriesView(
-        name="values", contents=[f"+ /{side}/values/**" for side, _ in shown.sides]
-    )
+def _layout(view: MotionView) -> Any:
+    below = [layout.TextLogView(origin=side, name=side) for side, _ in view.sides]
+    values = layout.TimeSeriesView(name="values", contents=[f"+ /{side}/values/**" for side, _ in view.sides])
     space = layout.Spatial3DView(origin="/", name="world")
     about = layout.TextDocumentView(origin="about", name="about")
     right = layout.Vertical(about, values, row_shares=[1, 2])
     top = layout.Horizontal(space, right, column_shares=[3, 2])
     return layout.Blueprint(
         layout.Vertical(top, layout.Horizontal(*below), row_shares=[3, 1]),
-        layout.TimePanel(timeline=shown.clock),
+        layout.TimePanel(timeline=view.clock),
         collapse_panels=True,
     )
 
@@ -161,9 +159,9 @@ def open_viewer(file: Path, home: Path) -> str:
     log = settings / "viewer.log"
     environment = {**os.environ, "XDG_CONFIG_HOME": str(settings)}
     command = [sys.executable, "-m", "rerun_cli"]
-    with log.open("wb") as said:
+    with log.open("wb") as output:
         common: dict[str, Any] = {
-            "stdin": subprocess.DEVNULL, "stdout": said, "stderr": subprocess.STDOUT, "env": environment,
+            "stdin": subprocess.DEVNULL, "stdout": output, "stderr": subprocess.STDOUT, "env": environment,
         }  # fmt: skip
         try:
             subprocess.run([*command, "analytics", "disable"], check=True, **common)

@@ -64,9 +64,9 @@ def read_patch(content: bytes, root: Path, is_of_suite: Callable[[str], bool]) -
             raise PatchError(f"{path} belongs to the tests, and a patch to these is no mutant of the program")
         if path in changed:
             raise PatchError(f"it changes {path} twice: join the hunks below one header")
-        file, said = _changed(root, path, one)
+        file, more_notes = _changed(root, path, one)
         changed[path] = file
-        notes += said
+        notes += more_notes
     _check(changed.values())
     return Patch(diff.title, tuple(changed.values()), tuple(notes))
 

@@ -42,8 +42,8 @@ def patches(
     found = list(reverted(root, from_git, match, paths or []))
     states = {one.commit: _write(root, to, one) for one in found}
     if json:
-        told = [{"commit": one.commit, "subject": one.subject, **states[one.commit]} for one in found]
-        context.print_json({"commits": told})
+        data = [{"commit": one.commit, "subject": one.subject, **states[one.commit]} for one in found]
+        context.print_json({"commits": data})
         return
     for one in found:
         file, why = states[one.commit]["file"], states[one.commit]["why_not"]

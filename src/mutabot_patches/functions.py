@@ -68,14 +68,14 @@ def extent_of(node: ast.stmt) -> tuple[int, int, int, int]:
 
 def _compare(old: CodeType, new: CodeType, found: list[ChangedFunction]) -> bool:
     """Compare code that an import executes, and collect the functions in it that differ."""
-    if not _is_alike(old, new):
+    if not _has_same_code(old, new):
         return False
     for before, after in zip(_within(old), _within(new), strict=True):
         if not before.co_flags & _OPTIMIZED:  # the body of a class
             if not _compare(before, after, found):
                 return False
         elif not _is_same(before, after):
-            if not _may_stand_for(before, after):
+            if not _can_replace(before, after):
                 return False
             found.append(ChangedFunction(before.co_qualname, before.co_firstlineno, after.co_firstlineno))
     return True
@@ -84,10 +84,10 @@ def _compare(old: CodeType, new: CodeType, found: list[ChangedFunction]) -> bool
 def _is_same(old: CodeType, new: CodeType) -> bool:
     """Return whether two functions do the same, with everything defined in them."""
     pairs = zip(_within(old), _within(new), strict=False)
-    return _is_alike(old, new) and all(_is_same(before, after) for before, after in pairs)
+    return _has_same_code(old, new) and all(_is_same(before, after) for before, after in pairs)
 
 
-def _may_stand_for(old: CodeType, new: CodeType) -> bool:
+def _can_replace(old: CodeType, new: CodeType) -> bool:
     """Return whether a function may get the other's code without a difference that can be observed."""
     is_named = not old.co_name.startswith("<")
     is_plain = not old.co_flags & _SUSPENDED  # one that was made before goes on with the code that it has
@@ -101,7 +101,7 @@ def _head(code: CodeType) -> tuple[object, ...]:
     return code.co_name, code.co_qualname, code.co_flags, text, parameters
 
 
-def _is_alike(old: CodeType, new: CodeType) -> bool:
+def _has_same_code(old: CodeType, new: CodeType) -> bool:
     """Return whether two pieces of code do the same, except for definitions in them; lines do not count."""
     return _content(old) == _content(new)
 

@@ -106,6 +106,6 @@ def git(folder: Path, *command: str) -> bytes:
     except OSError as error:
         raise UsageError(f"git cannot be started: {error.strerror}") from None
     if done.returncode:
-        said = os.fsdecode(done.stderr).strip().splitlines()
-        raise UsageError(f"git says: {said[0] if said else f'exit code {done.returncode}'}")
+        errors = os.fsdecode(done.stderr).strip().splitlines()
+        raise UsageError(f"git says: {errors[0] if errors else f'exit code {done.returncode}'}")
     return done.stdout

@@ -31,7 +31,7 @@ from .functions import ChangedFunction, changed_functions, extent_of, first_stat
 from .suite import FilesOfTests
 from .tables import PatchesTable
 
-ACTIVE = "mutabot_patches.inside:PatchedFiles"
+ACTIVE = "mutabot_patches.active:PatchedFiles"
 _SUFFIXES = (".patch", ".diff")
 #: families beside which functions may be looked at: the text of a file has the places of one provider
 _BESIDE = {FAMILY, "robot", "graded", "catalogue", "middleware", "world"}
@@ -51,7 +51,7 @@ class ApplyPatch(Rule):
 
 
 @dataclass(frozen=True, slots=True)
-class _PatchLooked:
+class _PatchToPlan:
     """A patch that applies to the program.
 
     Attributes:
@@ -67,7 +67,7 @@ class _PatchLooked:
     beginnings: tuple[tuple[str, HunkExtent, str], ...]
 
     @classmethod
-    def of(cls, name: str, patch: Patch) -> _PatchLooked:
+    def of(cls, name: str, patch: Patch) -> _PatchToPlan:
         """Find out what a patch changes."""
         functions = _functions(patch)
         found = list[tuple[str, HunkExtent, str]]()
@@ -96,8 +96,8 @@ class PatchFaults(FaultProvider):
         """Return the places where changed functions begin, to find out which tests call them."""
         if not set(project.families) <= _BESIDE:
             return ()
-        looked = [one for _, one in _read_all(project, ()) if isinstance(one, _PatchLooked)]
-        return _places(looked, project.root, first)
+        patches = [one for _, one in _read_all(project, ()) if isinstance(one, _PatchToPlan)]
+        return _places(patches, project.root, first)
 
     def plan(self, project: Project, original: Original) -> Planned:
         """Return a mutant for each patch; those that do not apply are left out, with the reason."""
@@ -107,7 +107,7 @@ class PatchFaults(FaultProvider):
         looked_at = original.texts.get(self.name, ())
         known = {(text.file, place.extent): place.number for text in looked_at for place in text.places}
         for file, one in found:
-            if isinstance(one, _PatchLooked):
+            if isinstance(one, _PatchToPlan):
                 self._plan_one(planned, one, original, known)
             else:
                 site = Site.of_parameter(file, "patch")
@@ -117,7 +117,7 @@ class PatchFaults(FaultProvider):
     def _plan_one(
         self,
         planned: Planned,
-        one: _PatchLooked,
+        one: _PatchToPlan,
         original: Original,
         known: Mapping[tuple[str, HunkExtent], int],
     ) -> None:
@@ -126,13 +126,13 @@ class PatchFaults(FaultProvider):
         site = Site.of_patch(one.name, hunks)
         contents = {file.path: file.after.decode("latin-1") for file in files}
         reaching = _reaching(one, original, known)
-        told = {
+        functions = {
             path: [[each.name, each.old, each.new] for each in found]
             for path, found in one.functions.items()
             if reaching is not None
         }
         keys = (Activation.EACH_TEST,) if reaching is not None else ()
-        data = {"files": contents, "functions": told}
+        data = {"files": contents, "functions": functions}
         active = Activation(ACTIVE, data, keys, Activation.AT_ONCE)
         mutant = self.mutant(ApplyPatch(), site, _description(one))
         does = {path: sha256(text.encode()).hexdigest() for path, text in contents.items()}
@@ -141,7 +141,7 @@ class PatchFaults(FaultProvider):
             planned.reach(round, site, tests if reaching is None else reaching[round])
 
 
-def _read_all(project: Project, tests: Iterable[str]) -> Iterator[tuple[str, _PatchLooked | PatchError]]:
+def _read_all(project: Project, tests: Iterable[str]) -> Iterator[tuple[str, _PatchToPlan | PatchError]]:
     """Yield a project's patches by name; a PatchError for one that makes no mutant."""
     suite = FilesOfTests(tests, project.program_files())
     table = project.tables.get(TABLE)
@@ -151,7 +151,7 @@ def _read_all(project: Project, tests: Iterable[str]) -> Iterator[tuple[str, _Pa
         name = path.relative_to(project.root).as_posix()
         try:
             patch = read_patch(path.read_bytes(), project.root, suite.has)
-            yield name, _PatchLooked.of(name, patch)
+            yield name, _PatchToPlan.of(name, patch)
         except OSError as error:
             yield name, PatchError(f"it cannot be read: {error.strerror or error}")
         except PatchError as error:
@@ -196,10 +196,10 @@ def _functions(patch: Patch) -> dict[str, tuple[ChangedFunction, ...]]:
     return found
 
 
-def _places(looked: Sequence[_PatchLooked], root: Path, first: int) -> list[ProgramText]:
+def _places(patches: Sequence[_PatchToPlan], root: Path, first: int) -> list[ProgramText]:
     """Return the texts with a place where each function begins."""
     found = dict[str, dict[HunkExtent, str]]()
-    for one in looked:
+    for one in patches:
         for file, extent, name in one.beginnings:
             found.setdefault(file, {}).setdefault(extent, name)
     texts, number = list[ProgramText](), first
@@ -219,7 +219,7 @@ def _places(looked: Sequence[_PatchLooked], root: Path, first: int) -> list[Prog
 
 
 def _reaching(
-    one: _PatchLooked, original: Original, known: Mapping[tuple[str, HunkExtent], int]
+    one: _PatchToPlan, original: Original, known: Mapping[tuple[str, HunkExtent], int]
 ) -> list[list[str]] | None:
     """Return the tests of each round that call what a patch changes, also in processes below the tests.
 
@@ -242,7 +242,7 @@ def _reaching(
     return found
 
 
-def _description(one: _PatchLooked) -> str:
+def _description(one: _PatchToPlan) -> str:
     title = f": {one.patch.title}" if one.patch.title else ""
     notes = f" ({', '.join(one.patch.notes)})" if one.patch.notes else ""
     return f"{one.name}{title}{notes}"

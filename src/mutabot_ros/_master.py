@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from mutabot.api.reports import MutabotError
 from mutabot.api.values import Operation
 
-from ._speech import speaks_of
+from ._mentions import mentions
 
 #: environment variables by which nodes find it
 URI, ADDRESS, LOGS, HOME = "ROS_MASTER_URI", "ROS_IP", "ROS_LOG_DIR", "ROS_HOME"
@@ -68,7 +68,7 @@ def is_wanted(root: str, operations: Sequence[Operation] | None) -> bool:
     if not _is_installed("rospy") or not _is_installed("rosmaster"):
         return False
     is_other_there = operations is None or _is_installed("rclpy")
-    return not is_other_there or speaks_of(root, "rospy")
+    return not is_other_there or mentions(root, "rospy")
 
 
 def _is_of_nodes(operation: Operation) -> bool:
@@ -86,7 +86,7 @@ def start(home: str) -> Master:
     os.makedirs(os.path.join(folder, "log"), exist_ok=True)
     os.environ.update({ADDRESS: _LOCAL, LOGS: os.path.join(folder, "log"), HOME: folder})
     os.environ.pop("ROS_HOSTNAME", None)  # it would go before the address
-    said = ""
+    log = ""
     for number in range(_TRIES):
         port = _free_port(number)
         os.environ[URI] = f"http://{_LOCAL}:{port}"
@@ -96,10 +96,8 @@ def start(home: str) -> Master:
             return master
         master.stop()
         with open(log, encoding="utf-8", errors="replace") as file:
-            said = file.read()[-500:]
-    raise MasterError(
-        f"no rosmaster came up on {_LOCAL} in {_TRIES} tries; the last one said: {said.strip()}"
-    )
+            log = file.read()[-500:]
+    raise MasterError(f"no rosmaster came up on {_LOCAL} in {_TRIES} tries; the last one said: {log.strip()}")
 
 
 def _free_port(number: int) -> int:
@@ -137,7 +135,7 @@ def _process(port: int, log: str) -> subprocess.Popen[bytes]:
 
 
 def _comes_up(process: subprocess.Popen[bytes], port: int) -> bool:
-    from ._asking import pid_of_master  # noqa: PLC0415  # see there
+    from ._master_check import pid_of_master  # noqa: PLC0415  # see there
 
     end = time.monotonic() + _PATIENCE
     while process.poll() is None and time.monotonic() < end:

@@ -48,7 +48,7 @@ def with_sender(copied: Any, message: Any) -> Any:
     return copied
 
 
-class Given:
+class CallArguments:
     """The arguments of a call of rospy, by name.
 
     Args:
@@ -83,9 +83,9 @@ class Given:
         return self._bound.kwargs
 
 
-def bound(function: Callable[..., Any], *args: Any, **kwargs: Any) -> Given:
+def bound(function: Callable[..., Any], *args: Any, **kwargs: Any) -> CallArguments:
     """Return the arguments of a call. Raises TypeError, as the call would, if they do not fit."""
-    return Given(_signature(function), args, kwargs)
+    return CallArguments(_signature(function), args, kwargs)
 
 
 @functools.cache

@@ -63,7 +63,7 @@ class Types(ABC):
             if used is wanted and fnmatchcase(name, names)
         }
 
-    def look_at(self, operation: Operation) -> Iterator[Finding]:
+    def check(self, operation: Operation) -> Iterator[Finding]:
         """Yield what in an operation does not fit the installed definition of its type.
 
         Where the vocabulary names no type, it is the one that the program uses.
@@ -73,8 +73,8 @@ class Types(ABC):
             return
         used = self.of(named.form, named.name)
         for kind in [named.type] if named.type is not None else sorted(set(used.values())):
-            yield from self._look_at_fields(operation, named.form, kind)
-        yield from self._look_at_told(operation)
+            yield from self._check_fields(operation, named.form, kind)
+        yield from self._check_refusals(operation)
         for name, kind in used.items():
             if named.type not in (None, kind):
                 yield Finding("type", f"the program uses {kind} for {name}", named.type, (kind,))
@@ -103,7 +103,7 @@ class Types(ABC):
         """Return the fields of a type that no package defines."""
         return {}
 
-    def _look_at_fields(self, operation: Operation, form: Form, kind: str) -> Iterator[Finding]:
+    def _check_fields(self, operation: Operation, form: Form, kind: str) -> Iterator[Finding]:
         sides = ((self.written, 0, operation.arguments), (self.read, 1, operation.result))
         for places, side, quantities in sides:
             if form not in places:
@@ -117,12 +117,12 @@ class Types(ABC):
             for quantity in quantities:
                 if operation.is_field(quantity):
                     key = f"{_TABLES[form][side]}.{quantity.name}"
-                    yield from self._look_at_steps(message, quantity.path, key)
+                    yield from self._check_path(message, quantity.path, key)
             for refused in operation.all_refused if places is self.read else ():
                 if refused.topic is None:
-                    yield from self._look_at_steps(message, refused.parsed, "refused.path")
+                    yield from self._check_path(message, refused.parsed, "refused.path")
 
-    def _look_at_told(self, operation: Operation) -> Iterator[Finding]:
+    def _check_refusals(self, operation: Operation) -> Iterator[Finding]:
         """Check the vocabulary's refusals on topics whose types are known."""
         for refused in operation.all_refused:
             listened = {} if refused.topic is None else self.of(Form.RECEIVE, refused.topic)
@@ -131,7 +131,7 @@ class Types(ABC):
                     message = self._class_of(kind, *self.read[Form.RECEIVE])
                 except LookupError:  # the program has it all the same
                     continue
-                for one in self._look_at_steps(message, refused.parsed, "refused.path"):
+                for one in self._check_path(message, refused.parsed, "refused.path"):
                     yield replace(one, text=f"{name}: {one.text}")
 
     def _class_of(self, kind: str, module: str, part: str) -> Any:
@@ -148,7 +148,7 @@ class Types(ABC):
             raise LookupError(text, name, tuple(self.names_in(found, part)))
         return message
 
-    def _look_at_steps(self, message: Any, path: Path, key: str) -> Iterator[Finding]:
+    def _check_path(self, message: Any, path: Path, key: str) -> Iterator[Finding]:
         """Yield what in a path does not fit a message class."""
         kind, fields = self.name_of(message), self.fields_of(message)
         for step in path.steps:

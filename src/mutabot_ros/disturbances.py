@@ -22,7 +22,7 @@ Acts: TypeAlias = Callable[[], None]
 #: what a callback gets of a message: what it is called with, now or later; or nothing
 _Deliver: TypeAlias = Callable[[Any, Callable[[Any], Any]], Any]
 #: what stands before callbacks and clocks, by the client library that a world is of
-_LISTENING = {"rclpy": "mutabot_ros.ros2.listening", "rospy": "mutabot_ros.ros1_listening"}
+_INTERCEPTION = {"rclpy": "mutabot_ros.ros2.interception", "rospy": "mutabot_ros.ros1_interception"}
 _NANO = 1e9
 
 
@@ -30,12 +30,12 @@ def bias(subscription: Any, change: Changed, *, names: str, random: Random, acts
     """Shift positions in messages of topics along an axis, m: points, poses, transforms."""
 
     def biased(message: Any) -> bool:
-        places = list(_places(message))
+        places = list(_positions(message))
         for place in places:
             setattr(place, axis, float(change(getattr(place, axis))))
         return bool(places)
 
-    _listen(subscription, names, _changing(biased, acts))
+    _intercept(subscription, names, _changing(biased, acts))
 
 
 def frame_position(
@@ -44,12 +44,12 @@ def frame_position(
     """Shift frames along an axis of their parents, m, in messages with transforms to them."""
 
     def moved(message: Any) -> bool:
-        found = [one.transform for one in _stamped(message) if _is_to(one, names)]
+        found = [one.transform for one in _stamped_transforms(message) if _is_to(one, names)]
         for one in found:
             setattr(one.translation, axis, float(change(getattr(one.translation, axis))))
         return bool(found)
 
-    _listen(subscription, "*", _changing(moved, acts))
+    _intercept(subscription, "*", _changing(moved, acts))
 
 
 def frame_angle(subscription: Any, change: Changed, *, names: str, random: Random, acts: Acts) -> None:
@@ -57,7 +57,7 @@ def frame_angle(subscription: Any, change: Changed, *, names: str, random: Rando
     half = change(0.0) / 2
 
     def turned(message: Any) -> bool:
-        found = [one.transform for one in _stamped(message) if _is_to(one, names)]
+        found = [one.transform for one in _stamped_transforms(message) if _is_to(one, names)]
         for one in found:
             q, cos, sin = one.rotation, math.cos(half), math.sin(half)
             q.w, q.x, q.y, q.z = (
@@ -65,33 +65,33 @@ def frame_angle(subscription: Any, change: Changed, *, names: str, random: Rando
             )  # fmt: skip
         return bool(found)
 
-    _listen(subscription, "*", _changing(turned, acts))
+    _intercept(subscription, "*", _changing(turned, acts))
 
 
 def frame_delay(subscription: Any, change: Changed, *, names: str, random: Random, acts: Acts) -> None:
     """Delay transforms to frames, s, in the node's time, but not other transforms in a message."""
 
     def late(message: Any, deliver: Callable[[Any], Any]) -> Any:
-        meant, others = _parted(message, names)
+        meant, others = _split_message(message, names)
         if meant is not None:
             acts()
             _library(subscription).later(subscription, change(0.0), lambda: deliver(meant))
         return deliver(others) if others is not None else None
 
-    _listen(subscription, "*", late)
+    _intercept(subscription, "*", late)
 
 
 def frame_loss(subscription: Any, change: Changed, *, names: str, random: Random, acts: Acts) -> None:
     """Drop a share of the messages' transforms to frames, but not other transforms in a message."""
 
     def lost(message: Any, deliver: Callable[[Any], Any]) -> Any:
-        meant, others = _parted(message, names)
+        meant, others = _split_message(message, names)
         if meant is None or random.random() >= change(0.0):
             return deliver(message)
         acts()
         return deliver(others) if others is not None else None
 
-    _listen(subscription, "*", lost)
+    _intercept(subscription, "*", lost)
 
 
 def distance(subscription: Any, change: Changed, *, names: str, random: Random, acts: Acts) -> None:
@@ -104,7 +104,7 @@ def distance(subscription: Any, change: Changed, *, names: str, random: Random, 
             message.ranges = [float(change(one)) if math.isfinite(one) else one for one in message.ranges]
         return hasattr(message, "range") or hasattr(message, "ranges")
 
-    _listen(subscription, names, _changing(read, acts))
+    _intercept(subscription, names, _changing(read, acts))
 
 
 def delay(subscription: Any, change: Changed, *, names: str, random: Random, acts: Acts) -> None:
@@ -114,7 +114,7 @@ def delay(subscription: Any, change: Changed, *, names: str, random: Random, act
         acts()
         _library(subscription).later(subscription, change(0.0), lambda: deliver(message))
 
-    _listen(subscription, names, late)
+    _intercept(subscription, names, late)
 
 
 def loss(subscription: Any, change: Changed, *, names: str, random: Random, acts: Acts) -> None:
@@ -126,12 +126,12 @@ def loss(subscription: Any, change: Changed, *, names: str, random: Random, acts
         acts()
         return None
 
-    _listen(subscription, names, lost)
+    _intercept(subscription, names, lost)
 
 
 def clock_offset(node: Any, change: Changed, *, names: str, random: Random, acts: Acts) -> None:
     """Set the clocks of nodes ahead of others, s."""
-    _run_apart(node, names, acts, lambda nanoseconds: nanoseconds + change(0.0) * _NANO)
+    _shift_clock(node, names, acts, lambda nanoseconds: nanoseconds + change(0.0) * _NANO)
 
 
 def clock_rate(node: Any, change: Changed, *, names: str, random: Random, acts: Acts) -> None:
@@ -143,34 +143,34 @@ def clock_rate(node: Any, change: Changed, *, names: str, random: Random, acts: 
         del begin[1:]
         return begin[0] + change(1.0) * (nanoseconds - begin[0])
 
-    _run_apart(node, names, acts, read)
+    _shift_clock(node, names, acts, read)
 
 
 def _library(world: Any) -> Any:
     """Return the module that intercepts callbacks and clocks of a world's client library."""
-    return import_module(_LISTENING[type(world).__module__.partition(".")[0]])
+    return import_module(_INTERCEPTION[type(world).__module__.partition(".")[0]])
 
 
-def _listen(subscription: Any, names: str, deliver: _Deliver) -> None:
+def _intercept(subscription: Any, names: str, deliver: _Deliver) -> None:
     """Intercept the callbacks of a subscription. Raises LookupError for other topics."""
     library = _library(subscription)
     topic = library.topic_of(subscription)
     if topic is None or not fnmatchcase(topic, names):
         raise LookupError(f"nothing listens to a topic {names!r}; the last one is {topic or 'of ROS itself'}")
-    library.listen(subscription, deliver)
+    library.intercept(subscription, deliver)
 
 
-def _run_apart(node: Any, names: str, acts: Acts, read: Callable[[int], float]) -> None:
+def _shift_clock(node: Any, names: str, acts: Acts, read: Callable[[int], float]) -> None:
     library = _library(node)
     name = library.name_of(node)
     if not fnmatchcase(name, names):
         raise LookupError(f"no node is named {names!r}; the last one is {name}")
 
-    def told(nanoseconds: int) -> int:
+    def shifted(nanoseconds: int) -> int:
         acts()
         return max(0, round(read(nanoseconds)))
 
-    library.run_apart(node, told)
+    library.shift_clock(node, shifted)
 
 
 def _changing(change: Callable[[Any], bool], acts: Acts) -> _Deliver:
@@ -186,18 +186,18 @@ def _changing(change: Callable[[Any], bool], acts: Acts) -> _Deliver:
     return deliver
 
 
-def _places(message: Any) -> Iterator[Any]:
+def _positions(message: Any) -> Iterator[Any]:
     """Yield the positions in a message: points or vectors, however deeply nested."""
     for name in ("pose", "position", "point", "transform", "translation"):
         if (part := getattr(message, name, None)) is not None:
-            yield from _places(part)
+            yield from _positions(part)
     for one in getattr(message, "transforms", ()):
-        yield from _places(one)
+        yield from _positions(one)
     if all(isinstance(getattr(message, axis, None), float) for axis in "xyz") and not hasattr(message, "w"):
         yield message
 
 
-def _stamped(message: Any) -> list[Any]:
+def _stamped_transforms(message: Any) -> list[Any]:
     """Return the stamped transforms that a message contains or is."""
     found = getattr(message, "transforms", (message,))
     return [one for one in found if hasattr(one, "transform") and hasattr(one, "child_frame_id")]
@@ -207,10 +207,10 @@ def _is_to(transform: Any, names: str) -> bool:
     return fnmatchcase(transform.child_frame_id.removeprefix("/"), names)
 
 
-def _parted(message: Any, names: str) -> tuple[Any, Any]:
+def _split_message(message: Any, names: str) -> tuple[Any, Any]:
     """Split a message: transforms to frames of these names, and the others; None for an empty part."""
-    meant = [one for one in _stamped(message) if _is_to(one, names)]
-    others = [one for one in _stamped(message) if not _is_to(one, names)]
+    meant = [one for one in _stamped_transforms(message) if _is_to(one, names)]
+    others = [one for one in _stamped_transforms(message) if not _is_to(one, names)]
     if not meant or not others:
         return (message, None) if meant else (None, message)
     parts = [with_sender(copy.copy(message), message) for _ in range(2)]

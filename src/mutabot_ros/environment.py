@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from mutabot.api.values import Operation
 
 from . import _domain, _master
-from ._speech import speaks_of
+from ._mentions import mentions
 from .simulation.settings import configure
 
 
@@ -16,7 +16,7 @@ def prepare(root: str, home: str, operations: Sequence[Operation] | None) -> boo
 
     Raises ``_master.MasterError`` if there is to be a master and none comes up.
     """
-    has_domain = speaks_of(root, "rclpy") if operations is None else _domain.is_wanted(operations)
+    has_domain = mentions(root, "rclpy") if operations is None else _domain.is_wanted(operations)
     if has_domain:
         configure()
         _domain.take(home)

@@ -43,7 +43,7 @@ def hook(messages: Names) -> Callable[[], None]:
 
 def check(operation: Operation) -> Iterator[Finding]:
     """Yield what in an operation does not fit the installed definition of its type, or the program's type."""
-    return _types.look_at(operation)
+    return _types.check(operation)
 
 
 def _note(messages: Names, original: Any, *args: Any, **kwargs: Any) -> Any:
@@ -94,7 +94,7 @@ class _PublishersAndSubscribers:
         settings = given.settings(name="name", depth="queue_size")
         handler(subscribe, subscriber, (), settings, node.where())
 
-    def _set_up(self, form: Form, given: node.Given) -> Any:
+    def _set_up(self, form: Form, given: node.CallArguments) -> Any:
         name = node.resolved(given.get("name"))
         if name is None or name in OWN_TOPICS:
             return None

@@ -28,7 +28,7 @@ class Neighbours:
         self._places: dict[ast.expr, str] = {}
         self._values: dict[str, list[ast.expr]] = {}
         for node in ast.walk(tree):
-            for place, value in _given(node):
+            for place, value in _passed_values(node):
                 if _is_fixed(value):
                     self._places[value] = place
                     self._values.setdefault(place, []).append(value)
@@ -48,7 +48,7 @@ class Neighbours:
         return None
 
 
-def _given(node: ast.AST) -> Iterator[tuple[str, ast.expr]]:
+def _passed_values(node: ast.AST) -> Iterator[tuple[str, ast.expr]]:
     """Yield the values passed to a call or subscript, each with a key of its place."""
     if isinstance(node, ast.Subscript) and isinstance(node.value, ast.Name | ast.Attribute):
         yield f"{ast.unparse(node.value)}[]", node.slice

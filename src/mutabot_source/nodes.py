@@ -45,7 +45,7 @@ class ModuleTree:
         lines[0] = lines[0][start:]
         return b"\n".join(lines).decode()
 
-    def stands_there(self, node: SyntaxNode) -> bool:
+    def has_valid_extent(self, node: SyntaxNode) -> bool:
         """Return whether a node's extent is right; before Python 3.12 it may be wrong within f-strings."""
         if node not in self._formatted:
             return True
@@ -128,7 +128,7 @@ def template(parts: TextParts, number_of: Callable[[ast.expr], int]) -> str:
     return _joined(parts, lambda node: Alternative.kept_name(number_of(node)))
 
 
-def shown(parts: TextParts, text_of: Callable[[ast.expr], str]) -> str:
+def to_source(parts: TextParts, text_of: Callable[[ast.expr], str]) -> str:
     """Return the parts as program text, with parentheses only where they are needed."""
     bare = _joined(parts, text_of)
     if len(parts) == 1 or all(isinstance(part, str | _ATOMS) for part in parts):

@@ -63,20 +63,21 @@ class SourceFaults(FaultProvider):
         if not looked_at:
             return Planned()
         from .changed import changing, reach_readers
-        from .refine import plant, planted_of, refine
+        from .refine import plan_mutants, planned_mutant, refine
 
         why = original.refused_files()
         readable = [text for text in looked_at if text.file not in why]
         texts, left_out = refine(readable, original, self._operators(project))
         left_out += [
-            planted_of(place, index, why[text.file])
+            planned_mutant(place, index, why[text.file])
             for text in looked_at
             if text.file in why
             for place in text.places
             for index in range(len(place.alternatives))
         ]
         found = (
-            changing(project.root, text) if original.is_read(text.file) else plant([text]) for text in texts
+            changing(project.root, text) if original.is_read(text.file) else plan_mutants([text])
+            for text in texts
         )
         mutants = [replace(one, order=(OF_TEXT.index(one.mutant.family),)) for each in found for one in each]
         planned = Planned([*mutants, *left_out], texts)

@@ -13,17 +13,17 @@ from .nodes import shortened
 from .operator import ConventionalOperator
 
 
-def plant(texts: Iterable[ProgramText]) -> list[PlannedMutant]:
+def plan_mutants(texts: Iterable[ProgramText]) -> list[PlannedMutant]:
     """Return all mutants of these texts, in the order of the text."""
     return [
-        planted_of(place, index)
+        planned_mutant(place, index)
         for text in texts
         for place in text.places
         for index in range(len(place.alternatives))
     ]
 
 
-def planted_of(place: TextPlace, index: int, reason: str | None = None) -> PlannedMutant:
+def planned_mutant(place: TextPlace, index: int, reason: str | None = None) -> PlannedMutant:
     """Return the mutant of an alternative at a place; ``reason`` says why it is left out, if it is."""
     description = f"{place.text} → {shortened(place.alternatives[index].text)}"
     return PlannedMutant.of_text(PROVIDER, place, index, description, reason)
@@ -41,7 +41,7 @@ def refine(
 
     Numbers of places stay; places that have no alternative any more are gone.
     """
-    asking = [rule for rule in registry.chosen(operators) if rule.asks_variables]
+    asking = [rule for rule in registry.select(operators) if rule.asks_variables]
     sightings, reached = original.sightings(), original.reached_places()
     refined: list[ProgramText] = []
     left_out: list[PlannedMutant] = []
@@ -58,7 +58,7 @@ def refine(
                 if reason is None:
                     alternatives.append(alternative)
                 else:
-                    left_out.append(planted_of(place, index, reason))
+                    left_out.append(planned_mutant(place, index, reason))
             if not is_reached:  # any of its function's may have the same type
                 around = tuple(name for name in names[place.span.function] if name != place.text)
             declared = text.declared.get(place.span.function, ())

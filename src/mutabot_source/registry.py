@@ -38,7 +38,7 @@ def operator(name: str) -> ConventionalOperator:
     raise LookupError(f"there is no operator {name!r} on program text; there are {', '.join(names())}")
 
 
-def chosen(wanted: Iterable[str] | None) -> list[ConventionalOperator]:
+def select(wanted: Iterable[str] | None) -> list[ConventionalOperator]:
     """Return the operators with these names, in the usual order; all for None. Raises LookupError."""
     if wanted is None:
         return list(load_all())

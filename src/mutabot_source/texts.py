@@ -15,7 +15,7 @@ from mutabot.api.faults import Alternative, ProgramText, Site, TextPlace
 from . import registry
 from .extension import CONVENTIONAL
 from .index import Index, ScopedNode, TextExtent, extent_of
-from .nodes import ModuleTree, is_variable, shortened, shown, template
+from .nodes import ModuleTree, is_variable, shortened, template, to_source
 from .operator import ConventionalOperator, Draft
 
 #: characters of the longest expression that is worth an alternative; tables are longer
@@ -31,7 +31,7 @@ def find_texts(
 
     Raises SyntaxError for a file that is no Python, LookupError for an unknown operator.
     """
-    rules = registry.chosen(registry.names(CONVENTIONAL) if operators is None else operators)
+    rules = registry.select(registry.names(CONVENTIONAL) if operators is None else operators)
     texts: list[ProgramText] = []
     number = first - 1
     for file in files:
@@ -113,7 +113,7 @@ class _TextFinder:
         around = self.tree.surroundings(node, found.scope)
         drafts = [(rule, draft) for rule in self._rules for draft in rule.drafts(node, around)]
         variable = self._variables and is_variable(node, around)
-        if (not drafts and not variable) or self.tree.is_elif(node) or not self.tree.stands_there(node):
+        if (not drafts and not variable) or self.tree.is_elif(node) or not self.tree.has_valid_extent(node):
             return None
         extent = extent_of(node)
         if isinstance(node, ast.expr) and len(self.tree.segment(extent)) > LONGEST:
@@ -129,7 +129,7 @@ class _TextFinder:
             return
         seed.kept += [extent for extent in extents if extent not in seed.kept]
         made = template(draft.parts, lambda node: seed.kept.index(extent_of(node)))
-        text = shown(draft.shown or draft.parts, lambda node: self.tree.segment(extent_of(node)))
+        text = to_source(draft.shown or draft.parts, lambda node: self.tree.segment(extent_of(node)))
         seed.alternatives.append(
             Alternative(rule.name, draft.variant, made, text, draft.needs, rule.family, draft.raises)
         )

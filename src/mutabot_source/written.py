@@ -1,4 +1,4 @@
-"""Write a mutant into the text of its file, as a person would who edits it by hand."""
+"""Writes a mutant into the text of its file, as a person would edit it by hand."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class TextWriter:
         self._formatted = {line for first, _, last, _ in formatted for line in range(first, last + 1)}
 
     def edit(self, place: TextPlace, alternative: Alternative) -> TextEdit | None:
-        """Return the change of the file that makes a mutant; None if there is no text that says it there."""
+        """Return the change of the file that makes a mutant; None if no text can express it there."""
         line, column, end_line, end_column = place.extent
         text = self._text(place, alternative)
         text += "\n" * (end_line - line - text.count("\n"))  # what comes after it keeps its line

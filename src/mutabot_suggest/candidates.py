@@ -23,10 +23,10 @@ from .checks import (
     rank_of,
 )
 from .forms import is_number
-from .limits import StatedTolerance, StatedTolerances, stated_in
 from .project import PlaceInTest, SuiteFiles, function_of
-from .readings import ORACLE, Measured, ReadExpression, ValuesRead, is_reading, known
-from .suite import SuiteChecks, Transplant
+from .readings import ORACLE, Measured, ReadExpression, ValuesRead, is_reading, reading_of
+from .suite import ReusableCheck, SuiteChecks
+from .tolerances import StatedTolerance, StatedTolerances, stated_in
 
 _PARTNERS = 8
 #: times what the original may be: that far off is no matter of tolerances
@@ -52,17 +52,17 @@ def candidates(
         mutants, runs = measured.mutants.get(place, {}), list(originals.values())
         if not mutants or not runs:
             continue
-        found += _of_suite(measured.transplants.get(place, []), place, runs, mutants)
+        found += _of_suite(measured.reusable_checks.get(place, []), place, runs, mutants)
         texts = [text for text in runs[0] if is_reading(text) and all(text in read for read in runs)]
-        readings = [known(measured, place, text) for text in texts]
-        given = [one for one in readings if _is_given(one.text, originals, mutants)]
+        readings = [reading_of(measured, place, text) for text in texts]
+        given = [one for one in readings if _is_input(one.text, originals, mutants)]
         module = project.module(place.file)
         compared, stated = stated_in(module)
         beside, own = stated_in(function_of(module, place))
         usual = max(own.values()) if len(set(own.values())) == 1 else 0.0
         readings = [replace(one, way=ORACLE) if one.text in compared else one for one in readings]
         limits = StatedTolerances(suite, stated, runs, mutants, everywhere)
-        seen = _ReadAtEnd(place, runs, mutants, given, limits, usual, suite)
+        seen = _EndReadings(place, runs, mutants, given, limits, usual, suite)
         for reading in readings:
             refused |= dict(seen.allowed(reading))
         for check in (check for reading in readings for check in seen.checks(reading)):
@@ -80,14 +80,14 @@ def candidates(
 
 
 def _of_suite(
-    transplants: Sequence[Transplant],
+    reusable_checks: Sequence[ReusableCheck],
     place: PlaceInTest,
     runs: Sequence[ValuesRead],
     mutants: MutantReadings,
 ) -> Iterator[CheckOfSuite]:
     """Yield other tests' checks that hold in every run of the original; checks of the same thing together."""
-    groups: dict[str, list[tuple[Transplant, str]]] = {}
-    for one in transplants:
+    groups: dict[str, list[tuple[ReusableCheck, str]]] = {}
+    for one in reusable_checks:
         if not all(read.get(one.key) is True for read in runs):
             continue
         tolerance = None
@@ -112,7 +112,7 @@ def _of_suite(
             yield CheckOfSuite(place=place, trials=trials, runs=len(runs), needs=needs, statements=texts)
 
 
-def _is_given(text: str, originals: Mapping[tuple[int, str], ValuesRead], mutants: MutantReadings) -> bool:
+def _is_input(text: str, originals: Mapping[tuple[int, str], ValuesRead], mutants: MutantReadings) -> bool:
     """Return whether a reading equals the original's in all mutants: an input of the round or the test."""
     return all(
         read.get(text) == originals.get(key, {}).get(text)
@@ -122,7 +122,7 @@ def _is_given(text: str, originals: Mapping[tuple[int, str], ValuesRead], mutant
 
 
 @dataclass(frozen=True, slots=True)
-class _ReadAtEnd:
+class _EndReadings:
     """The readings at the end of a test.
 
     Attributes:

@@ -9,8 +9,8 @@ import typer
 
 from mutabot.api.reports import CommandContext, MutantResult, Results, Verdict
 
-from .found import NothingToSuggestError
-from .shown import data_of_suggestions, keep, print_suggestions
+from .output import data_of_suggestions, keep, print_suggestions
+from .results import NothingToSuggestError
 
 #: fresh seeds: each is run
 _MOST_SEEDS = 10_000

@@ -56,7 +56,7 @@ def equal(style: str, text: str, value: str) -> str:
     return f"self.assertEqual({text}, {value})" if style == UNITTEST else f"assert {text} == {value}"
 
 
-_AROUND = "from mutabot_suggest.noted import around as _mutabot_around"
+_AROUND = "from mutabot_suggest.recorder import around as _mutabot_around"
 
 
 def edited(

@@ -15,7 +15,7 @@ _TOLERANCES = ("tol", "thresh", "within", "eps", "delta", "margin", "accuracy", 
 #: keywords that are one
 _KEYWORDS = ("abs", "delta", "atol", "abs_tol")
 #: what stands for the parts of a check in its form
-LOOKED, EXPECTED, TOLERANCE = "_looked", "_expected", "_tolerance"
+ACTUAL, EXPECTED, TOLERANCE = "_actual", "_expected", "_tolerance"
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +25,7 @@ class SuiteCheck:
     Attributes:
         key: under which its values are noted.
         file: of the tests.
-        looked, expected: expressions: what it looks at, and what that must be near to; of several values one
+        actual, expected: expressions: what it looks at, and what that must be near to; of several values one
             each.
         tolerance: how far these may be apart.
         form: the statement, with names for its parts.
@@ -35,7 +35,7 @@ class SuiteCheck:
 
     key: str
     file: str
-    looked: tuple[str, ...]
+    actual: tuple[str, ...]
     expected: tuple[str, ...]
     tolerance: str
     form: str
@@ -44,7 +44,7 @@ class SuiteCheck:
 
     def names(self, number: int) -> tuple[str, str]:
         """Return the expressions of one of several values: the value checked, and the expected one."""
-        return _item(self.looked, number), _item(self.expected, number)
+        return _item(self.actual, number), _item(self.expected, number)
 
     def parts_in(self, read: Mapping[str, Any]) -> Iterator[tuple[int, float, float, float]]:
         """Yield each recorded value's index, the value, the expected value and the tolerance."""
@@ -53,13 +53,13 @@ class SuiteCheck:
             return
         for number in range(-1, 8):
             item = "" if number < 0 else f"[{number}]"
-            looked, expected = (read.get(f"{self.key}.{role}{item}") for role in ("looked", "expected"))
-            if is_number(looked) and is_number(expected):
-                yield number, looked, expected, tolerance
+            actual, expected = (read.get(f"{self.key}.{role}{item}") for role in ("actual", "expected"))
+            if is_number(actual) and is_number(expected):
+                yield number, actual, expected, tolerance
 
-    def statement(self, looked: str, expected: str, tolerance: str) -> str:
+    def statement(self, actual: str, expected: str, tolerance: str) -> str:
         """Return a check of the same form with other expressions."""
-        parts = {LOOKED: looked, EXPECTED: expected, TOLERANCE: tolerance}
+        parts = {ACTUAL: actual, EXPECTED: expected, TOLERANCE: tolerance}
         tree = _Renaming(parts).visit(ast.parse(self.form))
         return text_of(tree)
 
@@ -92,10 +92,10 @@ def rename(statement: str, name: str, text: str) -> str:
 def check_of(
     key: str, file: str, node: ast.stmt, found: tuple[ast.expr, ast.expr, ast.expr], function: str
 ) -> SuiteCheck:
-    looked, expected, tolerance = found
-    names = {id(looked): LOOKED, id(expected): EXPECTED, id(tolerance): TOLERANCE}
+    actual, expected, tolerance = found
+    names = {id(actual): ACTUAL, id(expected): EXPECTED, id(tolerance): TOLERANCE}
     form = text_of(ast.fix_missing_locations(_FormMaker(names).visit(node)))
-    pair = _parts_of(looked), _parts_of(expected)
+    pair = _parts_of(actual), _parts_of(expected)
     return SuiteCheck(key, file, *pair, text_of(tolerance), form, found, function)
 
 
@@ -128,18 +128,18 @@ def near_of(node: ast.stmt) -> tuple[ast.expr, ast.expr, ast.expr] | None:
     """Return what a statement checks, the expected value and the tolerance; None for other statements."""
     test = node.test if isinstance(node, ast.Assert) else node.value if isinstance(node, ast.Expr) else None
     match test:
-        case ast.Compare(left=looked, ops=[ast.Eq()], comparators=[ast.Call() as call]) if _is_approx(call):
-            return _with_keyword(call, looked)
-        case ast.Compare(left=ast.Call() as call, ops=[ast.Eq()], comparators=[looked]) if _is_approx(call):
-            return _with_keyword(call, looked)
+        case ast.Compare(left=actual, ops=[ast.Eq()], comparators=[ast.Call() as call]) if _is_approx(call):
+            return _with_keyword(call, actual)
+        case ast.Compare(left=ast.Call() as call, ops=[ast.Eq()], comparators=[actual]) if _is_approx(call):
+            return _with_keyword(call, actual)
         case ast.Compare(
             left=ast.Call(
-                func=ast.Name(id="abs"), args=[ast.BinOp(left=looked, op=ast.Sub(), right=expected)]
+                func=ast.Name(id="abs"), args=[ast.BinOp(left=actual, op=ast.Sub(), right=expected)]
             ),
             ops=[ast.Lt() | ast.LtE()],
             comparators=[tolerance],
         ):
-            return _ordered(looked, expected, tolerance)
+            return _ordered(actual, expected, tolerance)
         case ast.Call(args=[*args], keywords=keywords):
             named = [one.value for one in keywords if one.arg and _is_tolerance(one.arg)]
             if len(args) == 2 and len(named) == 1 and not any(isinstance(one, ast.Starred) for one in args):
@@ -153,9 +153,9 @@ def _is_approx(call: ast.Call) -> bool:
     return ast.unparse(call.func) in ("approx", "pytest.approx")
 
 
-def _with_keyword(call: ast.Call, looked: ast.expr) -> tuple[ast.expr, ast.expr, ast.expr] | None:
+def _with_keyword(call: ast.Call, actual: ast.expr) -> tuple[ast.expr, ast.expr, ast.expr] | None:
     sizes = [one.value for one in call.keywords if one.arg == "abs"]
-    return (looked, call.args[0], sizes[0]) if sizes and call.args else None
+    return (actual, call.args[0], sizes[0]) if sizes and call.args else None
 
 
 def _ordered(one: ast.expr, other: ast.expr, tolerance: ast.expr) -> tuple[ast.expr, ast.expr, ast.expr]:

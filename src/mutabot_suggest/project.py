@@ -203,8 +203,8 @@ def place_of(project: SuiteFiles, test: str) -> PlaceInTest | None:
         return None
     function = function_of(module, PlaceInTest(OTHER, file, node))
     if len(path) == 1 and (function is None or _is_scenario(function)):
-        return PlaceInTest(OTHER, file, node, _given_around(project, file))
-    if function is None or not _has_end(function):
+        return PlaceInTest(OTHER, file, node, _available_fixtures(project, file))
+    if function is None or not _can_append(function):
         return None
     is_case = len(path) == 2 and _is_test_case(module, path[0])
     return PlaceInTest(UNITTEST if is_case else PYTEST, file, node, _names(function))
@@ -224,7 +224,7 @@ def _is_scenario(function: TestFunctionNode) -> bool:
     return any(one.rpartition(".")[2] == "scenario" for one in called)
 
 
-def _given_around(project: SuiteFiles, file: str) -> tuple[str, ...]:
+def _available_fixtures(project: SuiteFiles, file: str) -> tuple[str, ...]:
     """Return the arguments of a test file's fixtures and steps: fixtures that a test may have requested."""
     functions = [
         node
@@ -235,7 +235,7 @@ def _given_around(project: SuiteFiles, file: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(name for one in functions for name in arguments_of(one)))
 
 
-def _has_end(function: TestFunctionNode) -> bool:
+def _can_append(function: TestFunctionNode) -> bool:
     """Return whether statements can follow: not after a one-line body, nor after a final ``raise``."""
     return function.body[0].lineno != function.lineno and not isinstance(function.body[-1], ast.Raise)
 

@@ -28,8 +28,8 @@ from .project import (
     text_of,
     top_names,
 )
-from .suite import COMPARED, HELD, SuiteChecks, Transplant
-from .way import SIGN
+from .suite import COMPARED, HELD, ReusableCheck, SuiteChecks
+from .tick_recorder import SIGN
 
 #: from the one that a reader of the tests knows best
 ORACLE, PROBE, HAND = 0, 1, 2
@@ -79,7 +79,7 @@ def _is_of_objects(target: str) -> bool:
     return "." in target.partition(":")[2]
 
 
-def of_objects(project: SuiteFiles) -> list[tuple[str, float]]:
+def object_readings(project: SuiteFiles) -> list[tuple[str, float]]:
     """Return the readings of objects, ``module:Class.name``, each with its tolerance."""
     vocabulary = project.request.vocabulary
     coarse = max((probe.tolerance for probe in vocabulary.probes), default=1e-6)
@@ -141,10 +141,10 @@ def _calls(operation: Operation) -> Iterator[str]:
 
 
 #: what notes readings in the tests' process, and the probe that carries them out of it
-_NOTED = "mutabot_suggest.noted"
-_PROBE = f"{_NOTED}:values"
+_RECORDER = "mutabot_suggest.recorder"
+_PROBE = f"{_RECORDER}:values"
 #: what sees the way of a test
-_WAY = "mutabot_suggest.way"
+_TICK_RECORDER = "mutabot_suggest.tick_recorder"
 
 #: survivors by their ids, each with the rounds in which it is to be killed
 Survivors = dict[str, tuple[MutantResult, list[int]]]
@@ -165,7 +165,7 @@ class Measured:
         mutants: the same per place and mutant id.
         readings: per place, what is known of its readings.
         objects: readings of objects, each with its tolerance.
-        transplants: per place, checks of other tests that were asked there as well.
+        reusable_checks: per place, checks of other tests that were asked there as well.
         watched: per place, imports that readings on the way need, by the readings.
         lost: mutants that could not be run there, by their ids, with the reason.
     """
@@ -174,13 +174,13 @@ class Measured:
     mutants: dict[PlaceInTest, dict[str, dict[tuple[int, str], ValuesRead]]] = field(default_factory=dict)
     readings: dict[PlaceInTest, list[ReadExpression]] = field(default_factory=dict)
     objects: list[tuple[str, float]] = field(default_factory=list)
-    transplants: dict[PlaceInTest, list[Transplant]] = field(default_factory=dict)
+    reusable_checks: dict[PlaceInTest, list[ReusableCheck]] = field(default_factory=dict)
     watched: dict[PlaceInTest, dict[str, tuple[str, ...]]] = field(default_factory=dict)
     lost: dict[str, str] = field(default_factory=dict)
 
 
 def is_reading(text: str) -> bool:
-    """Return whether a recorded key is a reading, and not a compared value or one recorded on the way."""
+    """Return whether a recorded key is a reading at a test's end: no compared value, no tick recording."""
     return not text.startswith(_NO_READINGS)
 
 
@@ -201,18 +201,18 @@ def measure(
 
     Raises what a baseline raises.
     """
-    measured = Measured(objects=of_objects(project))
+    measured = Measured(objects=object_readings(project))
     additions = []
     for place in places:
         measured.readings[place] = readings_at(project, place)
-        measured.transplants[place] = suite.transplants(place)
-        additions.append(
-            _noting(place, measured.readings[place], measured.objects, measured.transplants[place])
-        )
-        additions += _watching(project, suite, place, measured.watched.setdefault(place, {}))
-    noting = {file: suite.noting(file, project.text(file)) for file in {one.file for one in suite.checks}}
+        checks = suite.reusable_checks(place)
+        measured.reusable_checks[place] = checks
+        additions.append(_recording_lines(place, measured.readings[place], measured.objects, checks))
+        additions += _monitoring_additions(project, suite, place, measured.watched.setdefault(place, {}))
+    files = {check.file for check in suite.checks}
+    recording = {file: suite.with_recording(file, project.text(file)) for file in files}
     with (
-        copy_of(request, edited(project, additions, noting)) as copied,
+        copy_of(request, edited(project, additions, recording)) as copied,
         CampaignRun.open(copied.changed(probes={_PROBE: 1e9}), progress) as campaign,
     ):
         for result in campaign.originals:
@@ -264,28 +264,28 @@ def _read_in(result: Result, places: Sequence[PlaceInTest]) -> Iterator[tuple[Pl
             yield place, end.test, read
 
 
-def _noting(
+def _recording_lines(
     place: PlaceInTest,
     readings: Sequence[ReadExpression],
     objects: Sequence[tuple[str, float]],
-    transplants: Sequence[Transplant],
+    reusable_checks: Sequence[ReusableCheck],
 ) -> Addition:
     """Return the lines that record readings; they are plain statements, and never fail."""
     # what the oracle does when it reads must not be seen by what only looks
     ordered = sorted(readings, key=lambda one: one.way == ORACLE)
     pairs = ", ".join(f"({one.text!r}, lambda: {one.text})" for one in ordered)
     classes = [target for target, _ in objects]
-    checks = ", ".join(f"({one.key!r}, lambda: {_asked(one)})" for one in transplants)
+    checks = ", ".join(f"({one.key!r}, lambda: {_holds_expression(one)})" for one in reusable_checks)
     lines = (
-        f"from {_NOTED} import note as _mutabot_note, tolerance_of as _mutabot_tolerance_of",
+        f"from {_RECORDER} import note as _mutabot_note, tolerance_of as _mutabot_tolerance_of",
         f"_mutabot_note(locals(), [{pairs}], {classes!r}, [{checks}])",
     )
-    every = [*(one.needs for one in readings), *(one.needs for one in transplants)]
+    every = [*(one.needs for one in readings), *(one.needs for one in reusable_checks)]
     needs = dict.fromkeys(line for one in every for line in one)
     return Addition(place, lines, tuple(place.names), tuple(needs))
 
 
-def _asked(one: Transplant) -> str:
+def _holds_expression(one: ReusableCheck) -> str:
     """Return the expression that tells whether a check of another test holds."""
     statement = one.statement
     if one.near is not None and one.lacks_tolerance:
@@ -293,7 +293,7 @@ def _asked(one: Transplant) -> str:
     return statement.removeprefix("assert ")
 
 
-def _watching(
+def _monitoring_additions(
     project: SuiteFiles, suite: SuiteChecks, place: PlaceInTest, watched: dict[str, tuple[str, ...]]
 ) -> Iterator[Addition]:
     """Yield the additions that record a test's way, after each name that may be a watchable object."""
@@ -306,14 +306,14 @@ def _watching(
         watched.update(readings)
         pairs = ", ".join(f"({text!r}, lambda: {text})" for text, _ in readings)
         lines = (
-            f"from {_WAY} import watch as _mutabot_watch",
+            f"from {_TICK_RECORDER} import watch as _mutabot_watch",
             f"_mutabot_watch({name!r}, {name}, [{pairs}])",
         )
         needs = dict.fromkeys(line for _, found in readings for line in found)
         yield Addition(place, lines, (name,), tuple(needs), after=name)
 
 
-def known(measured: Measured, place: PlaceInTest, text: str) -> ReadExpression:
+def reading_of(measured: Measured, place: PlaceInTest, text: str) -> ReadExpression:
     """Return the reading of a part; a discrete one may be a step off values that it never had."""
     of = [
         one

@@ -10,8 +10,8 @@ from mutabot.api.reports import MutantResult
 from .candidates import ONLY_TIME
 from .checks import CheckProposal, is_clock, last_name
 from .forms import is_number
-from .found import Unsolved
-from .readings import Measured, is_reading, known
+from .readings import Measured, is_reading, reading_of
+from .results import Unsolved
 from .suite import SuiteChecks
 
 NOTHING_DIFFERS = "nothing that was compared differs from the original (indistinguishable)"
@@ -59,12 +59,12 @@ def _why_failed(check: CheckProposal, why: str) -> str:
 
 def _of_recordings(survivor: MutantResult, measured: Measured, suite: SuiteChecks) -> str:
     """Describe the difference in recordings of the world; empty without any recordings."""
-    stories = [told for out in survivor.survived if (told := out.told) is not None and told.apart]
+    stories = [found for out in survivor.survived if (found := out.told) is not None and found.apart]
     if not stories:
         return ""
-    told = max(stories, key=lambda one: one.rank)
-    own = [one for one in told.apart if not one.is_delay and one.deviation > 1.0]
-    if told.story.startswith("the same movements") or not (own or told.story):
+    found = max(stories, key=lambda one: one.rank)
+    own = [one for one in found.apart if not one.is_delay and one.deviation > 1.0]
+    if found.story.startswith("the same movements") or not (own or found.story):
         return ONLY_TIME
     turned = max((one.aside or 0.0 for one in own if one.unit == "deg" and not one.is_value), default=0.0)
     for unit, names in (("m", _LENGTHS), ("deg", _ANGLES)):
@@ -82,8 +82,8 @@ def _of_recordings(survivor: MutantResult, measured: Measured, suite: SuiteCheck
             why = "no bound on the way tells it from the original, which turns as well"
         elif unit == "m" and way < _NEAR:
             why = "on the way it is too near to the original for a bound"
-        return f"{told.story}: at the end within your tolerance of {allowed}; {why}"
-    return f"{told.story}: nothing that its tests can read tells it from the original"
+        return f"{found.story}: at the end within your tolerance of {allowed}; {why}"
+    return f"{found.story}: nothing that its tests can read tells it from the original"
 
 
 def _tolerance(measured: Measured, suite: SuiteChecks, names: set[str]) -> float:
@@ -110,7 +110,7 @@ def _differences(mutant: str, measured: Measured) -> Iterator[tuple[float, str]]
                 if not numbers or value == before:
                     continue
                 values = [one[text] for one in originals.values() if is_number(one.get(text))]
-                spread, tolerance = max(values) - min(values), known(measured, place, text).tolerance
+                spread, tolerance = max(values) - min(values), reading_of(measured, place, text).tolerance
                 apart = abs(value - before)
                 own = f"the original itself spreads {_short(spread)}"
                 if apart > max(spread, tolerance):

@@ -12,12 +12,12 @@ from mutabot.api.reports import MutabotError, MutantResult, Progress
 from .bands import unseen
 from .candidates import candidates
 from .checks import CheckProposal, Trials
-from .found import Dropped, NothingToSuggestError, ProvenCheck, Suggestions, Unsolved
 from .places import chosen_places
 from .project import OTHER, PlaceInTest, SuiteFiles
 from .proof import Proof, texts_with
 from .readings import Measured, Survivors, measure
 from .reasons import NOT_REACHED, NOTHING_DIFFERS, why_unsolved
+from .results import Dropped, NothingToSuggestError, ProvenCheck, Suggestions, Unsolved
 from .suite import SuiteChecks
 from .zones import monitors
 
@@ -26,7 +26,7 @@ from .zones import monitors
 _ATTEMPTS, _FAILURES = 8, 3
 
 
-def _sorted_out(chosen: Sequence[MutantResult]) -> tuple[Survivors, list[Unsolved]]:
+def _separated(chosen: Sequence[MutantResult]) -> tuple[Survivors, list[Unsolved]]:
     """Separate the survivors that may differ from the original, with the rounds in which they do.
 
     No check in these tests can kill the others.
@@ -43,7 +43,7 @@ def _sorted_out(chosen: Sequence[MutantResult]) -> tuple[Survivors, list[Unsolve
     return to_kill, never
 
 
-class Quiet:
+class QuietProgress:
     """Progress without the notes of auxiliary campaigns."""
 
     left: float | None = None
@@ -69,7 +69,7 @@ def suggest(
 
     Raises NothingToSuggestError if there is nothing to kill or to look at, and what a campaign raises.
     """
-    to_kill, never = _sorted_out(chosen)
+    to_kill, never = _separated(chosen)
     nothing = Suggestions(
         unsolved=tuple(never),
         numbers={one.mutant.id: one.mutant.number for one in chosen},
@@ -85,7 +85,7 @@ def suggest(
         progress.note("nothing differs in any survivor; another [[probe]] may show a difference")
     if not to_kill:
         return nothing
-    quiet = Quiet(progress)
+    quiet = QuietProgress(progress)
     request = replace(request, evidence=False)
     project = SuiteFiles(request)
     places = chosen_places(project, [one for one, _ in to_kill.values()])

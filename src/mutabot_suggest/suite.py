@@ -10,7 +10,7 @@ import builtins
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 
-from .forms import EXPECTED, LOOKED, TOLERANCE, SuiteCheck, check_of, is_number, near_of, rename
+from .forms import ACTUAL, EXPECTED, TOLERANCE, SuiteCheck, check_of, is_number, near_of, rename
 from .project import (
     UNITTEST,
     PlaceInTest,
@@ -29,7 +29,7 @@ _MOST = 40
 
 
 @dataclass(frozen=True, slots=True)
-class Transplant:
+class ReusableCheck:
     """A check of another test or step that can also be evaluated at the end of a test.
 
     Attributes:
@@ -78,15 +78,15 @@ class SuiteChecks:
                     suite.checks.append(check_of(f"{COMPARED}{len(suite.checks)}", file, node, found, name))
         return suite
 
-    def noting(self, file: str, text: str) -> str:
+    def with_recording(self, file: str, text: str) -> str:
         """Return the text of a file in which checks record what they compare."""
         marks: list[tuple[int, int, str]] = []
         starts = _starts(text)
         for one in self.checks:
             if one.file == file:
-                roles = ("looked", "expected", "tolerance")
+                roles = ("actual", "expected", "tolerance")
                 for node, role in zip(one.nodes, roles, strict=True):
-                    call = f'__import__("mutabot_suggest.noted").noted.compared("{one.key}", "{role}", '
+                    call = f'__import__("mutabot_suggest.recorder").recorder.compared("{one.key}", "{role}", '
                     begin = starts[node.lineno - 1] + node.col_offset
                     end = starts[(node.end_lineno or 0) - 1] + (node.end_col_offset or 0)
                     marks += [(begin, 1, call), (end, 0, ")")]
@@ -120,7 +120,7 @@ class SuiteChecks:
     def needs_of_form(self, place: PlaceInTest, check: SuiteCheck) -> tuple[str, ...] | None:
         """Return the imports that a check of this form needs at a place; None if it is not possible there."""
         names = {one.id for one in ast.walk(ast.parse(check.form)) if isinstance(one, ast.Name)}
-        names -= {LOOKED, EXPECTED, TOLERANCE, *dir(builtins)}
+        names -= {ACTUAL, EXPECTED, TOLERANCE, *dir(builtins)}
         if ("self" in names) != (place.style == UNITTEST):
             return None
         return self._imports(place, check.file, names - {"self"})
@@ -168,12 +168,12 @@ class SuiteChecks:
                             found[f"{text}({name})"] = needs
         return list(found.items())
 
-    def transplants(self, place: PlaceInTest) -> list[Transplant]:
+    def reusable_checks(self, place: PlaceInTest) -> list[ReusableCheck]:
         """Return the checks of other tests whose names are all available in a test."""
         module = self.project.module(place.file)
         own = function_of(module, place)
         there = {text_of(one) for one in ast.walk(own) if isinstance(one, ast.stmt)} if own else set()
-        found: dict[str, Transplant] = {}
+        found: dict[str, ReusableCheck] = {}
         for file in self.project.suite_files:
             other = self.project.module(file)
             helpers = _checking(other) if other is not None else set()
@@ -186,7 +186,7 @@ class SuiteChecks:
                 needs = self._needs(place, file, node, near)
                 if needs is not None and not self._acts(file, node):
                     key = f"{HELD}{len(found)}"
-                    found[statement] = Transplant(key, statement, needs, near, name)
+                    found[statement] = ReusableCheck(key, statement, needs, near, name)
         return list(found.values())[:_MOST]
 
     def _statements(self, file: str) -> Iterator[tuple[str, ast.stmt]]:

@@ -15,11 +15,11 @@ from itertools import combinations, pairwise
 
 from .bands import digits_of
 from .checks import ANGLE, PLACE, Monitor, Trials, rank_of
-from .limits import StatedTolerances
 from .project import PlaceInTest
 from .readings import Measured, ValuesRead
 from .suite import SuiteChecks
-from .way import SIGN
+from .tick_recorder import SIGN
+from .tolerances import StatedTolerances
 
 #: what counts as clear of the original: m, and degrees
 _CLEAR, _CLEAR_ANGLE = 0.02, 10.0

@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 
 from mutabot.api.faults import ActiveFault
 
-from .change import NothingThereError, NumberChange, Undo, change_at
-from .patching import live, mark_by, resolve, wrap
+from .change import NotInWorldError, NumberChange, Undo, change_at
+from .patching import instances_of, mark_by, resolve, wrap
 
 _NEVER = "the test made no world, its moment did not come, or nothing came that it disturbs"
 
@@ -30,7 +30,7 @@ class WorldFault(ActiveFault):
         """Arrange to disturb the test's worlds when they are made, or at the disturbance's moment."""
         self._key, self._undo, self._missing = random.random(), list[Undo](), ""
         self._disturbed: dict[int, _Disturbed] = {}
-        self._says_itself = False
+        self._reports_itself = False
         self._earlier, self._has_made = list[Any](), False
         mark_by(self.raising)
         if test != self.mutant.site.span.file:
@@ -40,19 +40,19 @@ class WorldFault(ActiveFault):
             case "made":
                 # those that are there may be of the test, or left of others: that is known at its end
                 with suppress(LookupError):
-                    found = live(self.data["of"])
-                    self._earlier = [one for one in found if self._disturb(one, is_told=False)]
+                    found = instances_of(self.data["of"])
+                    self._earlier = [one for one in found if self._disturb(one, is_reported=False)]
                 for reference in self.data["of"]:
-                    self._wrap(reference, after=lambda _, world: self._meet(world))
+                    self._wrap(reference, after=lambda _, world: self._world_made(world))
             case "making":
                 for reference in self.data["of"]:
-                    self._wrap(reference, before=partial(self._make_otherwise, reference))
+                    self._wrap(reference, before=partial(self._change_arguments, reference))
             case "call":
                 self._calls_left = int(moment["number"])
                 self._wrap(moment["call"], before=self._count)
             case "while":
                 holds = resolve(moment["condition"])[2]
-                self._wrap(moment["call"], before=lambda *_, **__: self._follow(holds))
+                self._wrap(moment["call"], before=lambda *_, **__: self._update_while(holds))
 
     def reach(self, key: tuple[Any, ...]) -> None:
         """Disturb all worlds: the simulated time of the disturbance has come."""
@@ -61,11 +61,11 @@ class WorldFault(ActiveFault):
 
     def end_test(self) -> None:
         """Undo the disturbance and remove all wrappers, the last first."""
-        if self._earlier and not self._has_made and not self._says_itself:
+        if self._earlier and not self._has_made and not self._reports_itself:
             self.acts()
         self._earlier.clear()
         for world in [*self._disturbed]:
-            self._let_go(world)
+            self._restore(world)
         while self._undo:
             self._undo.pop()()
         if self.context.test == self.mutant.site.span.file and not self.evidence.acted:
@@ -80,7 +80,7 @@ class WorldFault(ActiveFault):
 
     def _disturb_all(self) -> None:
         with suppress(LookupError):  # what makes worlds is not there: the one who waits for it says so
-            for world in live(self.data["of"]):
+            for world in instances_of(self.data["of"]):
                 self._disturb(world)
 
     def _count(self, *_: object, **__: object) -> None:
@@ -88,16 +88,16 @@ class WorldFault(ActiveFault):
         if not self._calls_left:
             self._disturb_all()
 
-    def _follow(self, holds: Any) -> None:
+    def _update_while(self, holds: Any) -> None:
         """Disturb each world while the condition holds, and undo that when it no longer does."""
         with suppress(LookupError):
-            for world in live(self.data["of"]):
+            for world in instances_of(self.data["of"]):
                 if holds(world):
                     self._disturb(world)
                 elif id(world) in self._disturbed:
-                    self._let_go(id(world))
+                    self._restore(id(world))
 
-    def _make_otherwise(self, reference: str, *arguments: Any, **named: Any) -> Any:
+    def _change_arguments(self, reference: str, *arguments: Any, **named: Any) -> Any:
         """Change the arguments that a world is made with, which the function gets by name."""
         found = resolve(reference)[2]
         makes: Any = vars(found)["__init__"] if isinstance(found, type) else found
@@ -107,14 +107,14 @@ class WorldFault(ActiveFault):
             return bound.args, bound.kwargs
         return None
 
-    def _meet(self, world: Any) -> None:
+    def _world_made(self, world: Any) -> None:
         """Disturb a world that the test has made; forget earlier worlds, which belong to other tests."""
         self._earlier.clear()
         self._has_made = True
         self._disturbed.pop(id(world), None)  # of one that was there before, in the same place in memory
         self._disturb(world)
 
-    def _disturb(self, world: Any, *, is_told: bool = True) -> bool:
+    def _disturb(self, world: Any, *, is_reported: bool = True) -> bool:
         """Disturb a world once; return whether it is disturbed now."""
         known = self._disturbed.get(id(world))
         if known is not None and known.world() is world:
@@ -130,8 +130,8 @@ class WorldFault(ActiveFault):
         # whether it is taken away again matters within the test alone: no other test has this fault
         is_taken_away = self.data["moment"]["kind"] == "while"
         self._disturbed[id(world)] = _Disturbed(_reference(world), undo if is_taken_away else None)
-        if is_told and not self._says_itself:
-            self.acts(_plain(before), _plain(after))
+        if is_reported and not self._reports_itself:
+            self.acts(_as_float(before), _as_float(after))
         return True
 
     def _changed(self, world: Any, change: NumberChange) -> tuple[Any, Any, Undo | None]:
@@ -140,14 +140,14 @@ class WorldFault(ActiveFault):
             return change_at(world, self.data["path"], change)
         function = resolve(self.data["apply"])[2]
         random = Random(f"{self._key}:{len(self._disturbed)}")
-        self._says_itself = "acts" in signature(function).parameters
-        more = {**self.data["options"], **({"acts": self.acts} if self._says_itself else {})}
+        self._reports_itself = "acts" in signature(function).parameters
+        more = {**self.data["options"], **({"acts": self.acts} if self._reports_itself else {})}
         result = function(world, change, names=self.data["names"], random=random, **more)
         if change.effects == {False}:
-            raise NothingThereError(f"what {self.data['apply']} changes is the same with the change")
+            raise NotInWorldError(f"what {self.data['apply']} changes is the same with the change")
         return None, None, result if callable(result) else None
 
-    def _let_go(self, world: int) -> None:
+    def _restore(self, world: int) -> None:
         undo = self._disturbed.pop(world).undo
         if undo is not None:
             undo()
@@ -167,6 +167,6 @@ def _reference(world: Any) -> Callable[[], Any]:
         return lambda: world
 
 
-def _plain(value: Any) -> Any:
+def _as_float(value: Any) -> Any:
     """Return a number as a float, for reports; None for any other value."""
     return float(value) if isinstance(value, int | float) or getattr(value, "shape", None) == () else None

@@ -13,7 +13,7 @@ _STEP = re.compile(r"\.?([A-Za-z_]\w*)|\[(-?\d+)\]|\[[\"']([^\"']+)[\"']\]")
 Undo = Callable[[], object]
 
 
-class NothingThereError(LookupError):
+class NotInWorldError(LookupError):
     """The world has nothing of the name that a parameter refers to."""
 
 
@@ -56,7 +56,7 @@ def change_at(world: Any, path: str, change: NumberChange) -> tuple[Any, Any, Un
         path: ``simulation.model.opt.gravity[2]``.
         change: what becomes of it.
 
-    Returns it before and after, and what takes the change away. Raises NothingThereError.
+    Returns it before and after, and what takes the change away. Raises NotInWorldError.
     """
     *way, last = _steps(path)
     owner = world
@@ -67,10 +67,10 @@ def change_at(world: Any, path: str, change: NumberChange) -> tuple[Any, Any, Un
     try:
         _set(owner, *last, change(before))
     except (AttributeError, LookupError, TypeError, ValueError) as error:
-        raise NothingThereError(f"{path} cannot be changed: {error}") from error
+        raise NotInWorldError(f"{path} cannot be changed: {error}") from error
     after = _get(owner, *last, path)  # an array of whole numbers or a setter may have made another of it
     if _is_same(before, after):
-        raise NothingThereError(f"{path} is {before} with the change as well")
+        raise NotInWorldError(f"{path} is {before} with the change as well")
     return before, after, lambda: _set(owner, *last, before)
 
 
@@ -96,7 +96,7 @@ def _get(owner: Any, name: str, item: Any, path: str) -> Any:
         return getattr(owner, name) if name else owner[item]
     except (AttributeError, LookupError, TypeError) as error:
         what = f"{type(owner).__name__} has no {name or f'[{item!r}]'} (path {path!r})"
-        raise NothingThereError(what) from error
+        raise NotInWorldError(what) from error
 
 
 def _set(owner: Any, name: str, item: Any, value: Any) -> None:

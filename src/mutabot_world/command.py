@@ -13,8 +13,8 @@ import typer
 from mutabot.api.reports import CommandContext, Results, UsageError
 
 from .files import NO_PARAMETER
-from .judged import Tolerances, WorldLadder, ladders, suites
-from .sizes import amount
+from .ladders import Tolerances, WorldLadder, combined_ladders, ladders
+from .units import with_unit
 
 _AMOUNT = re.compile(r"(\d+(?:\.\d+)?) ?(m|mm|deg|rad)")
 #: what a recording measures in
@@ -45,8 +45,8 @@ def world(
     if html is not None:
         _write(context, results, found, html)
     if json:
-        told = {"parameters": _data(suites(found)), "tests": _data(found)}
-        context.print_json({"state": results.state, "rounds": results.rounds, **told})
+        data = {"parameters": _data(combined_ladders(found)), "tests": _data(found)}
+        context.print_json({"state": results.state, "rounds": results.rounds, **data})
     else:
         for title, lines in sections(found):
             if lines:
@@ -67,11 +67,11 @@ def _tolerances(texts: Sequence[str]) -> Tolerances:
 
 def sections(found: Sequence[WorldLadder]) -> Iterator[tuple[str, list[str]]]:
     """Yield both tables and the disturbances suffered unseen, as titles with lines for a terminal."""
-    whole = suites(found)
+    whole = combined_ladders(found)
     known = [one for one in whole if one.ends]
     columns = ("parameter", "tried", "magnitudes", "unseen at", "noticed from", "by")
     rows = [
-        (*_name(one), one.bar, one.span(one.unseen) if one.unseen else "–", _noticed(one), _by(one))
+        (*_name(one), one.bar, one.span(one.unseen) if one.unseen else "–", _noticed(one), _noticed_by(one))
         for one in whole
     ]
     yield "What the tests notice, suffered unseen first", [*_table(columns, rows), "", _LEGEND]
@@ -92,16 +92,16 @@ def sections(found: Sequence[WorldLadder]) -> Iterator[tuple[str, list[str]]]:
 def _name(one: WorldLadder) -> tuple[str, str]:
     sign = {"+": " +", "-": " −"}.get(one.direction, "")
     sizes = sorted(one.found)
-    return f"{one.parameter}{sign}", f"{sizes[0]:g} … {amount(sizes[-1], one.unit)}"
+    return f"{one.parameter}{sign}", f"{sizes[0]:g} … {with_unit(sizes[-1], one.unit)}"
 
 
 def _noticed(one: WorldLadder) -> str:
     if not one.ends:
         return "not known"
-    return "never" if one.noticed_from is None else amount(one.noticed_from, one.unit)
+    return "never" if one.noticed_from is None else with_unit(one.noticed_from, one.unit)
 
 
-def _by(one: WorldLadder) -> str:
+def _noticed_by(one: WorldLadder) -> str:
     """Return what notices the threshold: a check of the tests, or an error that stops the program."""
     if one.noticed_from is None:
         return ""

@@ -20,4 +20,4 @@ EXTENSION = Extension(
 )
 
 #: what `mutabot init` asks for parameters of the world that it has seen
-PROPOSER = "mutabot_world.proposed:PROPOSER"
+PROPOSER = "mutabot_world.proposer:PROPOSER"

@@ -13,8 +13,8 @@ from typing import Any
 
 import wrapt
 
-from .change import NothingThereError, NumberChange
-from .patching import marked, rebind
+from .change import NotInWorldError, NumberChange
+from .patching import mark_raised, rebind
 
 _LEAST = 1e-9
 _AXES = "xyz"
@@ -29,20 +29,20 @@ def mass(model: Any, change: NumberChange, *, names: str, random: Random) -> Non
         factor = max(float(change(before)), _LEAST) / before
         model.body_mass[body] *= factor
         model.body_inertia[body] *= factor
-    _settle(model)
+    _recompute_constants(model)
 
 
 def centre_of_mass(model: Any, change: NumberChange, *, names: str, random: Random, axis: str) -> None:
     """Change the centre of mass of bodies along one of their axes, m."""
     bodies = list(_named(model, "body", names, lambda number: model.body_mass[number] > 0.0))
     if hasattr(model, "body_simple") and any(model.body_simple[body] for body in bodies):
-        raise NothingThereError(
+        raise NotInWorldError(
             f"the body {names!r} was compiled as a simple one, whose centre of mass is fixed"
         )
     for body in bodies:
         place = model.body_ipos[body]
         place[_AXES.index(axis)] = change(float(place[_AXES.index(axis)]))
-    _settle(model)
+    _recompute_constants(model)
 
 
 def friction(model: Any, change: NumberChange, *, names: str, random: Random) -> None:
@@ -131,7 +131,7 @@ def names_of(model: Any, kind: str) -> dict[int, str]:
     return known
 
 
-def things(model: Any) -> Iterator[tuple[str, list[str]]]:
+def offered_parameters(model: Any) -> Iterator[tuple[str, list[str]]]:
     """Yield the parameters that a model offers, and the names of the things that have them."""
     bodies, geoms, joints = names_of(model, "body"), names_of(model, "geom"), names_of(model, "joint")
     free = [int(model.jnt_bodyid[n]) for n in range(model.njnt) if int(model.jnt_type[n]) == 0]
@@ -147,22 +147,22 @@ def _of_joints(model: Any, change: NumberChange, names: str, values: Any) -> Non
     for joint in _named(model, "joint", names, lambda one: int(model.jnt_type[one]) in (2, 3)):
         dof = int(model.jnt_dofadr[joint])  # the one of a slide or a hinge
         values[dof] = max(float(change(float(values[dof]))), 0.0)
-    _settle(model)
+    _recompute_constants(model)
 
 
 def _named(
     model: Any, kind: str, names: str, fits: Callable[[int], bool] = lambda number: True
 ) -> Iterator[int]:
-    """Yield the numbers of the things named. Raises NothingThereError if there are none."""
+    """Yield the numbers of the things named. Raises NotInWorldError if there are none."""
     known = names_of(model, kind)
     found = [number for number, name in known.items() if fnmatchcase(name, names) and fits(number)]
     if not found:
         there = ", ".join(sorted({name for number, name in known.items() if name and fits(number)})) or "none"
-        raise NothingThereError(f"no {kind} is named {names!r}; there are: {there}")
+        raise NotInWorldError(f"no {kind} is named {names!r}; there are: {there}")
     yield from found
 
 
-def _settle(model: Any) -> None:
+def _recompute_constants(model: Any) -> None:
     """Recompute the model's derived constants; the program's own data would lose its state."""
     import mujoco  # noqa: PLC0415  # the program's, which a project may not have
 
@@ -180,7 +180,7 @@ def _around_steps(model: Any, names: Iterable[str], *, before: Any = None, after
         try:
             result = wrapped(*arguments, **named)
         except Exception as error:
-            marked(error)
+            mark_raised(error)
             raise
         if is_meant and after is not None:
             after(arguments[1] if len(arguments) > 1 else named["d"])

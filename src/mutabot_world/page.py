@@ -8,7 +8,7 @@ from typing import Any
 
 from mutabot.api.reports import RecordedPaths, ReportPages, Results
 
-from .judged import WorldEnd, WorldLadder, suites
+from .ladders import WorldEnd, WorldLadder, combined_ladders
 
 #: recordings that are drawn, and edge of a drawing in pixels
 _DRAWN, _EDGE = 30, 260
@@ -44,7 +44,7 @@ def page(results: Results, found: Sequence[WorldLadder], recordings: Any) -> str
         found: a ladder for each parameter, direction and test.
         recordings: what was recorded in the campaign.
     """
-    whole = suites(found)
+    whole = combined_ladders(found)
     tests = list(dict.fromkeys(test for one in found for test in one.tests))
     by_test = {(one.parameter, one.direction, one.tests[0]): one for one in found}
     legend = "".join(f"<p>{_cell('size', end)} {escape(str(end))}: {text}</p>" for end, text in _LEGEND)
@@ -56,7 +56,7 @@ def page(results: Results, found: Sequence[WorldLadder], recordings: Any) -> str
         + "".join(f"<td>{_bar(by_test.get((one.parameter, one.direction, test)))}" for test in tests)
         for one in whole
     )
-    told = "".join(
+    findings = "".join(
         f"<li>{_text(one.sentence)}{f'<br><b>{_text(one.finding)}</b>' if one.finding else ''}"
         for one in whole
     )
@@ -65,7 +65,7 @@ def page(results: Results, found: Sequence[WorldLadder], recordings: Any) -> str
         "<h1>Disturbances of the world</h1>"
         f"<p>{_text(results.state)}, {results.rounds} round{'s' * (results.rounds != 1)}</p>{legend}",
         f'<h2>Parameters by tests</h2><div class="wide"><table>{head}{rows}</table></div>',
-        f"<h2>What the tests notice</h2><ul>{told}</ul>",
+        f"<h2>What the tests notice</h2><ul>{findings}</ul>",
         "<h2>How robust the program is</h2><p>The size up to which the task is done.</p>"
         f"<table><tr><th>parameter<th>lived with up to{robust}</table>",
         "".join(_figures(results, found, recordings)),

@@ -39,7 +39,7 @@ def resolve(reference: str) -> tuple[Any, str, Any]:
         raise LookupError(f"there is no {reference}: {error}") from error
 
 
-def marked(error: BaseException) -> BaseException:
+def mark_raised(error: BaseException) -> BaseException:
     """Mark an exception that a function raises itself as not caused by the disturbance, and return it."""
     return _marks[-1](error) if _marks else error
 
@@ -65,11 +65,11 @@ def wrap(reference: str, *, before: Before | None = None, after: After | None = 
     """
     owner, last, found = resolve(reference)
     if not isinstance(found, type):
-        return _put_around(owner, last, before, after, set())
+        return _wrap_attribute(owner, last, before, after, set())
     below = [one for one in dict.fromkeys(_below(found)) if after and "__init__" in vars(one)]
     running: set[Any] = set()
-    undoes = [_put_around(found, "__init__", before, after, running)]
-    undoes += [_put_around(one, "__init__", None, after, running) for one in below]
+    undoes = [_wrap_attribute(found, "__init__", before, after, running)]
+    undoes += [_wrap_attribute(one, "__init__", None, after, running) for one in below]
     return lambda: [each() for each in undoes]
 
 
@@ -81,7 +81,9 @@ def _below(kind: type) -> Iterator[type]:
         yield from _below(one)
 
 
-def _put_around(owner: Any, last: str, before: Before | None, after: After | None, running: set[Any]) -> Undo:
+def _wrap_attribute(
+    owner: Any, last: str, before: Before | None, after: After | None, running: set[Any]
+) -> Undo:
     """Call a function before or after ``owner.last``, but not in nested calls (see ``running``)."""
     found, kept = getattr(owner, last), inspect.getattr_static(owner, last)
     is_maker = isinstance(owner, type) and last == "__init__"
@@ -97,7 +99,7 @@ def _put_around(owner: Any, last: str, before: Before | None, after: After | Non
         try:
             result = found(*arguments, **named)
         except BaseException as error:
-            marked(error)
+            mark_raised(error)
             raise
         finally:
             if is_first:
@@ -125,7 +127,7 @@ def _put_around(owner: Any, last: str, before: Before | None, after: After | Non
     return undo
 
 
-def live(references: list[str]) -> Iterator[Any]:
+def instances_of(references: list[str]) -> Iterator[Any]:
     """Yield the objects of these classes that are alive, each once; references to functions yield nothing."""
     kinds = tuple(found for one in references if isinstance(found := resolve(one)[2], type))
     if not kinds:

@@ -20,8 +20,8 @@ from mutabot.api.faults import (
 
 from .extension import FAMILY, PROVIDER
 from .files import NO_PARAMETER, parameters_of
-from .sizes import amount, in_si
 from .tables import ParameterTable, WorldTable
+from .units import in_si, with_unit
 
 ACTIVE = "mutabot_world.active:WorldFault"
 
@@ -69,7 +69,7 @@ class WorldFaults(FaultProvider):
         """Return the same disturbance with another magnitude."""
         made = super().at_magnitude(planned, magnitude)
         before, unit = planned.mutant.magnitude or 0.0, planned.mutant.unit
-        text = planned.mutant.description.replace(amount(before, unit), amount(magnitude, unit), 1)
+        text = planned.mutant.description.replace(with_unit(before, unit), with_unit(magnitude, unit), 1)
         data = {**planned.does, "amount": planned.does["amount"] * magnitude / before}
         active = replace(planned.active, data=data) if planned.active is not None else None
         return replace(made, mutant=replace(made.mutant, description=text), does=data, active=active)
@@ -101,7 +101,7 @@ class WorldFaults(FaultProvider):
             sign = {"+": "+", "-": "−"}.get(way, "")
             words = (parameter.less if way == "-" else parameter.more) or f"{parameter.name} {sign}{{}}"
             for size in parameter.ladder:
-                text = f"{words.format(amount(size, unit))}{moment.text}"
+                text = f"{words.format(with_unit(size, unit))}{moment.text}"
                 variant = f"{way}{size:g}{'%' if unit == 'percent' else unit or ''}"
                 made = self.mutant(Disturb(), site, text, variant=variant, magnitude=size, unit=unit)
                 data = _data(parameter, -size if way == "-" else size)
@@ -112,9 +112,9 @@ class WorldFaults(FaultProvider):
 def _data(parameter: ParameterTable, size: float) -> dict[str, object]:
     """Return the data that test processes need for the disturbance; paths take sizes as they are written."""
     is_written = parameter.path is not None and parameter.change != "scale"
-    told = {name: getattr(parameter, name) for name in ("path", "apply", "names", "options", "change")}
+    data = {name: getattr(parameter, name) for name in ("path", "apply", "names", "options", "change")}
     return {
-        **told,
+        **data,
         "of": list(parameter.of),
         "amount": size if is_written else in_si(size, parameter.measure),
         "moment": asdict(parameter.moment),

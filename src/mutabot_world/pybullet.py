@@ -17,8 +17,8 @@ from typing import Any
 import pybullet
 import wrapt
 
-from .change import NothingThereError, NumberChange
-from .patching import marked, rebind
+from .change import NotInWorldError, NumberChange
+from .patching import mark_raised, rebind
 
 #: the arguments of functions, in their order; those of all others are told by name alone
 _ORDER = {
@@ -60,15 +60,15 @@ class Body:
         self.name = pybullet.getBodyInfo(number, physicsClientId=client)[1].decode() or f"body {number}"
 
     def links(self, names: str) -> list[int]:
-        """Return its links with these names; the base is -1, named as the body. Raises NothingThereError."""
+        """Return its links with these names; the base is -1, named as the body. Raises NotInWorldError."""
         return self._named(names, "body or link", {_BASE: self.name, **self._joints(12)})
 
     def bases(self, names: str) -> list[int]:
-        """Return its base, if its name is among these. Raises NothingThereError."""
+        """Return its base, if its name is among these. Raises NotInWorldError."""
         return self._named(names, "body", {_BASE: self.name})
 
     def joints(self, names: str) -> list[int]:
-        """Return its movable joints with these names. Raises NothingThereError."""
+        """Return its movable joints with these names. Raises NotInWorldError."""
         return self._named(names, "joint", self.moving())
 
     def moving(self) -> dict[int, str]:
@@ -102,7 +102,7 @@ class Body:
         if not found:
             of_all = sorted({one.name for one in _worlds.values() if isinstance(one, Body)} | {self.name})
             there = ", ".join(filter(None, known.values())) or "none"
-            raise NothingThereError(
+            raise NotInWorldError(
                 f"no {kind} is named {names!r}; the last body has: {there}; bodies: {', '.join(of_all)}"
             )
         return found
@@ -121,7 +121,7 @@ def mass(world: Any, change: NumberChange, *, names: str, random: Random) -> Non
     body = _body(world)
     links = [link for link in body.links(names) if body.own("getDynamicsInfo", link)[0] > 0.0]
     if not links:
-        raise NothingThereError(f"{body.name} has no mass: it stands still")
+        raise NotInWorldError(f"{body.name} has no mass: it stands still")
     _of_links(body, links, "mass", change, _LEAST)
 
 
@@ -169,12 +169,12 @@ def strength(world: Any, change: NumberChange, *, names: str, random: Random) ->
 def gravity(world: Any, change: NumberChange, *, names: str, random: Random) -> None:
     """Change the vertical gravity, m/s²; a positive change pulls harder."""
     if not isinstance(world, Pull):
-        raise NothingThereError("the program sets no gravity")
+        raise NotInWorldError("the program sets no gravity")
     x, y, z = world.gravity
     _own["setGravity"](x, y, -float(change(-z)), physicsClientId=world.client)
 
 
-def things(world: Any) -> Iterator[tuple[str, list[str]]]:
+def offered_parameters(world: Any) -> Iterator[tuple[str, list[str]]]:
     """Yield the parameters that a body, or gravity, offers, and the names of the things that have them."""
     if isinstance(world, Pull):
         yield "gravity", ["*"]
@@ -187,7 +187,7 @@ def things(world: Any) -> Iterator[tuple[str, list[str]]]:
 
 def _body(world: Any) -> Body:
     if not isinstance(world, Body):
-        raise NothingThereError("the program loads no body")
+        raise NotInWorldError("the program loads no body")
     return world
 
 
@@ -232,7 +232,7 @@ def _of_motors(body: Body, change: NumberChange, names: str, key: str) -> None:
     _changes["setJointMotorControlArray"].append(of_many)
 
 
-def _around(name: str) -> Callable[..., Any]:
+def _wrapper(name: str) -> Callable[..., Any]:
     """Return a wrapper of a PyBullet function that changes arguments and records bodies and gravity."""
 
     def call(wrapped: Any, instance: Any, arguments: tuple[Any, ...], named: dict[str, Any]) -> Any:
@@ -244,7 +244,7 @@ def _around(name: str) -> Callable[..., Any]:
         try:
             result = wrapped(*arguments, **named)
         except pybullet.error as error:
-            marked(error)
+            mark_raised(error)
             raise
         _note(name, named)
         return result
@@ -276,7 +276,7 @@ def _begin() -> None:
     for name in (*_ORDER, *_LOADING, *_REMOVING):
         _own[name] = getattr(pybullet, name)
         # clients of pybullet_utils take what says of itself that it is a built-in function
-        rebind(_own[name], wrapt.FunctionWrapper(_own[name], _around(name)))
+        rebind(_own[name], wrapt.FunctionWrapper(_own[name], _wrapper(name)))
     for client in range(_CLIENTS):
         if pybullet.isConnected(client):
             _find_bodies(client)

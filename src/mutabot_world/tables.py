@@ -10,8 +10,8 @@ from pydantic import Field, field_validator, model_validator
 
 from mutabot.api.processes import Table
 
-from .moments import Beginning
-from .sizes import in_si
+from .onset import Onset
+from .units import in_si
 
 _TextList = Annotated[tuple[str, ...], Field(strict=False)]
 _Size = Annotated[float, Field(gt=0)]
@@ -33,7 +33,7 @@ class ParameterTable(Table):
         unit: of the magnitudes.
         ladder: the magnitudes, rising.
         directions: ``+`` and ``-``; none for what is set.
-        when: the moment, as ``Beginning`` reads it.
+        when: the moment, as ``Onset`` reads it.
         tests: node ids of the tests, in which ``*`` stands for any text; all without.
         more, less: how sentences call it, with ``{}`` for the magnitude.
     """
@@ -71,7 +71,7 @@ class ParameterTable(Table):
     @field_validator("when")
     @classmethod
     def _is_a_moment(cls, text: str) -> str:
-        Beginning.parse(text)
+        Onset.parse(text)
         return text
 
     @model_validator(mode="after")
@@ -93,9 +93,9 @@ class ParameterTable(Table):
         return ("",) if self.change == "set" else self.directions or ("+", "-")
 
     @property
-    def moment(self) -> Beginning:
+    def moment(self) -> Onset:
         """The moment at which the disturbance begins."""
-        return Beginning.parse(self.when)
+        return Onset.parse(self.when)
 
     @property
     def measure(self) -> str | None:

@@ -11,12 +11,12 @@ from mutabot_cell.geometry import Array
 from mutabot_cell.scene import FRICTION_ON_STEEL, Scene
 
 from .effectors import Fingers
-from .lean import ARM_CLASS, GRIPPER_CLASS
-from .model import ROBOT_BODY, cell_xml, stands
+from .model import ROBOT_BODY, cell_xml, is_on_pedestal
 from .options import compile_quietly
 from .parts import add_grip, add_part, add_surfaces
 from .robot import RobotModel
 from .sleeping import MANY, let_sleep
+from .stripping import ARM_CLASS, GRIPPER_CLASS
 from .tool import Tool
 
 TOOL_SITE, PAYLOAD_BODY = "tool", "payload"
@@ -83,7 +83,7 @@ def _surfaces(scene: Scene, robots: Mapping[str, RobotModel]) -> list[tuple[str,
     """Return the names of the surfaces that parts may lie on, with their friction against a dry part."""
     found = [(fixture.name, fixture.friction) for fixture in scene.fixtures]
     found.append(("floor", FRICTION_ON_STEEL))
-    found += [(f"{prefix}pedestal", FRICTION_ON_STEEL) for prefix in robots if stands(robots[prefix])]
+    found += [(f"{prefix}pedestal", FRICTION_ON_STEEL) for prefix in robots if is_on_pedestal(robots[prefix])]
     return found
 
 
@@ -97,7 +97,7 @@ def _equipped(robot: RobotModel, tool: Tool | None) -> mujoco.MjSpec:
     spec = robot.spec.copy()
     flange = spec.site(robot.flange)
     if tool is not None:
-        keep_apart(spec, flange.parent, tool)
+        allow_mount_overlap(spec, flange.parent, tool)
         frame = flange.parent.add_frame(pos=flange.pos, quat=flange.quat)
         spec.attach(tool.spec.copy(), frame=frame, prefix="")
         if isinstance(tool.effector, Fingers):
@@ -116,7 +116,7 @@ def _measure(spec: mujoco.MjSpec, servo: str) -> None:
         spec.add_sensor(name=name, type=sensor, objtype=mujoco.mjtObj.mjOBJ_ACTUATOR, objname=servo)
 
 
-def keep_apart(spec: mujoco.MjSpec, link: mujoco.MjsBody, tool: Tool) -> None:
+def allow_mount_overlap(spec: mujoco.MjSpec, link: mujoco.MjsBody, tool: Tool) -> None:
     """Let a tool's mount overlap the last two links, as flanges do."""
     for body in (link, link.parent):
         for part in tool.spec.bodies:

@@ -15,9 +15,9 @@ from mutabot_cell.geometry import Array
 
 from .checks import compiled
 from .effectors import Fingers
-from .lean import GRIPPER_CLASS, collide_as, freeze_inertias, leave_looks_out, strip
 from .loading import names_of, read
 from .options import PHYSICS_STEP
+from .stripping import GRIPPER_CLASS, collide_as, freeze_inertias, remove_visuals, strip
 
 PREFIX = "tool/"
 """Before the names of a tool's file, so that they do not meet those of the arm's."""
@@ -66,11 +66,11 @@ def read_gripper(
     """Read a gripper from a file in MuJoCo's format and measure its fingers; see `Tool.from_mjcf`."""
     spec = read(path)
     strip(spec)
-    leave_looks_out(spec)
+    remove_visuals(spec)
     model = compiled(spec, path)
     _check_names(spec, path, actuator, pads, point)
     freeze_inertias(spec, model)
-    leave_looks_out(spec)
+    remove_visuals(spec)
     collide_as(spec, GRIPPER_CLASS)
     for body in spec.bodies:
         if body != spec.worldbody:

@@ -77,13 +77,13 @@ class Limits:
         speed = _each("speed", self.speed, count)
         acceleration = _each("acceleration", self.acceleration, count, [5 * value for value in speed])
         torque = _each("torque", self.torque, count)
-        said = [one or other for one, other in zip_longest(found, torque)]
-        if self.peak_torque is None and None in said:
+        torques = [one or other for one, other in zip_longest(found, torque)]
+        if self.peak_torque is None and None in torques:
             raise BadModel(
-                f"joint {joints[said.index(None)]!r} has no actuator with a known torque: add one with a "
+                f"joint {joints[torques.index(None)]!r} has no actuator with a known torque: add one with a "
                 "forcerange (Nm), or say Limits(torque=...)"
             )
-        peak = _each("peak_torque", self.peak_torque, count, [one or 0.0 for one in said])
+        peak = _each("peak_torque", self.peak_torque, count, [one or 0.0 for one in torques])
         torque = torque or peak
         return JointLimits(
             speed=speed,
@@ -98,12 +98,12 @@ class Limits:
         )
 
 
-def _each(name: str, said: Each | None, count: int, other: Sequence[float] = ()) -> tuple[float, ...]:
-    if said is None:
+def _each(name: str, value: Each | None, count: int, other: Sequence[float] = ()) -> tuple[float, ...]:
+    if value is None:
         return tuple(other)
-    values = (float(said),) * count if isinstance(said, (int, float)) else tuple(map(float, said))
+    values = (float(value),) * count if isinstance(value, (int, float)) else tuple(map(float, value))
     if len(values) != count or not all(value > 0 for value in values):
-        raise BadArgument(f"Expected {count} values > 0, or one, but got {name}={said!r}")
+        raise BadArgument(f"Expected {count} values > 0, or one, but got {name}={value!r}")
     return values
 
 

@@ -14,9 +14,9 @@ from mutabot_cell.errors import BadArgument, BadModel
 from mutabot_cell.geometry import Pose, pose_of
 
 from .checks import check_chain, check_masses, check_size, check_touch, compiled
-from .lean import ARM_CLASS, collide_as, freeze_inertias, leave_looks_out, strip
 from .limits import JointLimits, Limits
 from .servos import make_servos, servos_of, torque_of
+from .stripping import ARM_CLASS, collide_as, freeze_inertias, remove_visuals, strip
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -113,14 +113,14 @@ def read_spec(
     names = tuple(joint.name for joint in joints)
     angles = _home(home, keys, len(names), len(list(spec.joints)), path)
     strip(spec)
-    leave_looks_out(spec)
+    remove_visuals(spec)
     model = compiled(spec, path)
     check_masses(model, names, path)
     check_touch(model, chain, path)
     resolved = limits.of_joints(names, [torque_of(spec, model, name) for name in names])
     servos = servos_of(spec, names) or make_servos(spec, names, resolved)
     freeze_inertias(spec, model)
-    leave_looks_out(spec)
+    remove_visuals(spec)
     collide_as(spec, ARM_CLASS)
     for body in chain:
         body.gravcomp = 1.0
@@ -170,13 +170,13 @@ def _part(spec: mujoco.MjSpec, root: str, path: str | PathLike[str]) -> tuple[mu
 
 
 def _home(
-    said: Sequence[float] | None,
+    home: Sequence[float] | None,
     keys: dict[str, list[float]],
     count: int,
     all_joints: int,
     path: str | PathLike[str],
 ) -> tuple[float, ...]:
-    if said is None:
+    if home is None:
         found = keys.get("home") or next(iter(keys.values()), None)
         if found is None or all_joints != count:
             raise BadModel(
@@ -184,9 +184,9 @@ def _home(
                 "degrees"
             )
         return tuple(found)
-    if len(said) != count or not all(isinstance(a, (int, float)) and math.isfinite(a) for a in said):
-        raise BadArgument(f"Expected {count} angles in degrees, one per joint, but got home={said!r}")
-    return tuple(math.radians(angle) for angle in said)
+    if len(home) != count or not all(isinstance(a, (int, float)) and math.isfinite(a) for a in home):
+        raise BadArgument(f"Expected {count} angles in degrees, one per joint, but got home={home!r}")
+    return tuple(math.radians(angle) for angle in home)
 
 
 def _range(model: mujoco.MjModel, name: str) -> tuple[float, float]:

@@ -43,7 +43,7 @@ def _mark_xml(mark: Mark) -> str:
     )
 
 
-def stands(robot: RobotModel) -> bool:
+def is_on_pedestal(robot: RobotModel) -> bool:
     """Return whether a robot's base is above the floor, on a pedestal."""
     return robot.base.z > 0.0
 
@@ -57,7 +57,7 @@ def _robot_xml(prefix: str, robot: RobotModel) -> str:
         f'<geom name="{prefix}pedestal" class="fixture" type="cylinder" size="0.09 {half}" '
         f'pos="{_numbers((x, y, half))}" rgba="0.33 0.35 0.38 1"/>'
     )
-    return (pedestal if stands(robot) else "") + (
+    return (pedestal if is_on_pedestal(robot) else "") + (
         f'<body name="{prefix}{ROBOT_BODY}" pos="{_numbers((x, y, base.z))}" quat="{turned}"/>'
     )
 
@@ -66,10 +66,10 @@ def cell_xml(scene: Scene, robots: Mapping[str, RobotModel]) -> str:
     """Return the MJCF of the cell's contents, with an empty body for each robot."""
     fixtures = "".join(_fixture_xml(fixture) for fixture in scene.fixtures)
     marks = "".join(_mark_xml(mark) for mark in scene.marks)
-    stands = "".join(_robot_xml(prefix, robot) for prefix, robot in robots.items())
+    robot_texts = "".join(_robot_xml(prefix, robot) for prefix, robot in robots.items())
     return f"""<mujoco model="cell">{HEAD}
 <worldbody>
   <geom name="floor" class="fixture" type="plane" size="4 4 0.1"/>
-  {fixtures}{stands}{marks}
+  {fixtures}{robot_texts}{marks}
 </worldbody>
 </mujoco>"""

@@ -11,7 +11,7 @@ from mutabot_cell.geometry import Array
 from mutabot_cell.models.limits import JointLimits
 
 from .online import JointSteps
-from .trajectory import Motion, calculated, sampled
+from .trajectory import Motion, sampled, time_law
 
 _SHORTEST = 0.05
 """Half of the time for braking on the path that is tried first, s."""
@@ -58,7 +58,7 @@ def braked_joints(state: JointSteps, step: float, limits: JointLimits) -> Motion
     request.current_position, request.current_velocity = state.joints.tolist(), state.speeds.tolist()
     request.current_acceleration = state.accelerations.tolist()
     request.max_acceleration, request.max_jerk = list(limits.acceleration), list(limits.jerk)
-    trajectory = calculated(ruckig.Ruckig(count), request)
+    trajectory = time_law(ruckig.Ruckig(count), request)
     samples = max(1, math.ceil(trajectory.duration / step))
     times = (min((index + 1) * step, trajectory.duration) for index in range(samples))
     states = np.array([trajectory.at_time(time)[:2] for time in times])

@@ -47,7 +47,7 @@ class _Steered:
         self.velocity = velocity
         return self._steps.towards(self.position, self._rotation, np.concatenate((velocity, np.zeros(3))))
 
-    def stands(self) -> bool:
+    def is_at_rest(self) -> bool:
         """Return whether the tool is at rest."""
         return not self.velocity.any()
 
@@ -80,7 +80,7 @@ class UntilContact:
         """Return the setpoints of the coming tick; see `OnlineMotion`."""
         self.touched = self.touched or float(-self._feel() @ self._direction) >= self._force
         left = self._length - float((self._tool.position - self._tool.start) @ self._direction)
-        if self._tool.stands() and (self.touched or left < _THERE):
+        if self._tool.is_at_rest() and (self.touched or left < _THERE):
             return None
         if self.touched:
             return self._tool.go(np.zeros(3))
@@ -130,7 +130,7 @@ class Push:
         gone = float(np.linalg.norm(self._tool.position - self._tool.start))
         if self._left < 0 or gone >= self._travel:
             self._left = min(self._left, -1)
-            return None if self._tool.stands() else self._tool.go(np.zeros(3))
+            return None if self._tool.is_at_rest() else self._tool.go(np.zeros(3))
         missing = self._forces + self._feel()
         wanted = np.clip(GAIN * missing, -self._speed, self._speed) * self._yields
         return self._tool.go(wanted)

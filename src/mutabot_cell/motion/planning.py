@@ -9,9 +9,9 @@ import numpy as np
 
 from mutabot.api.processes import SharedMemory
 from mutabot_cell.geometry import Array
+from mutabot_cell.integrity import MOTIONS, are_original
 from mutabot_cell.models.options import PHYSICS_STEP
 from mutabot_cell.models.robot import RobotModel
-from mutabot_cell.originals import MOTIONS, are_original
 
 from .kinematics import Kinematics
 from .line import Line

@@ -19,7 +19,7 @@ from mutabot_cell.models.limits import JointLimits, ToolLimits
 
 from .line import Line
 from .online import JointSteps
-from .trajectory import Motion, Spline, calculated
+from .trajectory import Motion, Spline, time_law
 
 FILTER_TIME = 0.05
 """Time constant of the filter that estimates the belt's motion from whole encoder counts, s (our choice)."""
@@ -114,7 +114,7 @@ class Follower:
     def _go_on(self) -> ruckig.Result:
         self._request.current_acceleration = [self.acceleration]
         self._request.max_jerk = [self._jerk]
-        calculated(self._law, self._request)
+        time_law(self._law, self._request)
         result = self._law.update(self._request, self._answer)
         self.position, self.speed = self._answer.new_position[0], self._answer.new_velocity[0]
         self.acceleration = self._answer.new_acceleration[0]
@@ -199,12 +199,12 @@ class Tracking:
         law = LineLaw(line, speed, abs(self._estimate.speed), self._period, self._limits)
         while True:
             duration = law.duration
-            law.slow_down(Spline(follow(self._meeting(line, duration))), self._steps.limits)
+            law.slow_down(Spline(follow(self._line_for_belt(line, duration))), self._steps.limits)
             if law.duration < duration * _SLOWER:
                 break
         self._move = law
 
-    def _meeting(self, line: Line, duration: float) -> Line:
+    def _line_for_belt(self, line: Line, duration: float) -> Line:
         """Return the line in the base frame for a belt that keeps its speed."""
         begin = line.start + self._offset.position * self._along
         return Line(
@@ -269,7 +269,7 @@ class LineLaw:
         self.is_done = False
 
     def _duration(self) -> float:
-        return float(calculated(self._law, self._request).duration)
+        return float(time_law(self._law, self._request).duration)
 
     def slow_down(self, joints: Spline, limits: JointLimits) -> None:
         """Slow down along the whole line where the joints would be too fast."""

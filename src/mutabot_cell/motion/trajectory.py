@@ -169,14 +169,14 @@ def _ruckig(
     request.current_position, request.target_position = start.tolist(), end.tolist()
     request.max_velocity, request.max_acceleration = speed.tolist(), acceleration.tolist()
     request.max_jerk = jerk.tolist()
-    trajectory = calculated(ruckig.Ruckig(count), request)
+    trajectory = time_law(ruckig.Ruckig(count), request)
     times = np.linspace(0.0, trajectory.duration, max(2, math.ceil(trajectory.duration / _GRID) + 1))
     rows = [trajectory.at_time(time)[:3] for time in times.tolist()]
     states = np.array(rows).reshape(len(rows), 3, count)
     return times, states[:, 0], states[:, 1], states[:, 2]
 
 
-def calculated(law: ruckig.Ruckig, request: ruckig.InputParameter) -> ruckig.Trajectory:
+def time_law(law: ruckig.Ruckig, request: ruckig.InputParameter) -> ruckig.Trajectory:
     """Compute the requested time law.
 
     Where two kinds of laws meet (a length of exactly 2 a³/j², say) ruckig finds neither in a few cases of a

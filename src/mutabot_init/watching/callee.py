@@ -16,7 +16,7 @@ from types import BuiltinFunctionType, FunctionType, MethodType, ModuleType
 from typing import Any
 
 from mutabot.api.values import parse_signature, resolve
-from mutabot_init.watched import ANY, WatchedCallable
+from mutabot_init.observations import ANY, WatchedCallable
 from mutabot_init.watching.effects import only_computes
 
 #: what pybind11 writes for a default that is no literal, in front of each overload, and of arguments
@@ -97,7 +97,7 @@ def _takes_anything(signature: inspect.Signature) -> bool:
     return {inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD} <= kinds
 
 
-def meant_by(kind: type, name: str) -> Callee | None:
+def replaced_method(kind: type, name: str) -> Callee | None:
     """Return method ``name`` of the class that a mock or fake replaces, even if a patch hides the class."""
     owner = next((one for one in kind.__mro__ if name in vars(one)), None)
     if owner is None or "<" in owner.__qualname__:

@@ -8,7 +8,7 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from mutabot_init.watched import Values, WatchedPart
+from mutabot_init.observations import Values, WatchedPart
 
 #: different values that are kept of each part, elements of a sequence, parts of a value
 MOST_VALUES, MOST_ELEMENTS, MOST_PARTS = 8, 16, 64

@@ -21,8 +21,8 @@ from typing import Any
 
 from mutabot.api.processes import CallOrigin, Observer
 from mutabot.api.values import Form
-from mutabot_init.beside import brought_proposers
-from mutabot_init.watched import Command, Use, Values, WatchedCallable, WatchedCalls
+from mutabot_init.observations import Command, Use, Values, WatchedCallable, WatchedCalls
+from mutabot_init.proposers import brought_proposers
 from mutabot_init.watching.callee import (
     Callee,
     any_method,
@@ -30,8 +30,8 @@ from mutabot_init.watching.callee import (
     class_name,
     described,
     function_of,
-    meant_by,
     method_of,
+    replaced_method,
 )
 from mutabot_init.watching.values import look, plain
 
@@ -101,7 +101,7 @@ class Watch(Observer):
             return found
         callee = function_of(found) if receiver is None else self._method(receiver, name)
         if receiver is not None and not caller.is_test:
-            callee = self._stood_for(receiver, name, callee, found)
+            callee = self._replaced_callee(receiver, name, callee, found)
         return self._wrapped(found, self._of(callee, caller), caller)
 
     def read(self, name: str, found: Any, receiver: Any, caller: CallOrigin) -> None:
@@ -158,19 +158,19 @@ class Watch(Observer):
             return method_of(value, name)
         return self._method_of(value if isinstance(value, type) else type(value), name)
 
-    def _stood_for(self, value: Any, name: str, callee: Callee | None, found: Any) -> Callee | None:
+    def _replaced_callee(self, value: Any, name: str, callee: Callee | None, found: Any) -> Callee | None:
         """Return what a mock or fake replaces: the robot's callable, or any callable with its name."""
         if _is_mock(value):
             spelt = re.split(r"\W", value._extract_mock_name())[0]
             kind = vars(value).get("_spec_class") or self._only_class(spelt, name)
-            return (meant_by(kind, name) if kind is not None else None) or any_method(name)
+            return (replaced_method(kind, name) if kind is not None else None) or any_method(name)
         if _is_mock(found) and isinstance(value, type | ModuleType):
             where = f"{value.__name__}:" if isinstance(value, ModuleType) else f"{class_name(value)}."
             is_class = name[:1].isupper()
             return None if is_class else Callee(f"{where}{name}", None, None, "", stands_in=True)
         if callee is None or callee.owner is None or not self._is_of_tests(callee):
             return callee
-        meant = (meant_by(kind, name) for kind in callee.owner.__mro__[1:-1])
+        meant = (replaced_method(kind, name) for kind in callee.owner.__mro__[1:-1])
         robots = next((one for one in meant if one is not None and not self._is_of_tests(one)), None)
         return robots or any_method(name, callee)
 
@@ -316,7 +316,7 @@ def _command(seen: _Seen, instance: Any, values: Mapping[str, Any]) -> Command |
     call = seen.call
     if seen.has_no_commands:
         return None
-    by, text, beside = _told_by(call, instance, values)
+    by, text, beside = _identify_command(call, instance, values)
     seen.counts[by] += 1
     commands = seen.commands.setdefault(by, {})
     if len(text) > _LONGEST or len(commands) > _MOST_COMMANDS:
@@ -339,7 +339,7 @@ def _command(seen: _Seen, instance: Any, values: Mapping[str, Any]) -> Command |
 _CallFacts = tuple[str, str, Mapping[str, Any]]
 
 
-def _told_by(call: WatchedCallable, instance: Any, values: Mapping[str, Any]) -> _CallFacts:
+def _identify_command(call: WatchedCallable, instance: Any, values: Mapping[str, Any]) -> _CallFacts:
     """Return what identifies a command; an empty path if nothing does."""
     is_item = call.name == "__setitem__"
     if not (is_item or call.is_set or _TALKS.search(call.name)):
@@ -349,13 +349,13 @@ def _told_by(call: WatchedCallable, instance: Any, values: Mapping[str, Any]) ->
         if is_item:
             return (name, str(value), beside) if _is_address(value) else ("", "", {})
         is_plain = isinstance(value, str | int) and not isinstance(value, bool)
-        if _tells(name.lower()) and (is_plain or _prints_itself(value)):
+        if _tells(name.lower()) and (is_plain or _has_distinct_name(value)):
             return name, str(value), beside
         pair = _pair(name, value)
         if pair is not None:
             path, text, written = pair
             return f"{path}[0]", text, {f"{path}[1]": written}
-    return ("self", str(instance), values) if _prints_itself(instance) else ("", "", {})
+    return ("self", str(instance), values) if _has_distinct_name(instance) else ("", "", {})
 
 
 def _tells(name: str) -> bool:
@@ -376,7 +376,7 @@ def _pair(path: str, value: Any) -> tuple[str, str, Any] | None:
     return _pair(f"{path}[0]", value[0])
 
 
-def _prints_itself(value: Any) -> bool:
+def _has_distinct_name(value: Any) -> bool:
     """Return whether an object is printed as a distinct name, as a node is by its id."""
     kind: Any = type(value)
     prints = kind.__str__ is not object.__str__ or kind.__repr__ is not object.__repr__

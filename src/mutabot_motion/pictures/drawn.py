@@ -12,9 +12,9 @@ from operator import ne
 from PIL import Image, ImageDraw
 
 from mutabot.api.reports import RecordedPaths
-from mutabot_motion.shown import end_of, things_in
+from mutabot_motion.view import end_of, things_in
 
-from .lettering import letters
+from .fonts import font_of_size
 
 _WIDTH, _HEIGHT = 600, 600
 _EDGE, _LABEL = 16, 20
@@ -41,7 +41,7 @@ class _PixelView:
         return self.centre[0] + x * self.scale, self.centre[1] - y * self.scale
 
 
-class Drawn:
+class DrawnPictures:
     """The paths of a recording, drawn in two views.
 
     Args:
@@ -54,17 +54,17 @@ class Drawn:
         self.end = end_of(recording)
         self._paths = {name: recording.paths[name] for name in things_in(recording)}
         self._lines = [*recording.lines.values()]
-        self._views = _views(_room([recording, *others]))
+        self._views = _views(_extents([recording, *others]))
         self._empty = Image.new("RGB", (_WIDTH, _HEIGHT), _GROUND)
         draw = ImageDraw.Draw(self._empty)
         for (name, _, up), view in zip(_VIEWS, self._views, strict=True):
             for block in sorted(recording.recording.blocks, key=lambda one: one.centre[3 - view.right - up]):
                 _draw_block(draw, view, block.centre, block.size)
             bottom = view.centre[1] + _HEIGHT / 4
-            letters(14).draw(draw, (_EDGE, bottom - 8), name, _TEXT, "lb")
+            font_of_size(14).draw(draw, (_EDGE, bottom - 8), name, _TEXT, "lb")
         draw.line((0, _HEIGHT / 2, _WIDTH, _HEIGHT / 2), fill=_OUTLINE)
         for number, name in enumerate(self._paths):
-            letters(14).draw(draw, (_WIDTH - _EDGE, 6 + 18 * number), name, _colour(number), "ra")
+            font_of_size(14).draw(draw, (_WIDTH - _EDGE, 6 + 18 * number), name, _colour(number), "ra")
 
     def at(self, time: float) -> Image.Image:
         """Return the picture at a time, s: the paths until then, and the things' positions."""
@@ -99,7 +99,7 @@ def _colour(number: int) -> str:
     return _COLOURS[number % len(_COLOURS)]
 
 
-def _room(recordings: Sequence[RecordedPaths]) -> list[tuple[float, float]]:
+def _extents(recordings: Sequence[RecordedPaths]) -> list[tuple[float, float]]:
     """Return the range of coordinates along each axis, m; blocks count only near what moves."""
     points = [
         point

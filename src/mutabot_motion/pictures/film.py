@@ -106,7 +106,7 @@ class Film:
     @property
     def times(self) -> list[float]:
         """The times of its pictures, s."""
-        return [head[0] for head, _ in self._heads()]
+        return [head[0] for head, _ in self._headers()]
 
     @property
     def end(self) -> float:
@@ -116,11 +116,11 @@ class Film:
     def pictures(self) -> Iterator[Picture]:
         """Yield all pictures in order."""
         before = b""
-        for (at, height, width, size), file in self._heads():
+        for (at, height, width, size), file in self._headers():
             before = _differing(zlib.decompress(file.read(size)), before)
             yield Picture(at, height, width, before)
 
-    def _heads(self) -> Iterator[tuple[tuple[float, int, int, int], BinaryIO]]:
+    def _headers(self) -> Iterator[tuple[tuple[float, int, int, int], BinaryIO]]:
         """Yield the header of each picture, and the file, positioned at its start."""
         if not self._path.is_file():
             return

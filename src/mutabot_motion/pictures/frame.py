@@ -8,9 +8,9 @@ from typing import Protocol
 from PIL import Image, ImageDraw, ImageOps
 
 from mutabot_motion.pictures.film import Film, Picture
-from mutabot_motion.shown import COLOURS, Shown
+from mutabot_motion.view import COLOURS, MotionView
 
-from .lettering import letters
+from .fonts import font_of_size
 
 _GROUND, _TEXT, _DIM, _RAIL = "#14171c", "#e8ebf0", "#98a1ad", "#3a414b"
 _FAULT, _APART = "#ff6b45", "#f0e442"
@@ -33,7 +33,7 @@ def _speed(end: float) -> float:
     return speed
 
 
-class Shots(Protocol):
+class SidePictures(Protocol):
     """The interface of one side's pictures.
 
     Attributes:
@@ -47,7 +47,7 @@ class Shots(Protocol):
         """Return the picture at a time, s; later calls must have the same or a later time."""
 
 
-class Filmed:
+class FilmedPictures:
     """The pictures of a simulator's camera. Raises ValueError if there are none."""
 
     def __init__(self, film: Film) -> None:
@@ -57,16 +57,16 @@ class Filmed:
         self.end = times[-1]
         self._coming: Iterator[Picture] = film.pictures()
         self._next: Picture | None = next(self._coming)
-        self._shown = self._image(self._next)
+        self._image_now = self._image(self._next)
 
     def at(self, time: float) -> Image.Image:
-        """Return the picture at a time, s, or the first one before that; see ``Shots``."""
+        """Return the picture at a time, s, or the first one before that; see ``SidePictures``."""
         latest = None
         while self._next is not None and self._next.time <= time + _SLACK:
             latest, self._next = self._next, next(self._coming, None)
         if latest is not None:
-            self._shown = self._image(latest)
-        return self._shown
+            self._image_now = self._image(latest)
+        return self._image_now
 
     @staticmethod
     def _image(picture: Picture) -> Image.Image:
@@ -85,8 +85,8 @@ class Frames:
         size: width and height, even numbers of pixels, as H.264 wants them.
     """
 
-    def __init__(self, shown: Shown, sides: tuple[Shots, Shots]) -> None:
-        self._shown, self._sides = shown, sides
+    def __init__(self, view: MotionView, sides: tuple[SidePictures, SidePictures]) -> None:
+        self._view, self._sides = view, sides
         self.end = max(side.end for side in sides)
         self.speed = _speed(self.end)
         width, height = sides[0].at(0.0).size
@@ -94,8 +94,8 @@ class Frames:
         self._height: int = max(2, round(height * self._width / width) & ~1)
         self.size = 3 * _MARGIN + 2 * self._width, _TITLE + self._height + _FOOT
         self._rail = _MARGIN + 160, self.size[0] - _MARGIN, _TITLE + self._height + 22
-        story = f"{shown.story[:1].upper()}{shown.story[1:]}"
-        self._story = letters(15).lines(story, self.size[0] - 2 * _MARGIN, 2)
+        story = f"{view.story[:1].upper()}{view.story[1:]}"
+        self._story = font_of_size(15).lines(story, self.size[0] - 2 * _MARGIN, 2)
         self._empty = Image.new("RGB", self.size, _GROUND)
         self._draw_titles(ImageDraw.Draw(self._empty))
         self._draw_rail(ImageDraw.Draw(self._empty))
@@ -108,7 +108,7 @@ class Frames:
         draw = ImageDraw.Draw(frame)
         for number, side in enumerate(self._sides):
             if time >= side.end:
-                ended = self._shown.ended[number].partition(":")[0]
+                ended = self._view.ended[number].partition(":")[0]
                 self._badge(draw, number, f"ended at {side.end:.1f} s{f', {ended}' if ended else ''}", _DIM)
         self._draw_fault(draw, time)
         self._draw_time(draw, time)
@@ -123,11 +123,11 @@ class Frames:
         return image if image.size == size else ImageOps.pad(image, size, Image.Resampling.BILINEAR, _GROUND)
 
     def _draw_titles(self, draw: ImageDraw.ImageDraw) -> None:
-        shown = self._shown
-        where = f"{shown.test.rpartition('::')[2]}, round {shown.round + 1}"
-        texts = ("original", where), (f"mutant {shown.number}", f"{shown.place} · {shown.what}")
+        view = self._view
+        where = f"{view.test.rpartition('::')[2]}, round {view.round + 1}"
+        texts = ("original", where), (f"mutant {view.number}", f"{view.place} · {view.what}")
         for number, (name, more) in enumerate(texts):
-            left, big, small = self._left(number), letters(18), letters(14)
+            left, big, small = self._left(number), font_of_size(18), font_of_size(14)
             big.draw(draw, (left, 8), name, tuple(COLOURS.values())[number])
             for line, text in enumerate(small.lines(more, self._width - 4, 2)):
                 small.draw(draw, (left, 34 + 18 * line), text, _TEXT)
@@ -135,8 +135,8 @@ class Frames:
     def _draw_rail(self, draw: ImageDraw.ImageDraw) -> None:
         left, right, y = self._rail
         draw.rectangle((left, y - 3, right, y + 3), fill=_RAIL)
-        small = letters(13)
-        marks = [(self._shown.fault, "fault", _FAULT), (self._shown.apart, "apart", _APART)]
+        small = font_of_size(13)
+        marks = [(self._view.fault, "fault", _FAULT), (self._view.apart, "apart", _APART)]
         taken = 0.0
         for time, name, colour in sorted(
             (one for one in marks if one[0] is not None), key=lambda one: one[0] or 0
@@ -153,31 +153,31 @@ class Frames:
     def _draw_time(self, draw: ImageDraw.ImageDraw, time: float) -> None:
         left, _, y = self._rail
         draw.rectangle((left, y - 3, self._x(time), y + 3), fill=_TEXT)
-        for moment, colour in ((self._shown.fault, _FAULT), (self._shown.apart, _APART)):
+        for moment, colour in ((self._view.fault, _FAULT), (self._view.apart, _APART)):
             if moment is not None:
                 x = self._x(moment)
                 draw.rectangle((x - 1, y - 8, x + 1, y + 8), fill=colour)
-        letters(18).draw(draw, (_MARGIN, y), f"{time:.2f} s", _TEXT, "lm")
-        clock = self._shown.clock if self.speed == 1.0 else f"{self._shown.clock} ×{self.speed:g}"
-        letters(13).draw(draw, (_MARGIN, y + 11), clock, _DIM)
-        apart = self._shown.apart
+        font_of_size(18).draw(draw, (_MARGIN, y), f"{time:.2f} s", _TEXT, "lm")
+        clock = self._view.clock if self.speed == 1.0 else f"{self._view.clock} ×{self.speed:g}"
+        font_of_size(13).draw(draw, (_MARGIN, y + 11), clock, _DIM)
+        apart = self._view.apart
         if apart is None or time >= apart:
             for number, text in enumerate(self._story):
-                letters(15).draw(draw, (_MARGIN, y + 38 + 20 * number), text, _TEXT)
+                font_of_size(15).draw(draw, (_MARGIN, y + 38 + 20 * number), text, _TEXT)
 
     def _draw_fault(self, draw: ImageDraw.ImageDraw, time: float) -> None:
-        fault = self._shown.fault
+        fault = self._view.fault
         if fault is None or time < fault:
             return
         left = self._left(1)
         box = left - 4, _TITLE - 4, left + self._width + 3, _TITLE + self._height + 3
         draw.rectangle(box, outline=_FAULT, width=4)
-        text, font = f"fault since {fault:.1f} s", letters(15)
+        text, font = f"fault since {fault:.1f} s", font_of_size(15)
         draw.rectangle((left, _TITLE, left + font.width(text) + 16, _TITLE + 26), fill=_FAULT)
         font.draw(draw, (left + 8, _TITLE + 13), text, _GROUND, "lm")
 
     def _badge(self, draw: ImageDraw.ImageDraw, number: int, text: str, colour: str) -> None:
-        left, bottom, font = self._left(number), _TITLE + self._height, letters(15)
+        left, bottom, font = self._left(number), _TITLE + self._height, font_of_size(15)
         draw.rectangle((left, bottom - 26, left + font.width(text) + 16, bottom), fill=_GROUND)
         font.draw(draw, (left + 8, bottom - 13), text, colour, "lm")
 

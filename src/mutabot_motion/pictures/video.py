@@ -17,11 +17,11 @@ from PIL import Image
 
 from mutabot.api.reports import Progress, UsageError
 from mutabot_motion.pictures.film import Film
-from mutabot_motion.shown import Shown
-from mutabot_motion.sights import written_whole
+from mutabot_motion.view import MotionView
+from mutabot_motion.viewers import atomic_file
 
-from .drawn import Drawn
-from .frame import Filmed, Frames, Shots
+from .drawn import DrawnPictures
+from .frame import FilmedPictures, Frames, SidePictures
 
 #: frames per second, at which simulated seconds become those of the video
 RATE = 25
@@ -32,7 +32,7 @@ _GIF_RATE, _GIF_MOST, _GIF_WIDTH = 10, 200, 720
 
 
 def show(
-    file: Path, shown: Shown, films: tuple[Film, Film], problems: Sequence[str], progress: Progress
+    file: Path, view: MotionView, films: tuple[Film, Film], problems: Sequence[str], progress: Progress
 ) -> list[str]:
     """Write a video of both films; where pictures are missing, of both recordings, drawn.
 
@@ -45,27 +45,27 @@ def show(
     """
     notes = []
     if all(film.times for film in films):
-        sides: tuple[Shots, Shots] = Filmed(films[0]), Filmed(films[1])
+        sides: tuple[SidePictures, SidePictures] = FilmedPictures(films[0]), FilmedPictures(films[1])
     else:
         notes = [_why_no_pictures(problems)]
-        sides = _drawn(shown, notes[0])
+        sides = _drawn(view, notes[0])
         notes[0] += "; the paths are drawn instead"
     write = write_gif if file.suffix.lower() == ".gif" else write_video
-    seconds = write(file, Frames(shown, sides), progress)
+    seconds = write(file, Frames(view, sides), progress)
     size = file.stat().st_size
     return [*notes, f"{file}: {seconds:.1f} s, {size / 1e6:.1f} MB"]
 
 
-def _drawn(shown: Shown, why: str) -> tuple[Shots, Shots]:
-    original = shown.original
+def _drawn(view: MotionView, why: str) -> tuple[SidePictures, SidePictures]:
+    original = view.original
     # a mutant in which nothing that was recorded differs has no recording of its own
-    mutant = shown.mutant if shown.mutant is not None or shown.story else original
+    mutant = view.mutant if view.mutant is not None or view.story else original
     if original is None or mutant is None or not (original.recording.tracks and mutant.recording.tracks):
         raise UsageError(
             f"there is nothing to make a video of: {why}; and no simulator tells where things are "
             "(mutabot.evidence.Feed, see docs/motion.md)"
         )
-    return Drawn(original, [mutant]), Drawn(mutant, [original])
+    return DrawnPictures(original, [mutant]), DrawnPictures(mutant, [original])
 
 
 def _why_no_pictures(problems: Sequence[str]) -> str:
@@ -81,11 +81,11 @@ def write_video(file: Path, frames: Frames, progress: Progress) -> float:
     """Write a video, and remove it if it is not finished. Return its duration, s."""
     count = 0
     frame: Any = av.VideoFrame
-    with written_whole(file) as part, av.open(str(part), "w", options={"movflags": "+faststart"}) as video:
+    with atomic_file(file) as part, av.open(str(part), "w", options={"movflags": "+faststart"}) as video:
         stream = video.add_stream("libx264", rate=RATE, options={"crf": "21", "preset": "veryfast"})
         stream.width, stream.height = frames.size
         stream.pix_fmt = "yuv420p"
-        moments = [*_moments(frames.end, frames.speed)]
+        moments = [*_frame_times(frames.end, frames.speed)]
         progress.stage("video", len(moments))
         for time in moments:
             video.mux(stream.encode(frame.from_image(frames.at(time))))
@@ -109,7 +109,7 @@ def write_gif(file: Path, frames: Frames, progress: Progress) -> float:
         progress.advance()
     each = round(100 * seconds / (count - 1)) * 10  # the format counts in hundredths of a second
     lasting = [*[each] * (count - 1), round(1000 * _HELD)]
-    with written_whole(file) as part:
+    with atomic_file(file) as part:
         pictures[0].save(
             part, "GIF", save_all=True, append_images=pictures[1:], duration=lasting, loop=0, optimize=False
         )
@@ -122,8 +122,8 @@ def _indexed(frame: Image.Image) -> Image.Image:
     return frame.quantize(128, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
 
 
-def _moments(end: float, speed: float) -> Iterator[float]:
+def _frame_times(end: float, speed: float) -> Iterator[float]:
     """Yield the time that each frame shows, s."""
-    shown = int(end / speed * RATE) + 1
-    yield from (number * speed / RATE for number in range(shown))
+    count = int(end / speed * RATE) + 1
+    yield from (number * speed / RATE for number in range(count))
     yield from (end for _ in range(int(_HELD * RATE)))

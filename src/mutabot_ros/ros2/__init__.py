@@ -16,7 +16,7 @@ from ._clock import hook as hook_clock
 from ._nodes import hook as hook_nodes
 from ._parameters import hook as hook_parameters
 from ._services import hook as hook_services
-from ._times import hook as hook_times
+from ._timers import hook as hook_times
 from ._topics import hook as hook_topics
 from ._types import TYPES
 
@@ -36,4 +36,4 @@ def hook(messages: Names) -> Callable[[], None]:
 
 def check(operation: Operation) -> Iterator[Finding]:
     """Yield what in an operation does not fit the installed definition of its type, or the program's type."""
-    return TYPES.look_at(operation)
+    return TYPES.check(operation)

@@ -22,7 +22,7 @@ _PERIOD = 0.002
 _NANO = 1e9
 
 
-class _Moved:
+class _ClockOffset:
     """The offset of this process's clocks, in nanoseconds."""
 
     by = 0
@@ -31,7 +31,7 @@ class _Moved:
         self.by = 0
 
 
-_moved = _Moved()
+_moved = _ClockOffset()
 
 
 def hook(patches: Patches, messages: Names) -> None:
@@ -85,7 +85,7 @@ def later(node: Any) -> Callable[[float, Callable[[], object]], None]:
     return done_later
 
 
-def goes_out(node: Any) -> Callable[[float, Callable[[], object]], None]:
+def send_later(node: Any) -> Callable[[float, Callable[[], object]], None]:
     """Return how a message of a node is sent later, also while the node does not spin."""
 
     def go_out(seconds: float, action: Callable[[], object]) -> None:

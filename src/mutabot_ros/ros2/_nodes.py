@@ -121,7 +121,7 @@ def where(
         lost,
         cancel,
         _clock.jump,
-        _clock.goes_out(node),
+        _clock.send_later(node),
         end=ros_in_process.end_of_process(),
     )
     return Where(code, name_of(node), means)

@@ -171,12 +171,12 @@ class _Topics:
             nonlocal asked
             left = -1 if end is None else max(0.0, end - time.monotonic())
             if asked and left == 0.0:  # what is kept for late subscribers may come at once
-                raise _Nothing
+                raise _NoMessage
             asked = True
             with _nodes.own():
                 found, message = original(msg_type, node, topic, **kwargs, time_to_wait=left)
             if not found:
-                raise _Nothing
+                raise _NoMessage
             self._messages.heard(name, message)
             return message
 
@@ -186,11 +186,11 @@ class _Topics:
             is_kept = _is_kept(kwargs.get("qos_profile"))
             wait = _first(waited(), waited)  # the handler hears of no wait that brings nothing
             return True, _nodes.where(node).wait_for(handler, wait, lambda _: is_kept, time)
-        except _Nothing:
+        except _NoMessage:
             return False, None
 
 
-class _Nothing(Exception):  # noqa: N818  (no error: there is no message)
+class _NoMessage(Exception):  # noqa: N818  (no error: there is no message)
     """Marks that no message has arrived in time."""
 
 

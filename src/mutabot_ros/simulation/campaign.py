@@ -10,7 +10,7 @@ from typing import Literal
 
 from mutabot.api.processes import SimulatedMiddleware, Table
 from mutabot.api.reports import UsageError
-from mutabot_ros._speech import speaks_of
+from mutabot_ros._mentions import mentions
 
 #: the plug-in of campaigns, and that of the simulation alone
 PLUGIN, PLAIN_PLUGIN = "mutabot_ros.simulation.plugin", "ros_in_process.plugin"
@@ -76,7 +76,7 @@ class Ros2Simulation(SimulatedMiddleware):
     @staticmethod
     def _is_used_by(root: Path, given: Sequence[str]) -> bool:
         is_own = (root / "rclpy").exists() or (root / "rclpy.py").exists()
-        if find_spec("rclpy") is None or is_own or not speaks_of(str(root), "rclpy"):
+        if find_spec("rclpy") is None or is_own or not mentions(str(root), "rclpy"):
             return False
         named = (*given, *_settings(root))
         return not any(plugin in text for text in named for plugin in (PLUGIN, PLAIN_PLUGIN))

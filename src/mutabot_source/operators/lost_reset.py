@@ -42,11 +42,11 @@ class LostReset(ConventionalOperator):
     )
 
     def drafts(self, node: SyntaxNode, around: Surroundings) -> Iterable[Draft]:
-        if around.function not in _INITIAL and (_sets_back(node) or _clears(node)):
+        if around.function not in _INITIAL and (_resets(node) or _clears(node)):
             yield Draft("", ("pass",))
 
 
-def _sets_back(node: SyntaxNode) -> bool:
+def _resets(node: SyntaxNode) -> bool:
     if isinstance(node, ast.Assign):
         return all(isinstance(one, ast.Attribute) for one in node.targets) and _is_nothing(node.value)
     return (

@@ -12,7 +12,7 @@ from types import ModuleType
 from typing import Any
 
 from ros_in_process.errors import note
-from ros_in_process.machine.imports import provide, stand_in, varied
+from ros_in_process.machine.imports import provide, simulated_module, with_replacements
 from ros_in_process.machine.scheduler import SCHEDULER, SECOND, SimulatedThread
 
 _OWN_FILES = 1  # the pipe by which a loop wakes itself
@@ -65,7 +65,7 @@ class SimulatedEventLoop(asyncio.SelectorEventLoop):
 
     def _threads(self) -> Any:
         if self._default_executor is None:  # type: ignore[has-type]
-            self._default_executor = stand_in("concurrent.futures").ThreadPoolExecutor(
+            self._default_executor = simulated_module("concurrent.futures").ThreadPoolExecutor(
                 thread_name_prefix="asyncio"
             )
         return self._default_executor
@@ -99,7 +99,7 @@ def _wrap_future(future: Any, *, loop: asyncio.AbstractEventLoop | None = None) 
 
 
 def _run_threadsafe(coroutine: Coroutine[Any, Any, Any], loop: asyncio.AbstractEventLoop) -> Any:
-    future = stand_in("concurrent.futures").Future()
+    future = simulated_module("concurrent.futures").Future()
 
     def start() -> None:
         task = asyncio.ensure_future(coroutine, loop=loop)
@@ -134,7 +134,7 @@ def _set_event_loop(loop: asyncio.AbstractEventLoop | None) -> None:
 
 def _asyncio() -> ModuleType:
     SCHEDULER.on_switch.append(_change_running_loop)
-    return varied(
+    return with_replacements(
         "asyncio",
         run=_run,
         Runner=lambda *, debug=None, loop_factory=SimulatedEventLoop: asyncio.Runner(

@@ -45,7 +45,7 @@ def is_provided(name: str) -> bool:
     return name in _builders
 
 
-def stand_in(name: str) -> ModuleType:
+def simulated_module(name: str) -> ModuleType:
     """Return the simulated module for a name, which is built on first use."""
     if name not in _built:
         module = _builders[name]()
@@ -118,11 +118,11 @@ def _import(
         return _real_import(name, globals, locals, fromlist or (), level)
     if name not in _builders:
         real = _real_import(name, globals, locals, ("*",), 0)
-        return real if fromlist else stand_in(name.partition(".")[0])
+        return real if fromlist else simulated_module(name.partition(".")[0])
     if not fromlist:
-        stand_in(name)
-        return stand_in(name.partition(".")[0])
-    return stand_in(name)
+        simulated_module(name)
+        return simulated_module(name.partition(".")[0])
+    return simulated_module(name)
 
 
 # a warning about an import is to name the module that imports: Python passes over frames of its own machinery
@@ -139,10 +139,10 @@ def catch_up() -> None:
     for module in [module for name, module in list(sys.modules.items()) if _decided(name)]:
         for name, value in list(vars(module).items()):
             if isinstance(value, ModuleType) and value.__name__ in _builders:
-                setattr(module, name, stand_in(value.__name__))
+                setattr(module, name, simulated_module(value.__name__))
 
 
-def copied(name: str, without: Sequence[str] = ()) -> ModuleType:
+def second_copy(name: str, without: Sequence[str] = ()) -> ModuleType:
     """Return a second copy of a standard library module that sees simulated modules; not in `sys.modules`."""
     real = sys.modules.get(name) or _real_import(name, None, None, ("*",), 0)
     file = real.__file__
@@ -160,7 +160,7 @@ def copied(name: str, without: Sequence[str] = ()) -> ModuleType:
     return module
 
 
-def varied(name: str, **changes: object) -> ModuleType:
+def with_replacements(name: str, **changes: object) -> ModuleType:
     """Return a copy of a module with some attributes replaced."""
     real = sys.modules.get(name) or _real_import(name, None, None, ("*",), 0)
     module = ModuleType(name, real.__doc__)

@@ -19,13 +19,13 @@ from typing import Any
 
 from ros_in_process.errors import NeedsRealRos
 from ros_in_process.machine import imports
-from ros_in_process.machine.imports import copied, provide, stand_in, varied
+from ros_in_process.machine.imports import provide, second_copy, simulated_module, with_replacements
 from ros_in_process.machine.scheduler import SCHEDULER, SECOND
 from ros_in_process.machine.threads import PYTHONS, thread_module
 
 
 def _threading() -> ModuleType:
-    module = copied("threading")
+    module = second_copy("threading")
     of_tests = module.__dict__["main_thread"]
 
     def main_thread() -> Any:
@@ -61,7 +61,7 @@ def _time() -> ModuleType:
     def now_if_none(convert: Callable[[float], Any]) -> Callable[..., Any]:
         return lambda seconds=None: convert(_read_system() / SECOND if seconds is None else seconds)
 
-    return varied(
+    return with_replacements(
         "time",
         sleep=_sleep,
         time=lambda: _read_system() / SECOND,
@@ -98,11 +98,11 @@ def _datetime() -> ModuleType:
         def utcnow(cls) -> Any:
             return cls.now(real_datetime.UTC).replace(tzinfo=None)
 
-    return varied("datetime", datetime=datetime, date=date)
+    return with_replacements("datetime", datetime=datetime, date=date)
 
 
 def _queue() -> ModuleType:
-    return copied("queue")
+    return second_copy("queue")
 
 
 def _c_queue() -> ModuleType:
@@ -117,28 +117,28 @@ def _no_processes(*_: object, **__: object) -> None:
 
 
 def _futures() -> ModuleType:
-    base = copied("concurrent.futures._base")
-    module = varied(
+    base = second_copy("concurrent.futures._base")
+    module = with_replacements(
         "concurrent.futures",
         **{name: value for name, value in base.__dict__.items() if not name.startswith("_")},
         _base=base,
         ProcessPoolExecutor=_no_processes,
     )
     imports._built["concurrent.futures"] = module
-    thread = copied("concurrent.futures.thread")
+    thread = second_copy("concurrent.futures.thread")
     module.__dict__.update(thread=thread, ThreadPoolExecutor=thread.ThreadPoolExecutor)
     return module
 
 
 def _concurrent() -> ModuleType:
-    return varied("concurrent", futures=stand_in("concurrent.futures"))
+    return with_replacements("concurrent", futures=simulated_module("concurrent.futures"))
 
 
 def _importlib() -> ModuleType:
     def import_module(name: str, package: str | None = None) -> ModuleType:
-        return stand_in(name) if imports.is_provided(name) else importlib.import_module(name, package)
+        return simulated_module(name) if imports.is_provided(name) else importlib.import_module(name, package)
 
-    return varied("importlib", import_module=import_module)
+    return with_replacements("importlib", import_module=import_module)
 
 
 def _uuid() -> ModuleType:
@@ -148,7 +148,7 @@ def _uuid() -> ModuleType:
     def drawn() -> real_uuid.UUID:
         return real_uuid.UUID(int=random.getrandbits(128), version=4)
 
-    return varied("uuid", uuid4=drawn, uuid1=lambda node=None, clock_seq=None: drawn())
+    return with_replacements("uuid", uuid4=drawn, uuid1=lambda node=None, clock_seq=None: drawn())
 
 
 def install() -> None:
@@ -161,11 +161,11 @@ def install() -> None:
         "threading": _threading,
         "_queue": _c_queue,
         "queue": _queue,
-        "sched": lambda: copied("sched"),
+        "sched": lambda: second_copy("sched"),
         "concurrent": _concurrent,
         "concurrent.futures": _futures,
-        "concurrent.futures._base": lambda: stand_in("concurrent.futures")._base,
-        "concurrent.futures.thread": lambda: stand_in("concurrent.futures").thread,
+        "concurrent.futures._base": lambda: simulated_module("concurrent.futures")._base,
+        "concurrent.futures.thread": lambda: simulated_module("concurrent.futures").thread,
         "datetime": _datetime,
         "importlib": _importlib,
         "uuid": _uuid,
@@ -173,4 +173,4 @@ def install() -> None:
         provide(name, build)
     imports.install()
     for name in ("threading", "queue", "concurrent.futures"):
-        stand_in(name)
+        simulated_module(name)

@@ -29,7 +29,7 @@ _NEXT = {
 _NONE, _UNKNOWN, _TERMINATED = 0, 2, 3
 
 
-class _ActionEnd(Destroyable):
+class _ActionEndpoint(Destroyable):
     """The common part of clients and servers: services and topics with names below the action's."""
 
     kind_name = ""
@@ -55,7 +55,7 @@ class _ActionEnd(Destroyable):
         return tuple(wait_set.is_ready(kind, index) for kind, index in zip(kinds, self._indices, strict=True))
 
 
-class ActionClient(_ActionEnd):
+class ActionClient(_ActionEndpoint):
     """The client of an action, which sends goals."""
 
     kind_name = "client"
@@ -129,7 +129,7 @@ def _numbered(client: Client, kind: Any) -> tuple[Any, Any]:
     return (None, None) if info is None else (info.request_id.sequence_number, response)
 
 
-class ActionServer(_ActionEnd):
+class ActionServer(_ActionEndpoint):
     """The server of an action, which carries out goals."""
 
     kind_name = "server"

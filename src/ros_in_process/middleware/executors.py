@@ -25,7 +25,7 @@ KNOWN = "752e9ecbb147dcfa2db666b8312a72cc026c82c4245a35283ca0b7ba230c1a98"
 _MODULE = "rclpy.executors"
 
 
-def hasten(_: Node) -> None:
+def speed_up_executors(_: Node) -> None:
     """Make all executors wait faster, if their source is known. Called for each new node."""
     executor = getattr(sys.modules.get(_MODULE), "Executor", None)
     if executor is None or hasattr(executor, "_simulation_seen"):
@@ -54,11 +54,11 @@ def wait_for_ready_callbacks(
     has_yielded = False
     while not has_yielded and not self._is_shutdown and not condition():
         of_nodes = self.get_nodes() if nodes is None else nodes
-        for task in _under_way(self, of_nodes) if self._tasks else ():
+        for task in _begun_tasks(self, of_nodes) if self._tasks else ():
             has_yielded = True
             yield task
         with ExitStack() as in_use:
-            gathered = _Gathered.by(self, of_nodes)
+            gathered = _GatheredEntities.by(self, of_nodes)
             wait_set = gathered.put_in_use(self._context, in_use)
             knows_all = gathered.is_plain and not has_yielded and not self._tasks
             wait_set.wait_until(end, polls=timeout == 0, known=self._guard.handle if knows_all else None)
@@ -85,7 +85,7 @@ def wait_for_ready_callbacks(
         raise rclpy.ConditionReachedException
 
 
-def _under_way(executor: Any, nodes: list[Any]) -> Iterator[tuple[Any, Any, Any]]:
+def _begun_tasks(executor: Any, nodes: list[Any]) -> Iterator[tuple[Any, Any, Any]]:
     """Yield tasks that have begun and can continue; forget those that are done."""
     for task, entity, node in list(executor._tasks):
         if not task.executing() and not task.done() and (node is None or node in nodes):
@@ -119,7 +119,7 @@ def _may_begin(entity: Any) -> bool:
     return entity.callback_group is not None and entity.callback_group.can_execute(entity)
 
 
-class _Gathered:
+class _GatheredEntities:
     """The entities of an executor's nodes that may be executed now.
 
     Attributes:
@@ -168,7 +168,7 @@ class _Gathered:
         self._may_be_kept = is_ours and is_whole and all(type(one) in known for one in self._groups)
 
     @classmethod
-    def by(cls, executor: Any, nodes: list[Any]) -> _Gathered:
+    def by(cls, executor: Any, nodes: list[Any]) -> _GatheredEntities:
         """Gather the entities, or return the last result if nothing has changed."""
         entities: list[Any] = []
         for node in nodes:
@@ -178,7 +178,7 @@ class _Gathered:
             entities += node.services
             entities += node.guards
             entities += node.waitables
-        found: _Gathered | None = executor.__dict__.get("_simulation_gathered")
+        found: _GatheredEntities | None = executor.__dict__.get("_simulation_gathered")
         if found is None or not found._still_holds(executor, nodes, entities):
             found = executor._simulation_gathered = cls(executor, nodes, entities)
         for guard in found._of_nodes:

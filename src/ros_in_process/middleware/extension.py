@@ -119,4 +119,4 @@ def install() -> None:
     sys.modules[MODULE] = module
     messages.install()
     logs.install()
-    graph.WORLD.on_node += [_number_in_sets, executors.hasten]
+    graph.WORLD.on_node += [_number_in_sets, executors.speed_up_executors]

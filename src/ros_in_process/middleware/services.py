@@ -26,7 +26,7 @@ _CONTENTS = service_introspection.ServiceIntrospectionState.CONTENTS
 REQUEST_SENT, REQUEST_RECEIVED, RESPONSE_SENT, RESPONSE_RECEIVED = range(4)
 
 
-class _ServiceEnd(Endpoint):
+class _ServiceEndpoint(Endpoint):
     """The common part of clients and servers."""
 
     def __init__(self, node: Node, kind: Any, name: str, profile: Any) -> None:
@@ -116,7 +116,7 @@ def _meet(client: Client, service: Service) -> None:
         service.matched.append(client)
 
 
-class Client(_ServiceEnd):
+class Client(_ServiceEndpoint):
     """The client of a service."""
 
     role = "client"
@@ -158,7 +158,7 @@ class Client(_ServiceEnd):
         return info, response
 
 
-class Service(_ServiceEnd):
+class Service(_ServiceEndpoint):
     """The server of a service."""
 
     role = "service"

@@ -105,7 +105,7 @@ class WaitSet(Destroyable):
         self._look(end)
         is_preemptive = SCHEDULER.is_preemptive
         if not polls and not is_preemptive and known is not None and known.is_ready and not self.is_over:
-            self._pass_over(known)
+            self._reset_guard(known)
         if not polls and not self.is_over and not self._is_any_ready():
             self._park(end)
         elif not polls and is_preemptive:
@@ -128,7 +128,7 @@ class WaitSet(Destroyable):
     def _is_any_ready(self) -> bool:
         return any(map(any, self._ready.values()))
 
-    def _pass_over(self, known: GuardCondition) -> None:
+    def _reset_guard(self, known: GuardCondition) -> None:
         """Reset a guard condition if nothing else is ready."""
         if sum(map(sum, self._ready.values())) == 1:
             known.is_ready = False

@@ -18,7 +18,7 @@ from types import ModuleType
 from typing import Any
 
 from ros_in_process.errors import NeedsRealRos, note
-from ros_in_process.machine.imports import provide, stand_in
+from ros_in_process.machine.imports import provide, simulated_module
 from ros_in_process.machine.scheduler import SCHEDULER
 from ros_in_process.processes.process import MAIN, STARTED, Process, current
 
@@ -118,7 +118,7 @@ class _SharedObject:
 
 
 def _queue_class(name: str) -> type:
-    base = getattr(stand_in("queue"), name)
+    base = getattr(simulated_module("queue"), name)
 
     def put(self: Any, item: Any, block: bool = True, timeout: float | None = None) -> None:
         base.put(self, pickle.loads(pickle.dumps(item)), block, timeout)
@@ -151,7 +151,7 @@ class Connection(_SharedObject):
 class _SharedValue(_SharedObject):
     def __init__(self, kind: object, value: Any = 0, *, lock: object = True) -> None:
         self.value = value
-        self._lock = stand_in("threading").RLock()
+        self._lock = simulated_module("threading").RLock()
 
     def get_lock(self) -> Any:
         return self._lock
@@ -160,7 +160,7 @@ class _SharedValue(_SharedObject):
 class _SharedArray(_SharedObject, list[Any]):
     def __init__(self, kind: object, content: Any, *, lock: object = True) -> None:
         super().__init__([0] * content if isinstance(content, int) else content)
-        self._lock = stand_in("threading").RLock()
+        self._lock = simulated_module("threading").RLock()
 
     def get_lock(self) -> Any:
         return self._lock
@@ -176,7 +176,7 @@ def _needs_real(what: str) -> Callable[..., Any]:
 def _multiprocessing() -> ModuleType:
     import multiprocessing as real  # noqa: PLC0415  (needed only where a project uses it)
 
-    threading = stand_in("threading")
+    threading = simulated_module("threading")
     queue = _queue_class("Queue")
 
     def pipe(duplex: bool = True) -> tuple[Connection, Connection]:

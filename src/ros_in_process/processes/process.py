@@ -17,7 +17,7 @@ from itertools import count
 from typing import Any
 
 from ros_in_process.errors import NeedsRealRos
-from ros_in_process.machine.imports import is_decided, is_of_project, stand_in
+from ros_in_process.machine.imports import is_decided, is_of_project, simulated_module
 from ros_in_process.machine.scheduler import SCHEDULER, SECOND, SimulatedThread
 from ros_in_process.middleware import signals
 from ros_in_process.middleware.graph import WORLD, Destroyable, Participant
@@ -104,7 +104,7 @@ class Process:
         self.main_task = SCHEDULER.spawn(lambda: self._live(run), self)
 
     def _live(self, run: Callable[[], object]) -> None:
-        threading = stand_in("threading")
+        threading = simulated_module("threading")
         self.main_thread = threading._DummyThread()
         self.main_thread._name = "MainThread"
         status = self._status_of(run)
@@ -153,7 +153,7 @@ class Process:
                 SCHEDULER.call_at(SCHEDULER.now + lease, end.lose_liveliness)  # type: ignore[attr-defined]
         SCHEDULER.call_at(SCHEDULER.now + _LEASE, partial(_remove_from_graph, contexts))
 
-    def end_in_midst(self, anew: bool) -> None:
+    def end_from_thread(self, anew: bool) -> None:
         """Kill the process from one of its threads; with `anew`, restart it with the same process id."""
         if not anew or self._run is None:
             self.kill(signal.SIGKILL)
@@ -303,7 +303,7 @@ def _of(thread: SimulatedThread) -> Process:
 def end_of_current() -> Callable[[bool], object] | None:
     """Return a function that ends the process of the running thread; None for the tests' process."""
     process = current()
-    return None if process is MAIN else process.end_in_midst
+    return None if process is MAIN else process.end_from_thread
 
 
 def _is_own(name: str, module: Any) -> bool:

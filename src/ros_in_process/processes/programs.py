@@ -16,9 +16,9 @@ from types import CodeType, ModuleType
 from typing import Any
 
 from ros_in_process.errors import NeedsRealRos
-from ros_in_process.machine.imports import add_root, copied, is_of_project, provide
+from ros_in_process.machine.imports import add_root, is_of_project, provide, second_copy
 from ros_in_process.machine.scheduler import SCHEDULER
-from ros_in_process.processes import outside
+from ros_in_process.processes import real_processes
 from ros_in_process.processes.process import STARTED, Pipe, Process
 
 _FLAGS_WITH_VALUE = {"-W", "-X", "--check-hash-based-pycs"}
@@ -46,9 +46,9 @@ class _Program:
 
 def _program_of(words: list[str], folder: str) -> _Program | None:
     """Return the simulated program that a command starts; None for any other program."""
-    if outside.starts_nodes(words[0]):
-        raise outside.refused(words)
-    if outside.is_python(words[0]):
+    if real_processes.starts_nodes(words[0]):
+        raise real_processes.refused(words)
+    if real_processes.is_python(words[0]):
         rest = words[1:]
         while rest and rest[0].startswith("-") and rest[0] not in {"-m", "-c"}:
             rest = rest[2:] if rest[0] in _FLAGS_WITH_VALUE else rest[1:]
@@ -106,7 +106,7 @@ class Popen:
     """`subprocess.Popen`, by which a program of the project becomes a simulated process."""
 
     def __new__(cls, args: Any, *others: Any, **options: Any) -> Any:
-        words = outside.words_of(args)
+        words = real_processes.words_of(args)
         folder = os.fspath(options.get("cwd") or os.getcwd())
         program = None if options.get("shell") or not words else _program_of(words, folder)
         if program is None:
@@ -148,7 +148,7 @@ class Popen:
         elif wanted == real_subprocess.DEVNULL:
             streams[name] = open(os.devnull, "r+")  # noqa: SIM115  (the process has it)
         elif hasattr(wanted, "write"):
-            streams[name] = _Into(wanted)
+            streams[name] = _ProcessFile(wanted)
         else:
             raise NeedsRealRos(f"a process's {name} is given as {wanted!r}")
         return None
@@ -194,7 +194,7 @@ class Popen:
         self.wait()
 
 
-class _Into:
+class _ProcessFile:
     """Writes text to a file that another process has opened."""
 
     encoding = "utf-8"
@@ -216,7 +216,7 @@ class _Into:
 
 
 def _subprocess() -> ModuleType:
-    module = copied("subprocess")
+    module = second_copy("subprocess")
     for name in ("CalledProcessError", "TimeoutExpired", "SubprocessError", "CompletedProcess"):
         setattr(module, name, getattr(real_subprocess, name))
     module.Popen = Popen  # type: ignore[attr-defined]
@@ -226,4 +226,4 @@ def _subprocess() -> ModuleType:
 def install() -> None:
     """Provide `subprocess` to the modules that see the simulation."""
     provide("subprocess", _subprocess)
-    outside.install(_program_of)
+    real_processes.install(_program_of)

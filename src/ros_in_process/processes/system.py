@@ -11,7 +11,7 @@ from types import ModuleType
 from typing import Any
 
 from ros_in_process.errors import NeedsRealRos, note
-from ros_in_process.machine.imports import provide, varied
+from ros_in_process.machine.imports import provide, with_replacements
 from ros_in_process.machine.scheduler import SCHEDULER
 from ros_in_process.middleware import signals
 from ros_in_process.processes.process import MAIN, STARTED, current, process_of
@@ -48,7 +48,7 @@ def _fork() -> int:
 
 def _os() -> ModuleType:
     """Return `os` without fork hooks: a fork copies simulated threads, so nothing needs repair after it."""
-    module = varied(
+    module = with_replacements(
         "os",
         kill=_kill,
         killpg=_kill,
@@ -76,7 +76,7 @@ def _handle(signum: int, handler: Any) -> Any:
 
 
 def _signal() -> ModuleType:
-    return varied(
+    return with_replacements(
         "signal",
         signal=_handle,
         getsignal=lambda signum: current().handlers.get(signum, real_signal.getsignal(signum)),
@@ -93,7 +93,7 @@ def _at_exit(function: Callable[..., object], *args: Any, **kwargs: Any) -> Call
 
 
 def _atexit() -> ModuleType:
-    return varied("atexit", register=_at_exit)
+    return with_replacements("atexit", register=_at_exit)
 
 
 class Socket(real_socket.socket):
@@ -105,7 +105,7 @@ class Socket(real_socket.socket):
 
 
 def _socket() -> ModuleType:
-    return varied("socket", socket=Socket)
+    return with_replacements("socket", socket=Socket)
 
 
 def install() -> None:

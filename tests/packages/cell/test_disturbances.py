@@ -18,8 +18,8 @@ from mutabot_cell import Belt, Box, Cell, Scene, SensorError, disturbances, sens
 from mutabot_cell.scene import CONVEYOR, TARGET_TABLE
 from mutabot_cell.simulation import TICK
 from mutabot_world.change import NumberChange
-from mutabot_world.sizes import in_si
 from mutabot_world.tables import ParameterFile, ParameterTable
+from mutabot_world.units import in_si
 
 SHIPPED = Path(mutabot_cell.__file__).with_name("world.toml")
 PARAMETERS = ParameterFile.model_validate(tomllib.loads(SHIPPED.read_text(encoding="utf-8"))).parameter

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from mutabot_cell import Belt, Cell, Fixture, LightBarrier, Scene
-from mutabot_cell.shown.looks import arm, gripper
-from mutabot_cell.shown.looks.style import HIDDEN, LOOKS, named
-from mutabot_cell.shown.looks.trace import draw_trace
-from mutabot_cell.shown.looks.visual import VisualModel
+from mutabot_cell.display.looks import arm, gripper
+from mutabot_cell.display.looks.style import HIDDEN, LOOKS, named
+from mutabot_cell.display.looks.trace import draw_trace
+from mutabot_cell.display.looks.visual import VisualModel
 
 WORKER = """
 import sys

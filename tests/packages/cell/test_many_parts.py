@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from mutabot_cell import Box, Cell, Scene
+from mutabot_cell.display.contacts import Contacts
 from mutabot_cell.models.sleeping import MANY
-from mutabot_cell.shown.contacts import Contacts
 
 ENABLE, DISABLE = mujoco.mjtEnableBit, mujoco.mjtDisableBit
 

@@ -14,9 +14,9 @@ import pytest
 from mutabot.api.processes import SharedMemory
 from mutabot_cell import Box, Cell, CellError, MotionRefused, Scene, gen3, stepping
 from mutabot_cell.fingerprint import Fingerprint
+from mutabot_cell.integrity import MOTIONS, CodeRecord, are_original
 from mutabot_cell.motion.kinematics import Kinematics
 from mutabot_cell.motion.trajectory import joint_motion
-from mutabot_cell.originals import MOTIONS, Originals, are_original
 
 from .memory import remembering
 
@@ -45,7 +45,7 @@ def steps(monkeypatch: pytest.MonkeyPatch) -> Callable[[], int]:
 
     monkeypatch.setattr(mujoco, "mj_step", step)
     monkeypatch.setattr(
-        Originals, "are_in_place", lambda *_: True
+        CodeRecord, "are_unchanged", lambda *_: True
     )  # to count is to put something in its place
     return asked
 
@@ -197,7 +197,7 @@ def test_a_motion_is_planned_once(monkeypatch: pytest.MonkeyPatch) -> None:
         return original(self, *given)
 
     monkeypatch.setattr(Kinematics, "follow", follow)
-    monkeypatch.setattr(Originals, "are_in_place", lambda *_: True)  # although it was put in place
+    monkeypatch.setattr(CodeRecord, "are_unchanged", lambda *_: True)  # although it was put in place
     for _ in range(2):
         cell = Cell(1)
         cell.arm.move_by(z=0.02)
@@ -276,11 +276,11 @@ def test_what_was_stepped_by_something_else_is_not_remembered(
 def test_ticks_are_remembered_only_while_all_that_makes_them_is_in_place(
     target: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    assert stepping._ORIGINALS.are_in_place()
+    assert stepping._ORIGINALS.are_unchanged()
     with monkeypatch.context() as patch:
         patch.setattr(target, object())
-        assert not stepping._ORIGINALS.are_in_place()
-    assert stepping._ORIGINALS.are_in_place()
+        assert not stepping._ORIGINALS.are_unchanged()
+    assert stepping._ORIGINALS.are_unchanged()
 
 
 @pytest.mark.parametrize(

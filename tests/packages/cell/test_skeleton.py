@@ -11,8 +11,8 @@ import pytest
 from mutabot.evidence import recorder
 from mutabot.evidence.paths import RecordedPaths
 from mutabot_cell import Cell, robots
+from mutabot_cell.display.skeleton import skeleton_of
 from mutabot_cell.models.robot import RobotModel
-from mutabot_cell.shown.skeleton import skeleton_of
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ CODE = '''
 import builtins, importlib, os, pickle
 from distributed import get_worker
 from distributed.protocol.serialize import ToPickle
-from mutabot_dask import far
+from mutabot_dask import worker_side
 
 wire = importlib.import_module("distributed.protocol.serialize")
 
@@ -85,7 +85,7 @@ attacks = {name: attack for name, attack in list(globals().items()) if name.star
 def attack(name, file):
     return attacks[name](file)
 
-far.introduce = attack
+worker_side.introduce = attack
 
 evaluate = builtins.eval
 def bare(source, *scopes):
@@ -109,10 +109,10 @@ from mutabot.execution.answer import Answer
 from mutabot.execution.task import Result
 from mutabot.model.events import ForkTestEnd, SessionEnd
 from mutabot.model.events import TestEnd
-from mutabot_dask import far
+from mutabot_dask import worker_side
 from mutabot_dask.unit import UnitAnswer, WorkUnit
 
-honest = far.run_unit
+honest = worker_side.run_unit
 
 def run_unit(data):
     unit = WorkUnit.of(data)
@@ -124,7 +124,7 @@ def run_unit(data):
     answer = Answer([killed, forged, SessionEnd(1)], Result(unit.task))
     return UnitAnswer(answer, ticket=unit.ticket).data(unit.ground.root)
 
-far.run_unit = run_unit
+worker_side.run_unit = run_unit
 """
 #: values that nobody would send
 ODD = (

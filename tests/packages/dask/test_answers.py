@@ -36,10 +36,10 @@ from mutabot.model.job import Forking, Job
 from mutabot.model.mutant import Place
 from mutabot_dask.bundle import Bundle
 from mutabot_dask.dispatch import Dispatch
-from mutabot_dask.far import WorkerSession
-from mutabot_dask.link import News
+from mutabot_dask.link import WorkerReply
 from mutabot_dask.roster import Roster
-from mutabot_dask.unit import Ground, Introduction, Misfit, UnitAnswer, WorkUnit
+from mutabot_dask.unit import Introduction, InvalidData, SharedData, UnitAnswer, WorkUnit
+from mutabot_dask.worker_side import WorkerSession
 
 from .hostile import ODD
 
@@ -53,7 +53,7 @@ END = TestEnd(
     returned=(["arm", [1.5]], ["run", {"raised": "no way"}]), moments=([1, {"robot:Arm.x": 0.5}, True],),
 )  # fmt: skip
 SITE_LINE, END_LINE = 0, 4
-GROUND = Ground("digest", "/of/the/controller", "", (), {})
+GROUND = SharedData("digest", "/of/the/controller", "", (), {})
 
 
 def mutant(number: int) -> Mutant:
@@ -159,12 +159,12 @@ _WRONG: dict[str, bytes] = {
 
 @pytest.mark.parametrize("data", _WRONG.values(), ids=_WRONG.keys())
 def test_what_is_no_answer_to_a_unit_is_told(data: bytes) -> None:
-    with pytest.raises(Misfit, match=r".{4}"):
+    with pytest.raises(InvalidData, match=r".{4}"):
         UnitAnswer.of(data, unit())
 
 
 def test_an_answer_of_absurd_size_is_not_read() -> None:
-    with pytest.raises(Misfit, match=f"more than {MOST_BYTES}"):
+    with pytest.raises(InvalidData, match=f"more than {MOST_BYTES}"):
         UnitAnswer.of(packed(good()) + b" " * MOST_BYTES, unit())
 
 
@@ -173,13 +173,13 @@ def test_a_fork_parent_tells_of_its_own_mutants_only() -> None:
     data["lines"].append(event_to_data(ForkTestEnd(mutant(1).id, replace(END, trace=()))))
     assert sum(isinstance(line, ForkTestEnd) for line in events_of(packed(data), fork_parent())) == 1
     data["lines"].append(event_to_data(ForkTestEnd(mutant(2).id, replace(END, trace=()))))
-    with pytest.raises(Misfit, match="is not a mutant of this task"):
+    with pytest.raises(InvalidData, match="is not a mutant of this task"):
         UnitAnswer.of(packed(data), fork_parent())
 
 
 def test_the_unmutated_program_has_the_tests_of_its_unit_and_a_mutant_may_make_others() -> None:
     data = changed(lambda a: a["lines"][END_LINE].update(test="tests/test_other.py::test"))
-    with pytest.raises(Misfit, match="is not a test of this task"):
+    with pytest.raises(InvalidData, match="is not a test of this task"):
         UnitAnswer.of(data, fork_parent())
     ends = [line for line in events_of(data, unit()) if isinstance(line, TestEnd)]
     assert [line.test for line in ends] == ["tests/test_other.py::test"]
@@ -194,7 +194,7 @@ def test_texts_can_be_stored() -> None:
 def test_a_worker_does_not_send_what_would_not_be_taken(tmp_path: Path) -> None:
     """What its process reports is the mutant's doing, not the worker's: it is not left out for it."""
     session = WorkerSession(tmp_path, GROUND)
-    data = session._fitting(changed(lambda a: a["lines"][END_LINE].update(hits="many")), unit())
+    data = session._acceptable(changed(lambda a: a["lines"][END_LINE].update(hits="many")), unit())
     answer = UnitAnswer.of(data, unit())
     assert answer.lost is not None
     assert "events[4] (TestEnd): TypeError: a whole number was expected, not str" in answer.lost
@@ -229,7 +229,7 @@ class FakeLink:
     address = "tls://nowhere:1"
 
     def __init__(self, odd: dict[int, bytes]) -> None:
-        self.news: queue.SimpleQueue[News] = queue.SimpleQueue()
+        self.replies: queue.SimpleQueue[WorkerReply] = queue.SimpleQueue()
         self.workers = {f"tls://worker{number}:1": 1 for number in range(len(odd) + 5)}
         self._odd, self._numbers = odd, count(1)
 
@@ -244,7 +244,7 @@ class FakeLink:
                 odd = self._odd[asked.task.job.mutant.number]
                 data = odd.replace(b'"ticket": "*"', b'"ticket": "' + asked.ticket.encode() + b'"')
             answer = data
-        self.news.put(News(number, answer))
+        self.replies.put(WorkerReply(number, answer))
         return number
 
     def forget(self, *numbers: int) -> None:
@@ -264,7 +264,7 @@ class FakeCluster:
     def tell(self, text: str) -> None:
         self.told.append(text)
 
-    def look_after(self) -> None:
+    def restart_workers(self) -> None:
         pass
 
 

@@ -12,7 +12,7 @@ import pytest
 
 from mutabot_dask.bundle import Bundle
 from mutabot_dask.environment import apply, decided, differences, module_folders
-from mutabot_dask.far import Store
+from mutabot_dask.worker_side import Store
 
 from .clusters import shipment_of
 

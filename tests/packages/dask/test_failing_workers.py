@@ -12,7 +12,7 @@ from mutabot.execution.answer import Answer
 from mutabot.execution.task import Result
 from mutabot_dask import dispatch as dispatching
 from mutabot_dask.dispatch import Dispatch
-from mutabot_dask.link import News
+from mutabot_dask.link import WorkerReply
 from mutabot_dask.unit import Introduction, WorkUnit
 
 from .test_answers import FakeCluster, FakeLink, good, packed, task
@@ -34,14 +34,18 @@ class Link(FakeLink):
     def ask(self, worker: str, function: Callable[..., bytes], *given: Any) -> int:
         number = next(self._ids)
         if function.__name__ != "run_unit":
-            self.news.put(News(number, Introduction({}, has=True).data()))
+            self.replies.put(WorkerReply(number, Introduction({}, has=True).data()))
             return number
         asked = WorkUnit.of(given[0])
         assert asked.task.job.mutant is not None
         mutant = asked.task.job.mutant.number
         self.given.append((worker, mutant))
         failed = self._fails(worker, mutant)
-        self.news.put(News(number, None, "no space") if failed else News(number, packed(good(asked.ticket))))
+        self.replies.put(
+            WorkerReply(number, None, "no space")
+            if failed
+            else WorkerReply(number, packed(good(asked.ticket)))
+        )
         return number
 
 

@@ -11,8 +11,8 @@ import pytest
 from mutabot.cli.app import main
 from mutabot.errors import UsageError
 from mutabot.model import Verdict
-from mutabot_dask import far, guard
-from mutabot_dask.link import Link, News, shown
+from mutabot_dask import guard, worker_side
+from mutabot_dask.link import Link, WorkerReply, one_line
 from tests.campaign.project import outcomes
 
 from .clusters import cluster, strange_worker, until, write
@@ -33,12 +33,12 @@ def link(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Link]:
             process.kill()
 
 
-def ask(link: Link, *given: str) -> News:
+def ask(link: Link, *given: str) -> WorkerReply:
     (worker,) = link.workers
-    number = link.ask(worker, far.introduce, *given)
-    news = link.news.get(timeout=60)
-    assert news.asked == number
-    return news
+    number = link.ask(worker, worker_side.introduce, *given)
+    reply = link.replies.get(timeout=60)
+    assert reply.asked == number
+    return reply
 
 
 def ran_here(file: Path) -> bool:
@@ -48,8 +48,8 @@ def ran_here(file: Path) -> bool:
 @pytest.mark.whole
 @pytest.mark.parametrize("attack", ATTACKS)
 def test_nothing_that_a_worker_sends_is_unpickled(attack: str, link: Link, tmp_path: Path) -> None:
-    news = ask(link, attack, str(tmp_path / "ran"))
-    assert (news.data, news.is_foreign) == ((b"{}", False) if attack == "as_warning" else (None, True))
+    reply = ask(link, attack, str(tmp_path / "ran"))
+    assert (reply.data, reply.is_foreign) == ((b"{}", False) if attack == "as_warning" else (None, True))
     assert ask(link, "as_bytes", "").data == b"{}"  # others are still heard
     assert not ran_here(tmp_path / "ran")
 
@@ -61,8 +61,8 @@ def test_dask_in_which_nothing_can_be_closed_is_refused(monkeypatch: pytest.Monk
 
 
 def test_what_a_worker_says_does_nothing_to_a_terminal() -> None:
-    assert shown("\x1b[2Jgone\n\ud800" + "x" * 5000).startswith("�[2Jgone��xxx")
-    assert len(shown("x" * 5000)) == 1000
+    assert one_line("\x1b[2Jgone\n\ud800" + "x" * 5000).startswith("�[2Jgone��xxx")
+    assert len(one_line("x" * 5000)) == 1000
 
 
 @pytest.mark.whole

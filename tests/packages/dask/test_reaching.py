@@ -87,7 +87,7 @@ def test_nobody_at_an_address(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 NO_ROOM = """
-from mutabot_dask.far import Store
+from mutabot_dask.worker_side import Store
 def take(*given):
     raise OSError(28, "No space left on device")
 Store.take = take
@@ -122,8 +122,8 @@ def test_a_worker_that_cannot_take_part_is_told_and_lives_on(
 
 def _has_refused(roster: Roster) -> bool:
     roster.update()
-    while not roster.link.news.empty():
-        roster.take(roster.link.news.get())
+    while not roster.link.replies.empty():
+        roster.take(roster.link.replies.get())
     return bool(roster.refusals)
 
 

@@ -7,12 +7,12 @@ from pathlib import Path
 from mutabot.execution.task import Task
 from mutabot.model import Vocabulary
 from mutabot.model.job import Job
-from mutabot_dask.far import WorkerSession
-from mutabot_dask.unit import Ground, UnitAnswer, WorkUnit
+from mutabot_dask.unit import SharedData, UnitAnswer, WorkUnit
+from mutabot_dask.worker_side import WorkerSession
 
 
 def test_what_is_wrong_with_a_workers_folder_names_it_as_it_is_there(tmp_path: Path) -> None:
-    ground = Ground("digest", "/of/the/controller", "", (), {})
+    ground = SharedData("digest", "/of/the/controller", "", (), {})
     session = WorkerSession(tmp_path / "gone", ground)
     job = Job(ground.root, ("mission.py",), (), Vocabulary(()), seed=1, round=0)
     unit = WorkUnit(ground, Task(None, job), "ticket")

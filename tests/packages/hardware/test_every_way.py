@@ -24,8 +24,8 @@ from mutabot.errors import PathError
 from mutabot.model import Call, Operation
 from mutabot.runtime.interception.adapter import Adapter, Invocation
 from mutabot.runtime.interception.guarding import CallGuard, CallGuards, GuardedCall, OperationGuard
+from mutabot_hardware.command_guard import unreadable
 from mutabot_hardware.guard import TableGuard
-from mutabot_hardware.watch import unreadable
 
 VOCABULARY = """
     [[operation]]

@@ -15,7 +15,7 @@ from mutabot.errors import UsageError
 from mutabot.model import Call, Kind, Operation, Path, Quantity
 from mutabot.model.quantity import Mode
 from mutabot_hardware.choice import HardwareChoice
-from mutabot_hardware.guard import TableGuard, why_idle
+from mutabot_hardware.guard import TableGuard, idle_part
 from mutabot_hardware.tables import GuardTable, HardwareTable
 
 
@@ -145,9 +145,9 @@ def test_the_rules_of_all_tools_hold_until_a_tool_is_known() -> None:
 
 def test_who_says_which_tool_is_mounted_is_an_operation_of_the_vocabulary() -> None:
     table = {"tool": "robot:tool name", "box": [{"z": [0.5, 0.9]}]}
-    assert why_idle(GuardTable.model_validate(table), [MOVE, CHANGE]) is None
+    assert idle_part(GuardTable.model_validate(table), [MOVE, CHANGE]) is None
     for lost in ("robot:tool title", "robot:tools name", "robot:tool"):
-        said = why_idle(GuardTable.model_validate({**table, "tool": lost}), [MOVE, CHANGE])
+        said = idle_part(GuardTable.model_validate({**table, "tool": lost}), [MOVE, CHANGE])
         assert said is not None
         assert repr(lost) in said
 

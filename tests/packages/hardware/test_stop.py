@@ -16,9 +16,9 @@ import pytest
 
 from mutabot.model import Call, Operation
 from mutabot.model.operation import Pattern
-from mutabot_hardware.leave import Leave
+from mutabot_hardware.command_guard import SOCKET_VARIABLE, HardwareGuard
 from mutabot_hardware.log import HardwareLog
-from mutabot_hardware.watch import SOCKET_VARIABLE, HardwareGuard
+from mutabot_hardware.permission import Permissions
 
 MOVE = Operation("robot:move", command=True)
 #: a sender that asks the guard before each line, what gets the lines, and stops at random moments
@@ -26,16 +26,16 @@ MOMENTS = """
     import contextlib, json, os, random, signal, socket, sys, time
     from pathlib import Path
     from mutabot.model import Call, Operation
-    from mutabot_hardware.leave import Leave
+    from mutabot_hardware.permission import Permissions
     from mutabot_hardware.log import HardwareLog
-    from mutabot_hardware.watch import HardwareGuard
+    from mutabot_hardware.command_guard import HardwareGuard
 
     many, folder = int(sys.argv[1]), Path(sys.argv[2])
     listening = socket.create_server(("127.0.0.1", 0))
     draw, found = random.Random(1).uniform, []
     for number in range(many):
         stack = contextlib.ExitStack()
-        leave = stack.enter_context(Leave(HardwareLog(folder / "log")))
+        leave = stack.enter_context(Permissions(HardwareLog(folder / "log")))
         stack.enter_context(leave.given())
         child = os.fork()
         if child == 0:
@@ -75,8 +75,8 @@ def test_after_a_stop_at_a_random_moment_nothing_more_is_sent(tmp_path: Path, ma
 
 
 @pytest.fixture
-def leave(tmp_path: Path) -> Iterator[Leave]:
-    with Leave(HardwareLog(tmp_path / "log")) as found:
+def leave(tmp_path: Path) -> Iterator[Permissions]:
+    with Permissions(HardwareLog(tmp_path / "log")) as found:
         yield found
 
 
@@ -84,14 +84,14 @@ def why(call: Call = Call(MOVE), unread: Mapping[str, str] = {}) -> str | None: 
     return HardwareGuard({"enabled": True}).why_not(call, unread)
 
 
-def test_nothing_goes_out_before_a_run_and_after_it(leave: Leave) -> None:
+def test_nothing_goes_out_before_a_run_and_after_it(leave: Permissions) -> None:
     assert why() == "no run has begun"
     with leave.given():
         assert why() is None
     assert why() == "no run has begun"
 
 
-def test_after_a_stop_no_run_goes_out_any_more(leave: Leave) -> None:
+def test_after_a_stop_no_run_goes_out_any_more(leave: Permissions) -> None:
     with leave.given():
         leave.stop("a surprise")
         leave.stop("something else")
@@ -100,14 +100,14 @@ def test_after_a_stop_no_run_goes_out_any_more(leave: Leave) -> None:
         assert why() == "a surprise"
 
 
-def test_each_command_is_in_the_log_before_it_goes_out(leave: Leave, tmp_path: Path) -> None:
+def test_each_command_is_in_the_log_before_it_goes_out(leave: Permissions, tmp_path: Path) -> None:
     with leave.given():
         assert why(Call(MOVE, values={"x": 0.3})) is None
         line = json.loads((tmp_path / "log").read_text(encoding="utf-8"))
         assert (line["sent"], line["values"]) == ("robot:move", {"x": 0.3})
 
 
-def test_a_default_timeout_of_sockets_does_not_keep_a_command_back(leave: Leave) -> None:
+def test_a_default_timeout_of_sockets_does_not_keep_a_command_back(leave: Permissions) -> None:
     socket.setdefaulttimeout(1.0)  # as xarm-python-sdk does
     try:
         with leave.given():
@@ -117,20 +117,20 @@ def test_a_default_timeout_of_sockets_does_not_keep_a_command_back(leave: Leave)
         socket.setdefaulttimeout(None)
 
 
-def test_what_cannot_be_written_to_the_log_does_not_go_out(leave: Leave, tmp_path: Path) -> None:
+def test_what_cannot_be_written_to_the_log_does_not_go_out(leave: Permissions, tmp_path: Path) -> None:
     with leave.given():
         (tmp_path / "log").unlink()
         assert "the log does not have it" in str(why())
 
 
-def test_what_cannot_be_read_does_not_go_out(leave: Leave) -> None:
+def test_what_cannot_be_read_does_not_go_out(leave: Permissions) -> None:
     with leave.given():
         text = Operation("link:send", patterns=(Pattern("height {z:g}"),))
         assert "none of the commands that the vocabulary describes" in str(why(Call(text)))
         assert why(unread={"arguments.x": "it is a box"}) == "it cannot be read: it is a box"
 
 
-def test_a_command_of_which_no_argument_is_described_goes_out_with_flags_alone(leave: Leave) -> None:
+def test_a_command_of_which_no_argument_is_described_goes_out_with_flags_alone(leave: Permissions) -> None:
     def given(*args: object, **kwargs: object) -> Call:
         return Call(MOVE, payload=SimpleNamespace(args=args, kwargs=kwargs))
 
@@ -143,7 +143,7 @@ def test_a_command_of_which_no_argument_is_described_goes_out_with_flags_alone(l
         assert len(str(why(given([9.0] * 100, wait=True)))) < 150  # a message is no list
 
 
-def test_a_controller_that_is_gone_lets_nothing_pass(leave: Leave) -> None:
+def test_a_controller_that_is_gone_lets_nothing_pass(leave: Permissions) -> None:
     with leave.given():
         guard = HardwareGuard({"enabled": True})
         assert guard.why_not(Call(MOVE), {}) is None

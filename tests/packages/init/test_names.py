@@ -10,10 +10,10 @@ import pytest
 from mutabot.config.vocabulary import load_vocabulary
 from mutabot.model.operation import Form
 from mutabot_init.messages import MessagePlace, entries, meaning
+from mutabot_init.observations import Use, Values, WatchedCalls, WatchedPart
 from mutabot_init.observe import merged
-from mutabot_init.operations import _swapped
+from mutabot_init.operations import _with_opposites
 from mutabot_init.text import entry_text, vocabulary_text
-from mutabot_init.watched import Use, Values, WatchedCalls, WatchedPart
 from mutabot_init.watching.values import look, type_of
 
 HEADER = "std_msgs/Header"
@@ -305,4 +305,4 @@ def test_messages_of_both_generations_are_described_without_their_packages() -> 
     ],
 )
 def test_an_opposite_is_a_whole_word_in_any_way_of_writing(name: str, opposites: set[str]) -> None:
-    assert {*_swapped(name)} == opposites
+    assert {*_with_opposites(name)} == opposites

@@ -20,8 +20,8 @@ from mutabot.config.vocabulary import load_vocabulary
 from mutabot.errors import UsageError
 from mutabot.model import Kind, Mode
 from mutabot_init.guess import NameContext, guess_argument, guess_elements, guess_reading
+from mutabot_init.observations import WatchedPart
 from mutabot_init.propose import propose
-from mutabot_init.watched import WatchedPart
 from mutabot_init.words import words_of
 
 ROBOT = '''

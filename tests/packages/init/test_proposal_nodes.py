@@ -11,8 +11,8 @@ import pytest
 from mutabot.campaign.preparation import check
 from mutabot.config.vocabulary import load_vocabulary
 from mutabot.model import Kind
+from mutabot_init.observations import WatchedCallable
 from mutabot_init.propose import propose
-from mutabot_init.watched import WatchedCallable
 from mutabot_init.watching.callee import any_method
 from mutabot_init.watching.watch import _command, _Seen
 from tests.campaign.project import Quiet, request_for

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from mutabot_init.beside import started
 from mutabot_init.layout import other_files
+from mutabot_init.proposers import started
 from mutabot_languages import load
 from mutabot_languages.registry import language_for
 from mutabot_languages.starting import project as starting

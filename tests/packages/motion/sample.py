@@ -7,7 +7,7 @@ from typing import Any
 
 from mutabot.evidence.paths import RecordedPaths
 from mutabot.evidence.recording import Block, RecordedCall, RecordedMoment, Recording, Track, TrackKind
-from mutabot_motion.shown import Shown
+from mutabot_motion.view import MotionView
 
 STEPS = 21
 TABLE = Block("the <table>", (0.5, 0.0, -0.05), (1.0, 1.0, 0.1), (0.5, 0.4, 0.3))
@@ -43,7 +43,7 @@ def recording(*, lets_go: bool = False, **changes: Any) -> Recording:
     return found
 
 
-def shown(**changes: Any) -> Shown:
+def shown(**changes: Any) -> MotionView:
     values: dict[str, Any] = {
         "number": 7,
         "id": "mission.py:run:grip#1:call:skip",
@@ -56,4 +56,4 @@ def shown(**changes: Any) -> Shown:
         "story": "a box slipped from the fingers at 1.1 s",
         "apart": 1.1,
     }
-    return Shown(**{**values, **changes})
+    return MotionView(**{**values, **changes})

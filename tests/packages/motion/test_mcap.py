@@ -15,7 +15,7 @@ pytest.importorskip("foxglove")
 pytest.importorskip("mcap")
 
 from mutabot_motion import mcap
-from mutabot_motion.sights import written
+from mutabot_motion.viewers import written
 
 
 class Found:

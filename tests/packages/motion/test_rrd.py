@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from mutabot.evidence.paths import RecordedPaths
-from mutabot_motion.sights import sights_of
+from mutabot_motion.viewers import viewers_of
 from packages.motion.sample import STEPS, recording, shown
 
 pytest.importorskip("rerun")
@@ -84,7 +84,7 @@ def test_without_a_screen_the_viewer_is_not_opened_and_that_is_said(
     for name in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr("sys.platform", "linux")
-    (sight,) = sights_of(tmp_path, rerun=True, rrd=None, mcap=None)
+    (sight,) = viewers_of(tmp_path, rerun=True, rrd=None, mcap=None)
     said = sight(shown())
     assert (tmp_path / "mutant-7-round-2.rrd").read_bytes().startswith(b"RRF2")
     assert "there is no screen to open its viewer on" in said

@@ -10,7 +10,7 @@ import pytest
 
 from mutabot.errors import UsageError
 from mutabot.evidence.paths import RecordedPaths
-from mutabot_motion.filming import followed
+from mutabot_motion.filming import following_progress
 from mutabot_motion.pictures.film import Film, FilmWriter
 from packages.motion.sample import recording, shown
 
@@ -19,10 +19,10 @@ Image = pytest.importorskip("PIL.Image")
 ImageChops = pytest.importorskip("PIL.ImageChops")
 
 from mutabot_motion.pictures import video  # noqa: E402
-from mutabot_motion.pictures.drawn import Drawn  # noqa: E402
-from mutabot_motion.pictures.frame import Filmed, Frames  # noqa: E402
+from mutabot_motion.pictures.drawn import DrawnPictures  # noqa: E402
+from mutabot_motion.pictures.frame import FilmedPictures, Frames  # noqa: E402
 from mutabot_motion.pictures.video import show, write_video  # noqa: E402
-from mutabot_motion.sights import check  # noqa: E402
+from mutabot_motion.viewers import check  # noqa: E402
 
 RATE = 5
 
@@ -73,7 +73,7 @@ def frames_of(file: Path) -> tuple[Any, list[Any]]:
 
 
 def test_a_film_is_shown_as_it_was_at_each_time(tmp_path: Path) -> None:
-    filmed = Filmed(film(tmp_path / "a", 5, 100))
+    filmed = FilmedPictures(film(tmp_path / "a", 5, 100))
     found = [filmed.at(time).getpixel((0, 0))[0] for time in (0.0, 0.05, 0.1, 0.35, 9.0)]
     assert found == [100, 100, 101, 103, 104]
     assert filmed.end == 0.4
@@ -119,7 +119,7 @@ def test_a_long_gif_has_fewer_pictures_per_second(tmp_path: Path, monkeypatch: p
 
 
 def test_the_original_is_on_the_left_and_the_moment_of_the_fault_is_marked(tmp_path: Path) -> None:
-    sides = Filmed(film(tmp_path / "a", 21, 60)), Filmed(film(tmp_path / "b", 21, 160))
+    sides = FilmedPictures(film(tmp_path / "a", 21, 60)), FilmedPictures(film(tmp_path / "b", 21, 160))
     frames = Frames(shown(), sides)
     width, height = frames.size
     middle = height // 2
@@ -133,7 +133,10 @@ def test_the_original_is_on_the_left_and_the_moment_of_the_fault_is_marked(tmp_p
 
 
 def test_a_side_of_another_size_is_fitted_in(tmp_path: Path) -> None:
-    sides = Filmed(film(tmp_path / "a", 3, 60)), Filmed(film(tmp_path / "b", 3, 160, height=40))
+    sides = (
+        FilmedPictures(film(tmp_path / "a", 3, 60)),
+        FilmedPictures(film(tmp_path / "b", 3, 160, height=40)),
+    )
     frames = Frames(shown(), sides)
     assert frames.at(0.1).size == frames.size
 
@@ -168,7 +171,9 @@ def test_a_video_that_is_interrupted_leaves_nothing_and_an_earlier_one_as_it_was
     file = tmp_path / "a.mp4"
     write_video(
         file,
-        Frames(shown(), (Drawn(RecordedPaths(recording())), Drawn(RecordedPaths(recording())))),
+        Frames(
+            shown(), (DrawnPictures(RecordedPaths(recording())), DrawnPictures(RecordedPaths(recording())))
+        ),
         Counted(),
     )
     before = file.read_bytes()
@@ -183,17 +188,18 @@ def test_a_video_that_is_interrupted_leaves_nothing_and_an_earlier_one_as_it_was
             self.calls += 1
             if self.calls > 5:
                 raise KeyboardInterrupt
-            return Drawn(RecordedPaths(recording())).at(time)
+            return DrawnPictures(RecordedPaths(recording())).at(time)
 
+    found = recording()
     with pytest.raises(KeyboardInterrupt):
-        write_video(file, Frames(shown(), (Interrupted(), Drawn(RecordedPaths(recording())))), Counted())
+        write_video(file, Frames(shown(), (Interrupted(), DrawnPictures(RecordedPaths(found)))), Counted())
     assert file.read_bytes() == before
     assert [one.name for one in tmp_path.iterdir()] == ["a.mp4"]
 
 
 def test_a_drawing_shows_more_as_time_goes_on_and_both_sides_in_one_scale() -> None:
     original, mutant = RecordedPaths(recording()), RecordedPaths(recording(lets_go=True))
-    drawn = Drawn(original, [mutant])
+    drawn = DrawnPictures(original, [mutant])
     early, late = drawn.at(0.2), drawn.at(2.0)
     ground = {early.getpixel((1, 1)), late.getpixel((1, 1))}
     assert len(ground) == 1
@@ -201,8 +207,8 @@ def test_a_drawing_shows_more_as_time_goes_on_and_both_sides_in_one_scale() -> N
     count = [{colour: n for n, colour in image.getcolors(1 << 20)}[empty] for image in (early, late)]
     assert count[0] > count[1], "less of the ground is seen"
     # until the box is let go, both look the same to the last pixel
-    assert Drawn(mutant, [original]).at(0.9).tobytes() == drawn.at(0.9).tobytes()
-    assert Drawn(mutant, [original]).at(1.5).tobytes() != drawn.at(1.5).tobytes()
+    assert DrawnPictures(mutant, [original]).at(0.9).tobytes() == drawn.at(0.9).tobytes()
+    assert DrawnPictures(mutant, [original]).at(1.5).tobytes() != drawn.at(1.5).tobytes()
 
 
 @pytest.mark.parametrize(
@@ -228,7 +234,7 @@ def test_a_file_that_cannot_be_a_video_is_refused_beforehand(name: str, told: st
     ("end", "speed"), [(0.0, 0.125), (0.9, 0.25), (3.0, 1.0), (120.0, 1.0), (600.0, 8.0)]
 )
 def test_what_is_short_is_shown_slowly_and_what_is_long_quickly(end: float, speed: float) -> None:
-    drawn = Drawn(RecordedPaths(recording()))
+    drawn = DrawnPictures(RecordedPaths(recording()))
     drawn.end = end
     assert Frames(shown(), (drawn, drawn)).speed == speed
 
@@ -237,7 +243,7 @@ def test_texts_of_any_length_and_script_find_room(tmp_path: Path) -> None:
     long = "é→−中" * 200
     frames = Frames(
         shown(what=long, test=long, story=long + " " + long, place=long),
-        (Drawn(RecordedPaths(recording())), Drawn(RecordedPaths(recording()))),
+        (DrawnPictures(RecordedPaths(recording())), DrawnPictures(RecordedPaths(recording()))),
     )
     assert [frames.at(time).size for time in islice((0.0, 1.2, 2.0), 3)] == [frames.size] * 3
 
@@ -253,7 +259,7 @@ def test_each_picture_of_a_video_is_a_step_of_its_progress(tmp_path: Path, name:
 
 def test_how_far_a_film_is_counts_the_simulated_seconds_of_both_sides(tmp_path: Path) -> None:
     progress = Counted()
-    with followed(progress, tmp_path, 1.4):
+    with following_progress(progress, tmp_path, 1.4):
         film(tmp_path / "original.film", 12, 60)
     assert progress.stages == [("film, simulated seconds", 4)]
     assert progress.steps == 4
@@ -261,9 +267,9 @@ def test_how_far_a_film_is_counts_the_simulated_seconds_of_both_sides(tmp_path: 
 
 def test_an_arm_is_drawn_where_it_is_at_each_moment() -> None:
     found = recording()
-    drawn = Drawn(RecordedPaths(found))
+    drawn = DrawnPictures(RecordedPaths(found))
     del found.tracks["arm"]
-    bare = Drawn(RecordedPaths(found))
+    bare = DrawnPictures(RecordedPaths(found))
     begin, end = (ImageChops.difference(drawn.at(time), bare.at(time)).getbbox() for time in (0.0, 2.0))
     assert begin is not None
     assert end is not None

@@ -10,7 +10,7 @@ from mutabot.model import Sighting
 from mutabot.model.activation import Activation
 from mutabot.original import Original
 from mutabot_source.extension import OF_TEXT
-from mutabot_source.refine import plant, refine
+from mutabot_source.refine import plan_mutants, refine
 from mutabot_source.registry import load_all, names
 from mutabot_source.texts import find_texts
 from tests.packages.source.build import choices, seen_in, text_of
@@ -34,7 +34,7 @@ class Cell:
 
 def ids(tmp_path: Path, source: str, *operators: str) -> list[str]:
     (tmp_path / "mission.py").write_text(source, encoding="utf-8")
-    return [planted.mutant.id for planted in plant(find_texts(tmp_path, ["mission.py"], operators))]
+    return [planted.mutant.id for planted in plan_mutants(find_texts(tmp_path, ["mission.py"], operators))]
 
 
 def test_ids_name_file_function_text_occurrence_operator_and_variant(tmp_path: Path) -> None:
@@ -53,7 +53,7 @@ def test_ids_are_unique_and_stable_under_edits_elsewhere(tmp_path: Path) -> None
 
 def test_mutants_know_what_turns_them_on(tmp_path: Path) -> None:
     text = text_of(tmp_path, SOURCE)
-    planted = plant([text])
+    planted = plan_mutants([text])
     assert [one.active.data for one in planted if one.active] == [choice for choice, _, _ in choices(text)]
     assert planted[0].active == Activation.of_text(1, 0)
 

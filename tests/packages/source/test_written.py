@@ -20,7 +20,7 @@ def edited(content: bytes, text: str, operator: str, variant: str = "") -> bytes
 
 
 def found_in(content: bytes, text: str, operator: str, variant: str) -> tuple[TextPlace, Alternative]:
-    places, _ = find_places(content, "mission.py", registry.chosen([operator]))
+    places, _ = find_places(content, "mission.py", registry.select([operator]))
     return next(
         (place, one)
         for place in places

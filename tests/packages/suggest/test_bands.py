@@ -10,12 +10,12 @@ from typing import Any
 import pytest
 
 from mutabot_suggest.bands import band_of, digits_of, readable, unseen
-from mutabot_suggest.candidates import _ReadAtEnd
-from mutabot_suggest.limits import StatedTolerances, stated_in
+from mutabot_suggest.candidates import _EndReadings
 from mutabot_suggest.project import PlaceInTest
 from mutabot_suggest.readings import ReadExpression
 from mutabot_suggest.suggest import chosen_of
 from mutabot_suggest.suite import SuiteChecks
+from mutabot_suggest.tolerances import StatedTolerances, stated_in
 
 
 def test_hardly_any_further_run_of_the_original_lies_outside() -> None:
@@ -108,7 +108,7 @@ def test_what_the_tests_allow_is_no_golden_value() -> None:
     reads = {"a": {(0, ""): {"x": 0.42, "z": 0.1}}, "b": {(0, ""): {"x": 0.5, "z": 0.024997}}}
     runs = [{"x": 0.40767, "z": 0.0249894}]
     suite: Any = SuiteChecks(None)  # type: ignore[arg-type]  # it has no files
-    seen = _ReadAtEnd(place, runs, reads, [], StatedTolerances(suite, stated, runs, reads, runs))
+    seen = _EndReadings(place, runs, reads, [], StatedTolerances(suite, stated, runs, reads, runs))
     found = {}
     for name in ("x", "z"):
         (check,) = seen.checks(ReadExpression(name, 0, 1e-6))

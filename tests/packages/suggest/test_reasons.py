@@ -11,12 +11,12 @@ import pytest
 from mutabot.model import Mutant, Outcome, Role, Site, Span, Verdict
 from mutabot.model.outcome import Apart, Diverged, Looked
 from mutabot.results.results import MutantResult
-from mutabot_suggest.found import Suggestions, Unsolved
+from mutabot_suggest.output import print_suggestions
 from mutabot_suggest.places import chosen_places
 from mutabot_suggest.project import PlaceInTest
 from mutabot_suggest.readings import Measured
 from mutabot_suggest.reasons import why_unsolved
-from mutabot_suggest.shown import print_suggestions
+from mutabot_suggest.results import Suggestions, Unsolved
 from mutabot_suggest.suite import SuiteChecks
 
 SITE = Site(Span("mission.py", 1, 0, 1, 5, "run"), "arm.go", 1, Role.PROGRAM)
@@ -69,7 +69,7 @@ def suite() -> SuiteChecks:
 
 def reason(suite: SuiteChecks, *diverged: Diverged) -> str:
     (check,) = suite.checks
-    read = {f"{check.key}.looked": 0.3, f"{check.key}.expected": 0.3, f"{check.key}.tolerance": 0.02}
+    read = {f"{check.key}.actual": 0.3, f"{check.key}.expected": 0.3, f"{check.key}.tolerance": 0.02}
     measured = Measured(originals={PLACE: {(0, PLACE.node): read}})
     return why_unsolved(survivor(*diverged), measured, suite, [], {}, {}).reason
 

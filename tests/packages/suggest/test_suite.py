@@ -102,7 +102,7 @@ def test_what_a_check_looks_at_and_how_near_it_must_be(text: str, parts: tuple[s
 
 
 def test_checks_note_what_they_compare_and_mean_the_same(suite: SuiteChecks) -> None:
-    text = suite.noting("tests/test_it.py", suite.project.text("tests/test_it.py"))
+    text = suite.with_recording("tests/test_it.py", suite.project.text("tests/test_it.py"))
     (check,) = [one for one in suite.checks if "is_within" in one.form]
     noted: list[Any] = []
 
@@ -113,7 +113,7 @@ def test_checks_note_what_they_compare_and_mean_the_same(suite: SuiteChecks) -> 
             return value
 
     lines = [line.strip() for line in text.splitlines() if check.key in line]
-    module: Any = type("module", (), {"noted": Noted})
+    module: Any = type("module", (), {"recorder": Noted})
     arm: Any = type("arm", (), {"x": 0.31})
     names = {
         "__import__": lambda _: module,
@@ -124,13 +124,13 @@ def test_checks_note_what_they_compare_and_mean_the_same(suite: SuiteChecks) -> 
     exec("\n".join(lines), {"__builtins__": names} | names)
     assert noted == [
         (check.key, "expected", 0.3),
-        (check.key, "looked", 0.31),
+        (check.key, "actual", 0.31),
         (check.key, "tolerance", 0.02),
     ]
 
 
 def test_checks_of_other_tests_are_asked_where_all_that_they_need_is_at_hand(suite: SuiteChecks) -> None:
-    assert [one.statement for one in suite.transplants(place(suite))] == [
+    assert [one.statement for one in suite.reusable_checks(place(suite))] == [
         "check_open(arm)",
         "assert arm.z == pytest.approx(HOME, abs=WITHIN)",
     ]
@@ -139,18 +139,20 @@ def test_checks_of_other_tests_are_asked_where_all_that_they_need_is_at_hand(sui
 def test_a_check_that_runs_the_program_or_commands_the_robot_is_not_asked_elsewhere(
     suite: SuiteChecks,
 ) -> None:
-    statements = [one.statement for one in suite.transplants(place(suite, "tests/test_it.py::test_opens"))]
+    statements = [
+        one.statement for one in suite.reusable_checks(place(suite, "tests/test_it.py::test_opens"))
+    ]
     assert statements == ["assert is_within(HOME, arm.x, 0.02)"]
 
 
 def test_a_check_of_another_test_that_a_survivor_breaks_is_suggested_as_it_stands(suite: SuiteChecks) -> None:
     at = place(suite)
-    opened, _ = suite.transplants(at)
+    opened, _ = suite.reusable_checks(at)
     found = Measured(
         originals={at: {(0, GOES): {opened.key: True}, (1, GOES): {opened.key: True}}},
         mutants={at: {"m": {(0, GOES): {opened.key: False}}}},
         readings={at: []},
-        transplants={at: suite.transplants(at)},
+        reusable_checks={at: suite.reusable_checks(at)},
     )
     ((check,), _) = candidates(suite.project, suite, found)
     assert isinstance(check, CheckOfSuite)
@@ -160,31 +162,31 @@ def test_a_check_of_another_test_that_a_survivor_breaks_is_suggested_as_it_stand
 
 def test_a_check_of_another_test_that_the_original_breaks_is_not_suggested(suite: SuiteChecks) -> None:
     at = place(suite)
-    opened, _ = suite.transplants(at)
+    opened, _ = suite.reusable_checks(at)
     found = Measured(
         originals={at: {(0, GOES): {opened.key: True}, (1, GOES): {opened.key: False}}},
         mutants={at: {"m": {(0, GOES): {opened.key: False}}}},
         readings={at: []},
-        transplants={at: suite.transplants(at)},
+        reusable_checks={at: suite.reusable_checks(at)},
     )
     assert candidates(suite.project, suite, found)[0] == []
 
 
-def reads(suite: SuiteChecks, looked: float, text: str, value: float) -> dict[str, Any]:
+def reads(suite: SuiteChecks, actual: float, text: str, value: float) -> dict[str, Any]:
     """What is noted where the check of ``arm.x`` ran and a reading was made."""
     (check,) = [one for one in suite.checks if "is_within" in one.form]
-    parts = {"looked": looked, "expected": 0.3, "tolerance": 0.02}
+    parts = {"actual": actual, "expected": 0.3, "tolerance": 0.02}
     return {f"{check.key}.{role}": number for role, number in parts.items()} | {text: value}
 
 
 def suggested(
-    suite: SuiteChecks, text: str, mutant: float, *, looked: float = 0.301
+    suite: SuiteChecks, text: str, mutant: float, *, actual: float = 0.301
 ) -> tuple[list[str], dict[str, str]]:
     """The checks of one reading, which is 0.3 in the original."""
     at = place(suite)
     found = Measured(
         originals={at: {(round, GOES): reads(suite, 0.301, text, 0.3) for round in range(3)}},
-        mutants={at: {"m": {(0, GOES): reads(suite, looked, text, mutant)}}},
+        mutants={at: {"m": {(0, GOES): reads(suite, actual, text, mutant)}}},
         readings={at: [ReadExpression(text, PROBE, 0.001)]},
     )
     checks, refused = candidates(suite.project, suite, found)
@@ -197,7 +199,7 @@ def test_a_check_of_the_same_quantity_has_the_suites_form_constant_and_tolerance
 
 
 def test_no_check_is_tighter_than_one_of_the_same_quantity_under_another_name(suite: SuiteChecks) -> None:
-    statements, refused = suggested(suite, "world()['place']", 0.31, looked=0.309)
+    statements, refused = suggested(suite, "world()['place']", 0.31, actual=0.309)
     assert statements == []
     assert refused == {"m": "world()['place'] differs by 0.01, within your tolerance of 0.02"}
 
@@ -206,7 +208,7 @@ def test_no_check_is_tighter_than_one_of_the_same_quantity_under_another_name(su
 def test_parts_of_a_place_that_no_check_looks_at_have_the_tolerance_of_the_others(
     suite: SuiteChecks, name: str
 ) -> None:
-    statements, refused = suggested(suite, f"tool.{name}", 0.315, looked=0.301)
+    statements, refused = suggested(suite, f"tool.{name}", 0.315, actual=0.301)
     assert statements == []
     assert "your tolerance of 0.0" in refused["m"]
 
@@ -244,5 +246,5 @@ def test_a_helper_of_another_file_is_imported_where_it_is_asked(tmp_path: Path) 
     vocabulary = load_vocabulary(configuration.vocabulary, folder)
     request = Request(configuration, vocabulary, rounds=1, seed=1, jobs=1)
     found = SuiteChecks.of(SuiteFiles(request, tests=("tests/test_it.py",)))
-    asked = {one.statement: one.needs for one in found.transplants(place(found))}
+    asked = {one.statement: one.needs for one in found.reusable_checks(place(found))}
     assert asked["check_open(arm)"] == ("from checks import check_open",)

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from mutabot_suggest import noted, way
+from mutabot_suggest import recorder, tick_recorder
 from mutabot_suggest.checks import Monitor
 from mutabot_suggest.editing import edited
 from mutabot_suggest.project import PlaceInTest
@@ -141,14 +141,14 @@ class Cell:
 
 def test_the_way_of_an_object_that_can_be_watched_is_noted_at_the_end_of_the_test() -> None:
     cell = Cell()
-    way.watch("cell", cell)
-    way.watch("number", 3)
+    tick_recorder.watch("cell", cell)
+    tick_recorder.watch("number", 3)
     for number in range(5_000):
         cell.truth.x = float(number)
         assert all(condition() for condition in cell.conditions)
-    noted.note({})
-    texts, rows = json.loads(noted.values()["~cell"])
+    recorder.note({})
+    texts, rows = json.loads(recorder.values()["~cell"])
     assert texts == ["cell.truth.tool()"]
     assert 400 <= len(rows) <= 801
-    noted.note({})
-    assert noted.values() == {}, "the next test has its own way"
+    recorder.note({})
+    assert recorder.values() == {}, "the next test has its own way"

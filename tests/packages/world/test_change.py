@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mutabot_world.change import NothingThereError, NumberChange, change_at
+from mutabot_world.change import NotInWorldError, NumberChange, change_at
 
 
 class Clamped:
@@ -56,7 +56,7 @@ def test_a_number_is_told_as_it_is_after_the_change() -> None:
 def test_what_a_change_leaves_as_it_is_is_not_there_to_be_disturbed(
     world: Any, path: str, change: NumberChange, why: str
 ) -> None:
-    with pytest.raises(NothingThereError, match=why):
+    with pytest.raises(NotInWorldError, match=why):
         change_at(world, path, change)
 
 

@@ -13,9 +13,9 @@ import mujoco
 import pytest
 
 import mutabot_world.mujoco as on_mujoco
-from mutabot_world.change import NothingThereError, NumberChange
+from mutabot_world.change import NotInWorldError, NumberChange
 from mutabot_world.files import parameters_of
-from mutabot_world.patching import live, rebind
+from mutabot_world.patching import instances_of, rebind
 from mutabot_world.tables import WorldTable
 
 MODEL = """
@@ -104,13 +104,13 @@ def test_a_sensor_reads_more(model: Any) -> None:
 
 
 def test_names_that_match_nothing_are_said(model: Any) -> None:
-    with pytest.raises(NothingThereError, match="no body is named 'cup'; there are: arm, obj"):
+    with pytest.raises(NotInWorldError, match="no body is named 'cup'; there are: arm, obj"):
         disturb(model, "mass", "scale", 1.0, "cup")
 
 
 def test_models_that_python_cannot_refer_to_are_found(model: Any) -> None:
     holder = {"model": model}
-    assert any(one is model for one in live(["mujoco:MjModel", "mujoco:MjModel.from_xml_path"]))
+    assert any(one is model for one in instances_of(["mujoco:MjModel", "mujoco:MjModel.from_xml_path"]))
     assert holder
 
 

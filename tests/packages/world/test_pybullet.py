@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from mutabot_world.change import NothingThereError, NumberChange
+from mutabot_world.change import NotInWorldError, NumberChange
 
 from .belts import project, run
 
@@ -143,7 +143,7 @@ def test_clients_that_ask_for_built_in_functions_find_them() -> None:
 
 def test_names_that_match_nothing_are_said(arm: Any) -> None:
     with pytest.raises(
-        NothingThereError, match="no joint is named 'wrist'; the last body has: hinge; bodies: arm"
+        NotInWorldError, match="no joint is named 'wrist'; the last body has: hinge; bodies: arm"
     ):
         disturb(arm, "gain", "scale", 1.0, "wrist")
 

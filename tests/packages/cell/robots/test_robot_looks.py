@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from mutabot_cell import Cell, robots
-from mutabot_cell.shown.looks.style import LOOKS
-from mutabot_cell.shown.looks.visual import VisualModel
+from mutabot_cell.display.looks.style import LOOKS
+from mutabot_cell.display.looks.visual import VisualModel
 
 from .conftest import robot_named
 

@@ -10,8 +10,8 @@ from unittest import mock
 import pytest
 
 from mutabot.api.processes import CallOrigin
-from mutabot_init.watched import WatchedCallable
-from mutabot_init.watching.callee import Callee, meant_by
+from mutabot_init.observations import WatchedCallable
+from mutabot_init.watching.callee import Callee, replaced_method
 from mutabot_init.watching.watch import Watch
 
 OVERLOADED = """moveJ(*args, **kwargs)
@@ -118,7 +118,7 @@ def test_a_class_in_a_function_has_no_name_to_stand_for() -> None:
     class Local:
         def go(self) -> None: ...
 
-    assert meant_by(Local, "go") is None
+    assert replaced_method(Local, "go") is None
 
 
 def test_a_real_call_tells_more_than_the_mock_before_it(robot: Any) -> None:

@@ -12,7 +12,7 @@ import mutabot_init.watching
 
 #: beside the standard library
 ALLOWED = (
-    "mutabot.api.processes", "mutabot.api.values", "mutabot_init.beside", "mutabot_init.watched",
+    "mutabot.api.processes", "mutabot.api.values", "mutabot_init.proposers", "mutabot_init.observations",
     "mutabot_init.watching",
 )  # fmt: skip
 
@@ -42,8 +42,8 @@ def test_it_imports_the_standard_library_and_the_interface() -> None:
 
 def test_processes_below_the_tests_need_no_pytest_for_it() -> None:
     code = (
-        "import sys, mutabot_init.watching.watch, mutabot.runtime.observer, mutabot_init.beside\n"
-        "[one.watch() for one in mutabot_init.beside.brought_proposers().values()]\n"
+        "import sys, mutabot_init.watching.watch, mutabot.runtime.observer, mutabot_init.proposers\n"
+        "[one.watch() for one in mutabot_init.proposers.brought_proposers().values()]\n"
         "heavy = {'pytest', '_pytest', 'pydantic', 'rich', 'typer', 'mujoco', 'numpy', 'libcst'}\n"
         "print(sorted(heavy & set(sys.modules)))"
     )

@@ -17,7 +17,7 @@ from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.observer import questions
 from mutabot.runtime.program_text import call_sites
 from mutabot.runtime.program_text.call_sites import CALLS
-from mutabot_init.watched import Values
+from mutabot_init.observations import Values
 from mutabot_init.watching.values import look
 from mutabot_init.watching.watch import Watch
 
