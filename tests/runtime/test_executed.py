@@ -65,6 +65,12 @@ TESTS = """
 
     def test_starts():
         subprocess.run([sys.executable, "-c", ""], check=True)
+
+    def test_reads_the_program():
+        assert "def far" in Path(mission.__file__).read_text()
+
+    def test_left_again():
+        mission.left(Arm())
 """
 
 #: an installed package that starts a process while it is imported, as glfw does to know a version
@@ -76,7 +82,13 @@ ASKS = """
 
 
 @pytest.fixture(scope="module")
-def taken(tmp_path_factory: pytest.TempPathFactory) -> tuple[Campaign, list[Result]]:
+def told() -> Quiet:
+    """What the user is told of the campaign."""
+    return Quiet()
+
+
+@pytest.fixture(scope="module")
+def taken(tmp_path_factory: pytest.TempPathFactory, told: Quiet) -> tuple[Campaign, list[Result]]:
     """A project's campaign with its baseline."""
     folder = write_project(
         tmp_path_factory.mktemp("executed"),
@@ -85,8 +97,8 @@ def taken(tmp_path_factory: pytest.TempPathFactory) -> tuple[Campaign, list[Resu
         more={"tests/goals.txt": "0.5\n", "lib/site-packages/asks_its_system.py": ASKS},
     )
     request = request_for(folder, engine="replay")
-    with locked_executor(request, Quiet()) as opened:
-        return begin(request, opened, Quiet())
+    with locked_executor(request, told) as opened:
+        return begin(request, opened, told)
 
 
 @pytest.fixture(scope="module")
@@ -141,6 +153,18 @@ def test_what_is_told_before_a_test_counts_for_it_and_what_is_not_known_for_all_
 def test_a_file_that_is_opened_counts(executed: dict[str, set[str]]) -> None:
     assert "tests/goals.txt:" in executed["test_reads"]
     assert "tests/goals.txt:" not in executed["test_shared"]
+
+
+def test_tests_from_the_first_on_that_reads_the_program_may_have_its_text(
+    taken: tuple[Campaign, list[Result]], told: Quiet
+) -> None:
+    baseline = taken[0].baseline
+    names = [test.rpartition("::")[2] for test in baseline.readers(0, "mission.py")]
+    assert names == ["test_reads_the_program", "test_left_again"]
+    assert not baseline.is_read("robot.py")
+    (note,) = (line for line in told.lines if "text of mission.py" in line)
+    assert "from tests/test_mission.py::test_reads_the_program on" in note
+    assert note.endswith(": what they do with it has no mutants of calls")
 
 
 def test_of_tests_that_start_processes_nothing_is_known(executed: dict[str, set[str]]) -> None:

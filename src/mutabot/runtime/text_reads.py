@@ -82,7 +82,7 @@ class TextReads:
 def _tell_of_lines() -> None:
     """Raise an audit event where lines of a file are taken: from the cache that takes no opening."""
     take = linecache.getlines
-    if hasattr(take, "__wrapped__"):
+    if hasattr(take, "tells_mutabot"):
         return
 
     @wraps(take)
@@ -90,6 +90,7 @@ def _tell_of_lines() -> None:
         sys.audit(_LINES, filename)
         return take(filename, module_globals)
 
+    getlines.tells_mutabot = True  # type: ignore[attr-defined]  # a mark on it: others may wrap it as well
     linecache.getlines = getlines
 
 

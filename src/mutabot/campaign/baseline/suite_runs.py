@@ -310,16 +310,24 @@ def _read(suite: _Suite, texts: Mapping[str, tuple[ProgramText, ...]]) -> Baseli
             "one after the other, and what one leaves, others may find. User namespaces would allow it, in a "
             "container --cap-add SYS_ADMIN --security-opt apparmor=unconfined"
         )
-    files = program_files(request.root, request.configuration.program)
-    read = [file for file in files if baseline.is_read(file)]
-    if read and not {*request.families}.isdisjoint(OF_CALLS):
-        progress.note(
-            f"tests read the text of {in_short(read, 2)}: what they do with it has no mutants of calls"
-        )
+    _note_read_texts(baseline, request, progress)
     not_along = next((end.not_along for end in ends if end.not_along), None)
     if not_along is not None:
         progress.note(f"the probes are read at the ends of tests only, not along the way: {not_along}")
     return baseline
+
+
+def _note_read_texts(baseline: Baseline, request: Request, progress: Progress) -> None:
+    """Tell which files of the program tests read as text, and what comes of that."""
+    files = program_files(request.root, request.configuration.program)
+    read = [file for file in files if baseline.is_read(file)]
+    told = ["each of its mutants changes the file, in a process of its own"] if baseline.texts else []
+    if not {*request.families}.isdisjoint(OF_CALLS):
+        told.append("what they do with it has no mutants of calls")
+    if read and told:
+        rounds = range(len(baseline.tests))
+        first = next(tests[0] for tests in (baseline.readers(one, read[0]) for one in rounds) if tests)
+        progress.note(f"tests from {first} on may have the text of {in_short(read, 2)}: {'; '.join(told)}")
 
 
 def _refuse(result: Result, arguments: Sequence[str]) -> None:
