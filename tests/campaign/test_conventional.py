@@ -22,6 +22,7 @@ from tests.campaign.project import (
     VOCABULARY,
     Quiet,
     fingerprint,
+    no_private_files,
     request_for,
     run,
     write_project,
@@ -375,8 +376,8 @@ def test_controls_run_in_the_program_text_as_well(project: Path, engine: str) ->
     assert check(request, Quiet()).data["controls"] >= 2
 
 
-def test_a_file_without_its_alternatives_never_lets_its_mutants_survive(tmp_path: Path) -> None:
-    """Here the test reads the program itself, so that the text which runs is not the instrumented one."""
+@pytest.mark.skipif(no_private_files() is not None, reason="files cannot be changed for one process alone")
+def test_a_file_that_a_test_runs_by_itself_is_changed_for_it(tmp_path: Path) -> None:
     tests = """
         from pathlib import Path
 
@@ -386,10 +387,18 @@ def test_a_file_without_its_alternatives_never_lets_its_mutants_survive(tmp_path
             assert space["near"](0.1)
     """
     project = write_project(tmp_path, "def near(x):\n    return x < 0.5\n", tests)
+    found = run(project, families=("conventional",), only=("*ROR=trueOp", "*ROR=falseOp"), engine="auto")
+    verdicts = {name.rpartition("=")[2]: (one.verdict, one.engine) for name, one in found.items()}
+    assert verdicts == {"trueOp": (Verdict.SURVIVED, "replay"), "falseOp": (Verdict.KILLED, "replay")}
+
+
+def test_a_file_that_no_test_imports_has_mutants_that_are_not_covered(tmp_path: Path) -> None:
+    tests = "def test_nothing():\n    pass\n"
+    project = write_project(tmp_path, "def near(x):\n    return x < 0.5\n", tests)
     with pytest.raises(NothingToDoError, match=r"no test reaches any of the \d+ mutants of mission.py"):
         run(project, families=("conventional",))
     mutants = plan_with_robot(project).mutants
-    assert any(one.site.span.file == "mission.py" for one in mutants)  # not covered
+    assert any(one.site.span.file == "mission.py" for one in mutants)
 
 
 def plan_with_robot(project: Path) -> PlannedCampaign:
