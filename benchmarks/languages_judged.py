@@ -1,11 +1,13 @@
 """Do the engines find of a mutant of a robot program what plain pytest finds, with the program edited?
 
-Mutants of the text of each program in ``examples/languages`` run by an engine. For each, the unified diff
-that ``mutabot diff`` shows is applied to a copy's file, line by line, and plain pytest runs the program's
-tests on that copy, without Mutabot's plug-in, with the seed of the round.
+Mutants of the text of each program in ``examples/languages``, and of those in ``languages`` beside this
+file, which have interrupts, two modules, data of their own and threads, run by an engine. For each, the
+unified diff that ``mutabot diff`` shows is applied to a copy's file, line by line, and plain pytest runs the
+program's tests on that copy, without Mutabot's plug-in, with the seed of the round.
 
-Use: ``python benchmarks/languages_judged.py [--sample N] [--engine fork] [--only pick.mod …]``. The exit code
-is 1 if one verdict differs, or if there is nothing to compare.
+Use: ``python benchmarks/languages_judged.py [--sample N] [--seed N] [--engine fork] [--only pick.mod …]``.
+The
+exit code is 1 if one verdict differs, or if there is nothing to compare.
 """
 
 from __future__ import annotations
@@ -32,12 +34,17 @@ from suites.agreement import campaign, request_for, seeds_of  # noqa: E402
 from suites.corpus import copied  # noqa: E402
 from suites.editor import Facts  # noqa: E402
 
-EXAMPLE = ROOT / "examples" / "languages"
-#: the files of each program, the one that tests load first
+#: where programs are, and the files of each, the one that tests load first
 PROGRAMS = {
-    "pick.script": ("pick.script",),
-    "pick.mod": ("pick.mod",),
-    "pick.src": ("pick.src", "pick.dat", "$config.dat"),
+    name: (folder, (name, *more))
+    for folder, name, *more in (
+        (ROOT / "examples" / "languages", "pick.script"),
+        (ROOT / "examples" / "languages", "pick.mod"),
+        (ROOT / "examples" / "languages", "pick.src", "pick.dat", "$config.dat"),
+        (ROOT / "benchmarks" / "languages", "watch.script"),
+        (ROOT / "benchmarks" / "languages", "watch.mod", "moves.sys"),
+        (ROOT / "benchmarks" / "languages", "watch.src", "watch.dat"),
+    )
 }
 FAMILIES = ["program-text", "program-conventional"]
 #: what plain pytest has to say of a mutant with a verdict
@@ -55,26 +62,28 @@ def main() -> int:
     """Judge all programs that are asked for."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n\n", maxsplit=1)[0])
     parser.add_argument("--sample", type=int, default=100, help="of so many mutants of each program")
+    parser.add_argument("--seed", type=int, default=0, help="of the sample")
     parser.add_argument("--engine", default="fork")
     parser.add_argument("--only", nargs="*", default=[*PROGRAMS])
     given = parser.parse_args()
     same = other = 0
     for name in given.only:
         began = time.monotonic()
-        agree, differ = compare(name, given.engine, given.sample)
+        agree, differ = compare(name, given.engine, given.sample, given.seed)
         same, other = same + agree, other + differ
         print(f"{name}: {agree} of {agree + differ} agree, {time.monotonic() - began:.0f} s", flush=True)
     print(f"{same} of {same + other} verdicts agree")
     return 0 if same and not other else 1
 
 
-def compare(name: str, engine: str, sample: int) -> tuple[int, int]:
+def compare(name: str, engine: str, sample: int, seed: int) -> tuple[int, int]:
     """Judge a program; print what differs, and return how many verdicts agree and how many do not."""
-    planned = [one for one in planned_texts(EXAMPLE, [*PROGRAMS[name]]) if one.difference.reason is None]
-    chosen = random.Random(0).sample(planned, min(sample, len(planned)))
+    example, files = PROGRAMS[name]
+    planned = [one for one in planned_texts(example, [*files]) if one.difference.reason is None]
+    chosen = random.Random(seed).sample(planned, min(sample, len(planned)))
     by_id = {mutant_id(one): one for one in chosen}
     with tempfile.TemporaryDirectory() as folder:
-        copy = copied(EXAMPLE, Path(folder).resolve() / "campaign")
+        copy = copied(example, Path(folder).resolve() / "campaign")
         configure(copy, name)
         request = request_for(copy, engine, FAMILIES, 1, Facts.of(copy).hints.get("plugins", ()))
         data = campaign(request_of(request, [*by_id]))
@@ -82,7 +91,7 @@ def compare(name: str, engine: str, sample: int) -> tuple[int, int]:
         same = other = 0
         for mutant in data["mutants"]:
             place = Path(folder).resolve() / f"judged {same + other}"
-            edited = copied(EXAMPLE, place)
+            edited = copied(example, place)
             configure(edited, name)
             plain = judged(edited, by_id[mutant["id"]], seeds)
             ours = str(mutant["rounds"][0]["verdict"])
@@ -109,7 +118,9 @@ def mutant_id(one: PlannedText) -> str:
 def configure(copy: Path, name: str) -> None:
     """Let the copy have this program alone, and its tests run it."""
     settings, tests = copy / "pyproject.toml", copy / "tests" / "conftest.py"
-    text = re.sub(r"program = \[.*\]", f"program = {[*PROGRAMS[name]]}", settings.read_text(encoding="utf-8"))
+    text = re.sub(
+        r"program = \[.*\]", f"program = {[*PROGRAMS[name][1]]}", settings.read_text(encoding="utf-8")
+    )
     settings.write_text(text, encoding="utf-8")
     text = re.sub(r"params=\[.*?\]", f'params=["{name}"]', tests.read_text(encoding="utf-8"))
     tests.write_text(text, encoding="utf-8")

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from mutabot.campaign.suppressions import comments_in
 from mutabot_languages.mutation.planning import PlannedText, mutants_of, planned_texts, read_program
 from mutabot_languages.mutation.rewriting import Sizes
 from mutabot_languages.mutation.rules import BY_NAME
@@ -211,3 +212,19 @@ def test_a_printed_difference_has_the_bytes_of_its_file_so_that_patch_takes_it(t
     shown = subprocess.run(command, capture_output=True, check=True).stdout.split(b"\n")
     assert b"-    WaitTime 0.5; ! Gr\xf6\xdfe\r" in shown
     assert b"+    WaitTime 0.05; ! Gr\xf6\xdfe\r" in shown
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("a.mod", "PROC main()\r\n! mutabot: accept skip: why\r\nWaitTime 1; ! mutabot: accept *: why\r\n"),
+        ("a.src", "DEF a()\r\n; mutabot: accept skip: why\r\nWAIT SEC 1 ; mutabot: accept *: why\r\n"),
+        ("a.script", "def a():\r\n# mutabot: accept skip: why\r\nsleep(1) # mutabot: accept *: why\r\n"),
+    ],
+)
+def test_a_comment_in_the_program_s_own_language_accepts_mutants_of_its_line(name: str, text: str) -> None:
+    found = comments_in(name, text)
+    assert [(one.operator, one.numbers, one.why) for one in found] == [
+        ("skip", (3, 3), "why"),
+        ("*", (3, 3), "why"),
+    ]
