@@ -11,6 +11,7 @@ from mutabot_languages.core.frames import Frame
 from mutabot_languages.core.interrupts import HANDLERS, Interrupt
 from mutabot_languages.core.names import name_set
 from mutabot_languages.core.scope import ControlFlow, RoutineScope, Steps, Structure
+from mutabot_languages.core.station import ProgramPlace
 from mutabot_languages.core.task import OF_DEGREES, ProgramTask, of_values
 from mutabot_languages.core.tree import ProgramNode
 
@@ -47,39 +48,39 @@ def _is_axes(value: Any) -> bool:
     ))  # fmt: skip
 
 
-def _complete(task: ProgramTask, value: Any, now: Frame) -> Frame:
+def _complete(task: ProgramTask, value: Any, site: ProgramPlace) -> Frame:
     """The frame of a target; components that it does not name stay as they are."""
     base = machine_of(task).base
-    here = of_frame(base.inverse() * now, "frame")
-    return base * frame_of({**here, **{name: one for name, one in value.items() if name in here}})
+    named = {name: one for name, one in value.items() if name in tuple("xyzabc")}
+    if len(named) < 6:  # else nothing is read
+        named = {**of_frame(base.inverse() * task.station.commanded(site), "frame"), **named}
+    return base * frame_of(named)
 
 
 def _move(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
     """PTP, LIN, CIRC, their splines, and all of them relative."""
     yield from _with(task, node, scope)
-    machine, station = machine_of(task), task.station
+    machine, station, site = machine_of(task), task.station, task.site(node, scope)
     targets = yield from task.values([one for one in node.parts if one.kind != "option"], scope)
     options = {one.name: one for one in node.parts if one.kind == "option"}
     name = node.name
     kind = name.removesuffix("_rel").lstrip("s") if name not in ("spl", "spl_rel") else "lin"
     kind = "ptp" if kind in ("tp", "async_ptp") else kind
-    site = task.site(node, scope)
     if name.endswith("_rel"):
         start = station.commanded(site)
         targets = [_relative(task, one, options, start) for one in targets]
     if kind == "ptp" and _is_axes(targets[0]):
         yield from task.move(node, scope, station.joint_move(_angles(task, targets[0]), machine.pace[1]))
     else:
-        start = station.commanded(site)
         frames = [
             one if isinstance(one, Frame) else station.forward(_angles(task, one)) if _is_axes(one)
-            else _complete(task, one, start)
+            else _complete(task, one, site)
             for one in targets
         ]  # fmt: skip
         if kind == "ptp":
             yield from task.move(node, scope, station.joint_move(station.inverse(frames[0]), machine.pace[1]))
         elif kind == "circ" and len(frames) > 1:
-            for motion in station.arc(start, frames[0], frames[1], machine.pace[0]):
+            for motion in station.arc(station.commanded(site), frames[0], frames[1], machine.pace[0]):
                 yield from task.move(node, scope, motion)
         else:
             yield from task.move(node, scope, station.line(frames[0], machine.pace[0]))

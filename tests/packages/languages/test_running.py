@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -221,3 +222,21 @@ def test_a_thread_without_an_end_ends_with_the_program(tmp_path: Path) -> None:
     text += "  t = run idle()\n  sleep(0.3)\nend\n"
     for seed in range(4):
         assert run(tmp_path, "a.script", text, seed=seed)[1].seconds == pytest.approx(0.3, abs=0.02)
+
+
+def test_a_whole_target_of_krl_reads_no_pose_and_one_with_parts_does(tmp_path: Path) -> None:
+    reads: list[int] = []
+    for target in ("X 500,Y 0,Z 400,A 0,B 180,C 0", "X 500,Z 400"):
+        (tmp_path / "a.src").write_text(f"DEF a( )\nLIN {{{target}}}\nEND\n")
+        cell, count = Cell(seed=1, noise=False), 0
+        original = cell.arm.commanded_pose
+
+        def counted(read: Callable[[], Any] = original) -> Any:
+            nonlocal count
+            count += 1
+            return read()
+
+        cell.arm.commanded_pose = counted  # type: ignore[method-assign]
+        load(tmp_path / "a.src").run(cell)
+        reads.append(count)
+    assert reads == [0, 1]
