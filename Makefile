@@ -25,7 +25,7 @@ CORE    = $(addprefix tests/,model config operators results journal campaign/pla
 
 of_ros  = $(wildcard $(addsuffix /test_ros$(1)*.py,tests/packages/ros tests/packages/ros/* tests/packages/ros_in_process))
 
-.PHONY: demo test whole alone check format docs site pictures comparison bench stress judged shipped foreign audit sbom locks dist clean
+.PHONY: demo test whole alone check format docs site pictures comparison tasks bench stress judged shipped foreign audit sbom locks dist clean
 
 ## run the published experiment: 26 mutants, five rounds, in physics
 demo: $(READY)
@@ -66,6 +66,7 @@ docs: $(READY)
 	$(RUN) tools/make_docs.py
 	$(RUN) tools/make_conventional_page.py
 	cd benchmarks && ../$(RUN) -m comparison.page
+	$(RUN) benchmarks/tasks.py
 	$(RUN) tools/make_design_page.py
 
 ## build the documentation as a site, in site/; what would be a dead link there is an error
@@ -90,6 +91,14 @@ comparison: $(READY)
 	done
 	cd benchmarks && ../$(RUN) -m comparison.page \
 	    $(foreach name,paper pick_and_place scales,$(name)=../$(VENV)/$(name).json)
+
+## run the robot mutants and conventional ones of each kind of task against every test, and write docs/tasks.md
+## from it; that takes hours of processor time
+tasks: $(READY)
+	for name in paper pick_and_place tracking palletising dispensing handover assembly; do \
+	    $(RUN) benchmarks/tasks.py run $$name --robot 60 --conventional 60 || exit; \
+	done
+	$(RUN) benchmarks/tasks.py
 
 ## measure, in an hour: the cost of intercepted calls and of engines, simulation speed, seeds of each example
 bench: $(READY)

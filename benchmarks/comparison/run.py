@@ -53,15 +53,16 @@ def main() -> int:
         family=given.family or [*COMPARED], rounds=given.rounds, seed=given.seed, sample=given.sample
     )
     with tempfile.TemporaryDirectory() as folder:
-        checked = _campaign(given.project, Path(folder, "checked"), options)
-        unchecked = _campaign(given.project, Path(folder, "unchecked"), options, checks=False)
+        checked = campaign(given.project, Path(folder, "checked"), options)
+        unchecked = campaign(given.project, Path(folder, "unchecked"), options, checks=False)
     print(dumps(comparison_data(compare_families(checked, unchecked))))
     return 0
 
 
-def _campaign(project: Path, copy: Path, options: Running, *, checks: bool = True) -> Results:
-    """What a campaign on a copy of the project finds."""
-    shutil.copytree(project, copy, ignore=shutil.ignore_patterns(HOME, "__pycache__"))
+def campaign(project: Path, copy: Path, options: Running, *, checks: bool = True) -> Results:
+    """What a campaign on a copy of the project finds; a copy that is there goes on from its journal."""
+    if not copy.exists():
+        shutil.copytree(project, copy, ignore=shutil.ignore_patterns(HOME, "__pycache__"))
     request = request_of(copy, **options)
     request = replace(request, every_test=checks)
     if not checks:

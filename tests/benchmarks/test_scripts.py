@@ -47,6 +47,7 @@ SHORT: dict[str, list[str]] = {
     "stories_judged": ["--count", "1", "--sample", "8", "--bare", "tracking"],
     "suggested_checks": ["--seeds", "1", "scales"],
     "suite_length": ["--lengths", "50"],
+    "tasks": ["--check"],
     "ten_thousand": ["--mutants", "4000"],
     "witness": ["witness", "fluent_api"],
     "world_cost": ["--magnitudes", "2", "--when", "made"],
