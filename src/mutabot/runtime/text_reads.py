@@ -63,8 +63,12 @@ class TextReads:
         return real[len(self._root) :]
 
     def _on_audit_event(self, event: str, arguments: tuple[Any, ...]) -> None:
-        path, frame = arguments[0], sys._getframe(FRAMES)
+        path = arguments[0]
         if not isinstance(path, str | bytes | os.PathLike):
+            return
+        try:
+            frame = sys._getframe(FRAMES)
+        except ValueError:  # the interpreter opens the script that it is to run: nobody reads that as text
             return
         if event == "open" and arguments[2] & (os.O_WRONLY | os.O_TRUNC):
             return

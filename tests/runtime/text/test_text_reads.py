@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -114,3 +116,27 @@ def test_whatever_else_reads_has_the_text(found: dict[str, list[str]]) -> None:
     wanted["copies_everything"] = ["package/__init__.py", "package/part.py"]
     assert len(others) == 15
     assert others == wanted
+
+
+def test_the_script_that_an_interpreter_runs_is_read_by_nobody(tmp_path: Path) -> None:
+    """It is opened before there is any frame, by an interpreter whose start has joined a campaign."""
+    start = """
+        import atexit
+        from mutabot.runtime.text_reads import TextReads
+
+        told = []
+        TextReads({root!r}, lambda name, is_text: told.append((name, is_text))).install()
+        atexit.register(lambda: print([name for name, is_text in told if is_text]))
+    """
+    script = "import mission\nprint('it runs')\nopen(mission.__file__).close()\n"
+    folder = write(tmp_path / "project", {"mission.py": "", "drive.py": script})
+    home = write(tmp_path / "start", {"sitecustomize.py": start.format(root=str(folder))})
+    done = subprocess.run(
+        [sys.executable, "drive.py"],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": str(home)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.stdout.splitlines() == ["it runs", "['mission.py']"], done.stderr
