@@ -264,6 +264,8 @@ class EventStream:
 _ANSWER = 30.0
 #: seconds between two looks whether a run is still wanted
 LOOKS = 0.2
+#: seconds for which one system call may wait: the limits of a suite with many tests can be more than it takes
+LONGEST = 3600.0
 
 
 class Copy:
@@ -346,7 +348,7 @@ class ForkServerProcess:
             return self.serving is not None
 
         with interruptible():
-            self._listen_until(is_ready, seconds, LOOKS if look is not None else seconds)
+            self._listen_until(is_ready, seconds, LOOKS if look is not None else LONGEST)
         self.startup = time.monotonic() - self._started
         if self.serving is None:
             return "the process that was to collect the tests did not get there"
@@ -402,7 +404,7 @@ class ForkServerProcess:
         self._home.remove()
         return left
 
-    def _listen_until(self, done: Callable[[], bool], seconds: float, period: float = float("inf")) -> None:
+    def _listen_until(self, done: Callable[[], bool], seconds: float, period: float = LONGEST) -> None:
         """Read reports until ``done``, asked once a ``period``, the server's end, or the time limit."""
         until = time.monotonic() + seconds
         poll = select.poll()

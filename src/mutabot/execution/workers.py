@@ -23,6 +23,7 @@ from mutabot.errors import JournalError
 from mutabot.execution.cleanup import claim, end_abandoned, end_left_over, remove_folder
 from mutabot.execution.interruption import interruptible
 from mutabot.execution.processes import (
+    LONGEST,
     LOOKS,
     Copy,
     EventStream,
@@ -324,11 +325,11 @@ class Workers:
                 yield from self._finish(worker)
 
     def _patience(self) -> float | None:
-        """Return the seconds until the next check that no event triggers; None if there is none."""
+        """Return the seconds until the next check that no event triggers, at most; None if there is none."""
         if any(worker.has_ended for worker in self._workers):
             return 0.0  # a fork server may have told so while it was asked for something else
         until = min((worker.deadline.until for worker in self._workers), default=None)
-        return None if until is None else max(0.0, until - time.monotonic())
+        return None if until is None else min(max(0.0, until - time.monotonic()), LONGEST)
 
     def _finish(self, worker: _Worker) -> Iterator[Result | tuple[Task, Event]]:
         self._workers.remove(worker)
