@@ -7,7 +7,7 @@ Annotations, patterns of ``match``, docstrings and what is not run by a test (``
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 #: first line (1-based), first column, last line, last column (0-based, in UTF-8 bytes)
@@ -112,6 +112,15 @@ class Index:
 def extent_of(node: ast.expr | ast.stmt) -> TextExtent:
     """Return the extent of a node in the text."""
     return (node.lineno, node.col_offset, node.end_lineno or node.lineno, node.end_col_offset or 0)
+
+
+def segment_of(lines: Sequence[bytes], extent: TextExtent) -> str:
+    """Return the program text at an extent, from its lines in UTF-8 without their ends."""
+    first, start, last, end = extent
+    found = [*lines[first - 1 : last]]
+    found[-1] = found[-1][:end]
+    found[0] = found[0][start:]
+    return b"\n".join(found).decode()
 
 
 def is_docstring(node: ast.AST) -> bool:

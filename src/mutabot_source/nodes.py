@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 from mutabot.api.faults import Alternative
 
-from .index import Scope, TextExtent, extent_of
+from .index import Scope, TextExtent, extent_of, segment_of
 from .neighbours import Neighbours
 from .operator import Surroundings, SyntaxNode, TextParts
 
@@ -39,11 +39,7 @@ class ModuleTree:
 
     def segment(self, extent: TextExtent) -> str:
         """Return the program text at an extent; columns count bytes of UTF-8."""
-        first, start, last, end = extent
-        lines = self._lines[first - 1 : last]
-        lines[-1] = lines[-1][:end]
-        lines[0] = lines[0][start:]
-        return b"\n".join(lines).decode()
+        return segment_of(self._lines, extent)
 
     def has_valid_extent(self, node: SyntaxNode) -> bool:
         """Return whether a node's extent is right; before Python 3.12 it may be wrong within f-strings."""

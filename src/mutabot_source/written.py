@@ -11,7 +11,7 @@ from itertools import accumulate
 
 from mutabot.api.faults import Alternative, TextPlace
 
-from .index import TextExtent, extent_of
+from .index import TextExtent, extent_of, segment_of
 from .operator import HELPER
 
 #: what the helper's functions are in a text that is run where there is no helper
@@ -70,23 +70,16 @@ class TextWriter:
         for name, instead in _WITHOUT_HELPER.items():
             text = text.replace(name, instead)
         for index, extent in enumerate(place.kept):
-            text = text.replace(Alternative.kept_name(index), f"({self._segment(extent)})")
+            text = text.replace(Alternative.kept_name(index), f"({segment_of(self._lines, extent)})")
         return text
-
-    def _segment(self, extent: TextExtent) -> str:
-        line, column, end_line, end_column = extent
-        rows = self._lines[line - 1 : end_line]
-        rows[-1] = rows[-1][:end_column]
-        rows[0] = rows[0][column:]
-        return b"\n".join(rows).decode()
 
     def _is_program(self, extent: TextExtent, text: str) -> bool:
         """Return whether the outermost statement around a place can be parsed with another text there."""
         line, column, end_line, end_column = extent
         body = self._statements[bisect_right(self._firsts, line) - 1]
         first, last = _first_line(body), body.end_lineno or end_line
-        before = self._segment((first, 0, line, column))
-        after = self._segment((end_line, end_column, last, len(self._lines[last - 1])))
+        before = segment_of(self._lines, (first, 0, line, column))
+        after = segment_of(self._lines, (end_line, end_column, last, len(self._lines[last - 1])))
         try:
             compile(f"{before}{text}{after}", "<mutant>", "exec", ast.PyCF_ONLY_AST, dont_inherit=True)
         except (SyntaxError, ValueError):
