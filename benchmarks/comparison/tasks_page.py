@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import combinations
 from statistics import fmean
@@ -127,11 +126,16 @@ def with_suites(tasks: Mapping[str, Task]) -> dict[str, Task]:
 def _in_short(tasks: Mapping[str, Task]) -> Iterator[str]:
     yield "## In short\n"
     for key, name, _ in PARTS:
-        found = Counter(stance for task in tasks.values() if (stance := _stance(task, key)) is not None)
-        more, less, open_ = (found[one] for one in (Stance.FOR, Stance.AGAINST, Stance.UNDECIDED))
+        by_stance: dict[Stance, list[str]] = {one: [] for one in Stance}
+        for task_name, task in tasks.items():
+            if (stance := _stance(task, key)) is not None:
+                by_stance[stance].append(task_name)
+        more, less, open_ = (
+            ", ".join(by_stance[one]) or "no task" for one in (Stance.FOR, Stance.AGAINST, Stance.UNDECIDED)
+        )
         yield (
-            f"- Conventional mutants are *{name}* more often than robot ones in {more} of {found.total()}"
-            f" tasks,\n  less often in {less}; {open_} are undecided."
+            f"- Conventional mutants are *{name}* more often than robot ones in {more},\n"
+            f"  less often in {less}; undecided in {open_}."
         )
     if suites := with_suites(tasks):
         ordered = [name for name, task in suites.items() if is_ordered(mutants_of(task, ROBOT))]
