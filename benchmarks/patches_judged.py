@@ -18,6 +18,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import tomllib
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
@@ -162,8 +163,10 @@ def _fails_with(folder: Path, patch: str, to: Path) -> bool:
 
 
 def _plain(folder: Path) -> bool:
-    """Whether plain pytest fails, or does not come to an end."""
-    words = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "tests"]
+    """Whether plain pytest fails, or does not come to an end, on the tests that the project names."""
+    settings = tomllib.loads((folder / "mutabot.toml").read_text(encoding="utf-8"))
+    words = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider"]
+    words += [*settings.get("pytest_args", []), *settings.get("tests", ["tests"])]
     environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1"}
     try:
         done = subprocess.run(
