@@ -57,6 +57,9 @@ from .scene import (
     Belt as Belt,
 )
 from .scene import (
+    DepthCamera as DepthCamera,
+)
+from .scene import (
     Fixture as Fixture,
 )
 from .scene import (
@@ -120,6 +123,7 @@ __all__ = [  # noqa: PLE0604  (the lazy names come from the table above)
     "CellError",
     "ConditionBroken",
     "Cylinder",
+    "DepthCamera",
     "Fixture",
     "LightBarrier",
     "Mark",

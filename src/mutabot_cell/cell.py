@@ -23,6 +23,7 @@ from mutabot_cell.models.robot import RobotModel
 
 from . import integrity
 from .belt import ConveyorBelt
+from .depth_camera import StereoCamera
 from .errors import BadArgument
 from .force_sensor import Wrench, true_wrench
 from .geometry import Pose, Position
@@ -194,6 +195,9 @@ class Cell:
             for fixture in placed.fixtures
             if fixture.belt is not None
         }
+        self._depth_cameras = {
+            camera.name: StereoCamera(self.simulation, camera, draws) for camera in placed.depth_cameras
+        }
         self.truth = Truth(self.simulation, self.robots, placed.parts, self._belts)
         self.feed = make_feed(self.simulation, placed)
         for name, system in self.robots.items():
@@ -256,6 +260,19 @@ class Cell:
             BadArgument: there is no such belt.
         """
         return _belt_of(self._belts, name)
+
+    def depth_camera(self, name: str | None = None) -> StereoCamera:
+        """Return a depth camera by its name; without a name, the first one.
+
+        Raises:
+            BadArgument: there is no such camera.
+        """
+        cameras = self._depth_cameras
+        camera = next(iter(cameras.values()), None) if name is None else cameras.get(name)
+        if camera is None:
+            known = ", ".join(cameras) or "none"
+            raise BadArgument(f"Expected the name of a depth camera ({known}) but got name={name!r}")
+        return camera
 
     def wait(self, seconds: float) -> None:
         """Let simulated time pass.

@@ -6,6 +6,9 @@ import math
 import random
 from collections.abc import Callable
 
+import numpy as np
+from numpy.typing import NDArray
+
 STANDARD_DEVIATIONS = {
     "joint angle": 0.005,  # deg; makes 0.1 mm and 0.015 deg at the tool
     "box position": 0.0005,  # m
@@ -49,6 +52,18 @@ class SeededNoise:
         if not self._enabled:
             return value
         return value + self.stream(name).gauss(0.0, STANDARD_DEVIATIONS[name])
+
+    @property
+    def is_enabled(self) -> bool:
+        """Whether sensors have noise."""
+        return self._enabled
+
+    def field(self, name: str, deviation: float, count: int) -> NDArray[np.float64]:
+        """Return `count` normal draws with mean 0, shape (count,); zeros with sensor noise off."""
+        if not self._enabled:
+            return np.zeros(count)
+        draws = np.random.default_rng(self.stream(name).getrandbits(128))
+        return draws.normal(0.0, deviation, count)
 
     def bounded(self, name: str, deviation: float) -> float:
         """Return a normal draw with mean 0, cut at two standard deviations; also with sensor noise off."""
