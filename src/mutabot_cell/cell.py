@@ -32,7 +32,7 @@ from .monitors import Condition, MonitoredValues, Monitors
 from .parts import Part
 from .robot import Robot
 from .scene import Scene
-from .sensors import true_box_position, true_box_tilt
+from .sensors import true_box_position, true_box_tilt, true_speed
 from .simulation import Simulation
 from .suction import Suction
 from .system import RobotSystem
@@ -68,6 +68,15 @@ class Truth:
         """Return the exact centre of the box's bottom face, world frame."""
         return true_box_position(self._simulation, self._parts[name])
 
+    def tool_speed(self, robot: str | None = None) -> float:
+        """Return the exact speed of the tool point, m/s; of the first robot unless another one is named."""
+        return true_speed(self._simulation, "site", self._robot(robot).site)
+
+    def box_speed(self, name: str = "box") -> float:
+        """Return the exact speed of the box's centre, m/s."""
+        body = self._simulation.id_of("body", self._parts[name].name)
+        return true_speed(self._simulation, "body", body)
+
     def box_tilt(self, name: str = "box") -> float:
         """Return the angle between the box's up and the world's up, degrees."""
         return true_box_tilt(self._simulation, self._parts[name])
@@ -94,7 +103,7 @@ class Truth:
         return system.vacuum() or 0.0
 
     def world(self) -> dict[str, float]:
-        """Return all of the above and the simulated time as a flat dict: "box.x", "opening", "time" etc.
+        """Return where all is and the simulated time as a flat dict: "box.x", "opening", "time" etc.
 
         Of several robots those that are named have their names before: "left/tool.z". In units of which a
         thousandth is little: m, degrees, s, kN ("force"), bar ("vacuum"); 1 for an interrupted light barrier.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import Literal
 
 import mujoco
 import numpy as np
@@ -198,3 +199,11 @@ def true_box_tilt(simulation: Simulation, box: Part) -> float:
     """Return the exact angle between the box's own up and the world's up, degrees."""
     body = simulation.id_of("body", box.name)
     return math.degrees(math.acos(min(1.0, max(-1.0, float(simulation.data.xmat[body][6:] @ box.up)))))
+
+
+def true_speed(simulation: Simulation, kind: Literal["body", "site"], number: int) -> float:
+    """Return the exact speed of a body's origin or of a site, m/s."""
+    found = np.zeros(6)
+    which = mujoco.mjtObj.mjOBJ_SITE if kind == "site" else mujoco.mjtObj.mjOBJ_XBODY
+    mujoco.mj_objectVelocity(simulation.model, simulation.data, which, number, found, 0)
+    return math.hypot(*found[3:].tolist())

@@ -148,7 +148,7 @@ class Monitor(CheckProposal):
 
     @property
     def worth(self) -> tuple[float, ...]:
-        """Sort key: conditions on releases first, then those many survivors break, then single bounds."""
+        """Sort key: conditions on releases first, then those that many survivors break, then few readings."""
         kills = len({mutant for mutant, _ in self.trials})
         return _ON_THE_WAY, self.is_release, kills, " or " not in self.condition, self.distance
 

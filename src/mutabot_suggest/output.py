@@ -20,10 +20,12 @@ def print_suggestions(context: CommandContext, found: Suggestions) -> None:
     survivors = plural(len(killed) + len(found.unsolved), "survivor")
     context.print(f"{plural(len(found.checks), 'check')} for {len(killed)} of {survivors}")
     for number, one in enumerate(found.checks, start=1):
-        context.print_section(f"{number}  {one.test}", [*check_lines(one, found)])
+        context.print_section(f"{number}  {one.test}")
+        for line in check_lines(one, found):  # a statement is copied, so that it must not be wrapped
+            context.print(f"  {line}")
     left = [one for one in found.unsolved if not one.never]
     never = [one for one in found.unsolved if one.never]
-    dropped = [f"{one.statement}: {one.reason}" for one in found.dropped]
+    dropped = [f"{' '.join(one.statement.split())}: {one.reason}" for one in found.dropped]
     sections = {
         f"No check found for {plural(len(left), 'survivor')}": _left(left, found),
         f"{plural(len(never), 'survivor')} cannot be killed by any check in these tests": _left(never, found),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from textwrap import shorten
 
 from mutabot.api.processes import Request
 from mutabot.api.reports import CampaignRun, MutabotError, Progress, Results, Verdict
@@ -11,6 +12,9 @@ from mutabot.api.reports import CampaignRun, MutabotError, Progress, Results, Ve
 from .checks import CheckProposal, Monitor, Trials
 from .editing import edited
 from .project import SuiteFiles, copy_of
+
+#: characters of a failure that are said
+_MOST = 100
 
 
 @dataclass(slots=True)
@@ -51,13 +55,19 @@ class Proof:
             with CampaignRun.of_original(these, rounds, self.progress) as results:
                 for result in results:
                     self.progress.advance(f"round {result.task.key + 1}")
-                    where = f"round {result.task.key + 1} of the original"
+                    is_new = result.task.key >= self.request.rounds
+                    where = (
+                        "the original with a new seed"
+                        if is_new
+                        else f"round {result.task.key + 1} of the original"
+                    )
                     if result.end is None or result.end.errors or not result.ends:
                         why = result.death() if result.end is None else "; ".join(result.end.errors)
                         return dict.fromkeys(checks, f"the tests cannot be run with it: {why or 'none ran'}")
                     for end in result.ends:
                         if end.outcome == "failed":
-                            text = f"fails in {where}: {(end.message or 'no message').splitlines()[0]}"
+                            why = (end.message or "no message").splitlines()[0]
+                            text = f"fails in {where}: {shorten(why, _MOST, placeholder=' …')}"
                             for one in _blamed(checks, end.test, end.place or "", end.message or "", texts):
                                 found.setdefault(one, text)
         return found

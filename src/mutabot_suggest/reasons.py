@@ -21,6 +21,8 @@ NOT_REACHED = "no test reaches it: add a test that does"
 _NEAR, _TURNED = 0.03, 15.0
 #: how the reason begins for a survivor that the suite allows
 _SO_LITTLE = "at most"
+#: what a thing moves that a robot holds
+_IN_GRIP = {"slip", "drag"}
 #: names of lengths and of angles in checks
 _LENGTHS, _ANGLES = {"x", "y", "z"}, {"theta_x", "theta_y", "theta_z", "roll", "pitch", "yaw"}
 
@@ -83,6 +85,10 @@ def _of_recordings(survivor: MutantResult, measured: Measured, suite: SuiteCheck
         elif unit == "m" and way < _NEAR:
             why = "on the way it is too near to the original for a bound"
         return f"{found.story}: at the end within your tolerance of {allowed}; {why}"
+    moved = [one.value or 0.0 for one in found.measurements if one.name in _IN_GRIP and one.deviation > 1.0]
+    limit = _tolerance(measured, suite, _LENGTHS)
+    if moved and max(moved) <= limit:
+        return f"{found.story}: within your tolerance of {_amount(limit, 'm')}"
     return f"{found.story}: nothing that its tests can read tells it from the original"
 
 

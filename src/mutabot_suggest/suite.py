@@ -107,7 +107,7 @@ class SuiteChecks:
         module = self.project.module(file)
         for node in module.body if module is not None else ():
             targets = node.targets[0] if isinstance(node, ast.Assign) else None
-            for target, value in _assigned(targets, node.value if isinstance(node, ast.Assign) else None):
+            for target, value in assigned(targets, node.value if isinstance(node, ast.Assign) else None):
                 try:
                     items = ast.literal_eval(value)
                 except ValueError:
@@ -265,13 +265,13 @@ class SuiteChecks:
         return False
 
 
-def _assigned(target: ast.expr | None, value: ast.expr | None) -> Iterator[tuple[str, ast.expr]]:
+def assigned(target: ast.expr | None, value: ast.expr | None) -> Iterator[tuple[str, ast.expr]]:
     """Yield the names that an assignment binds, with their values: ``A, B = 1, 2`` gives two."""
     if isinstance(target, ast.Name) and value is not None:
         yield target.id, value
     elif isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple):
         for one, other in zip(target.elts, value.elts, strict=False):
-            yield from _assigned(one, other)
+            yield from assigned(one, other)
 
 
 def _is_at(check: SuiteCheck, node: ast.stmt) -> bool:

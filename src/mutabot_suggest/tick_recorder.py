@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import inspect
 import json
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from typing import Any
@@ -16,6 +17,8 @@ from typing import Any
 SIGN = "~"
 #: moments that are kept of each test at most, and ticks between two at first
 _MOST, _EVERY = 800, 5
+#: what may be great for one tick alone, as the force of an impact
+PEAKS = re.compile(r"(?:^|[._])(?:force|speed)(?:\(\))?$")
 
 _recordings: list[_TickRecording] = []
 
@@ -64,22 +67,52 @@ class _TickRecording:
         self.texts: list[str] = []
         self.rows: list[list[float]] = []
         self._readings = readings
+        self._sudden = {text: read for text, read in readings.items() if _has_peaks(text, read())}
+        self._peaks: dict[str, float] = {}
         self._ticks, self._every = 0, _EVERY
 
     def see(self) -> bool:
         """Take a reading if one is due; always return True, as a condition that holds."""
         self._ticks += 1
-        if self._ticks % self._every == 0:
-            try:
-                pairs = [pair for text, read in self._readings.items() for pair in _numbers(text, read())]
-            except Exception:  # a reading that fails on the way is none
-                return True
+        is_due = self._ticks % self._every == 0
+        try:
+            self._see_peaks()
+            pairs = [*self._pairs()] if is_due else []
+        except Exception:  # a reading that fails on the way is none
+            return True
+        if is_due:
             self.texts = [text for text, _ in pairs]
-            self.rows.append([round(value, 6) for _, value in pairs])
+            self.rows.append([round(self._peaks.get(text, value), 6) for text, value in pairs])
+            self._peaks.clear()
             if len(self.rows) > _MOST:
-                self.rows = self.rows[1::2]
+                self.rows = _halved(self.texts, self.rows)
                 self._every *= 2
         return True
+
+    def _pairs(self) -> Iterator[tuple[str, float]]:
+        for text, read in self._readings.items():
+            yield from _numbers(text, read())
+
+    def _see_peaks(self) -> None:
+        """Keep the largest values since the last moment that was recorded."""
+        for text, read in self._sudden.items():
+            for name, value in _numbers(text, read()):
+                if PEAKS.search(name):
+                    self._peaks[name] = max(value, self._peaks.get(name, value), key=abs)
+
+
+def _has_peaks(text: str, value: Any) -> bool:
+    return any(PEAKS.search(name) for name, _ in _numbers(text, value))
+
+
+def _halved(texts: Sequence[str], rows: Sequence[list[float]]) -> list[list[float]]:
+    """Return every second moment, with the larger peak of both."""
+    peaks = [number for number, text in enumerate(texts) if PEAKS.search(text)]
+    kept = []
+    for before, row in zip(rows[::2], rows[1::2], strict=False):
+        larger = {number: max(before[number], row[number], key=abs) for number in peaks}
+        kept.append([larger.get(number, value) for number, value in enumerate(row)])
+    return kept
 
 
 def _works(read: Callable[[], Any]) -> bool:
@@ -104,12 +137,14 @@ def _needs_nothing(read: Callable[..., Any]) -> bool:
 
 
 def _numbers(text: str, value: Any) -> Iterator[tuple[str, float]]:
-    """Yield the numbers of a reading: itself, or the fields of a plain object."""
+    """Yield the numbers of a reading: itself, or the fields of a plain object and its force or speed."""
     if isinstance(value, int | float) and not isinstance(value, bool):
         yield text, float(value)
     elif is_dataclass(value) and not isinstance(value, type):
-        for one in fields(value):
-            yield from _numbers(f"{text}.{one.name}", getattr(value, one.name))
+        properties = [name for name, part in vars(type(value)).items() if isinstance(part, property)]
+        names = [one.name for one in fields(value)]
+        for name in [*names, *filter(PEAKS.search, properties)]:
+            yield from _numbers(f"{text}.{name}", getattr(value, name))
     elif hasattr(type(value), "_fields"):
         for field in value._fields:
             yield from _numbers(f"{text}.{field}", getattr(value, field))

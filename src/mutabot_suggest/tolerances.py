@@ -14,6 +14,7 @@ from .checks import MutantReadings, last_name
 from .forms import SuiteCheck, is_number
 from .project import text_of
 from .readings import ValuesRead
+from .stated_bounds import greatest_bound
 from .suite import SuiteChecks
 
 #: names of the parts of one thing, which have one tolerance if only some are checked
@@ -65,6 +66,10 @@ class StatedTolerances:
         if text not in self._found:
             self._found[text] = self._of(text)
         return self._found[text]
+
+    def bound(self, text: str) -> float:
+        """Return the greatest bound that the tests state for a force or speed."""
+        return greatest_bound(self._suite.project, text)
 
     def _of(self, text: str) -> StatedTolerance:
         """Return the largest tolerance for this quantity, by values or name; else the least of its group."""

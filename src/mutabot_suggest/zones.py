@@ -1,28 +1,28 @@
 """Monitors for survivors that take another path: zones that the original never enters, with a margin.
 
-A zone is all beyond one bound (``x < 0.67``), or the corner beyond two (``x < 0.67 or z > 0.4``). With the
-opening of a gripper it says from where something may be let go.
+A zone is all beyond one bound (``x < 0.67``), of a place, a kept angle, a force or a speed. With the opening
+of a gripper (``z < 1.1 or opening < 0.06``) it says from where a thing may be let go, or that it slips.
 """
 
 from __future__ import annotations
 
 import json
 import math
-import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from itertools import combinations, pairwise
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise, permutations
 
-from .bands import digits_of
 from .checks import ANGLE, PLACE, Monitor, Trials, rank_of
 from .project import PlaceInTest
 from .readings import Measured, ValuesRead
 from .suite import SuiteChecks
-from .tick_recorder import SIGN
+from .tick_recorder import PEAKS, SIGN
 from .tolerances import StatedTolerances
+from .zone import COORDINATE, FROM, GATE, Bound, Columns, Zone
 
-#: what counts as clear of the original: m, and degrees
-_CLEAR, _CLEAR_ANGLE = 0.02, 10.0
+#: what counts as clear of the original: m, degrees, and m that a thing moves in the fingers
+_CLEAR, _CLEAR_ANGLE, _CLEAR_SLIP = 0.02, 10.0, 0.003
+#: the same of forces (N) and speeds (m/s), and as a share of the original's greatest
+_CLEAR_FORCE, _CLEAR_SPEED, _CLEAR_SHARE = 5.0, 0.1, 0.2
 #: times that by which a survivor must be in a zone: half of it stays free on either side of the bound
 _ROOM = 1.5
 #: farther in a zone is no better
@@ -31,41 +31,8 @@ _FAR = 10.0
 _STEPS = 6
 #: degrees by which an angle may change that is kept
 _KEPT = 20.0
-#: what says how far a gripper is open: it has two states, and its zones are those of things let go
-_GATE = re.compile(r"opening|aperture", re.I)
-
-#: numbers by expression, moment by moment
-Columns = Mapping[str, Sequence[float]]
-
-
-@dataclass(frozen=True, slots=True)
-class _Bound:
-    """One bound of a zone: ``sign`` is 1 for values above it, -1 for values below."""
-
-    text: str
-    sign: int
-    scale: float
-
-
-@dataclass(frozen=True, slots=True)
-class _Zone:
-    """The moments at which all readings are beyond their bounds."""
-
-    sides: tuple[_Bound, ...]
-    bounds: tuple[float, ...]
-    distance: float
-
-    def has(self, columns: Columns) -> bool:
-        """Return whether any moment lies in the zone."""
-        rows = zip(*(columns[side.text] for side in self.sides), strict=True)
-        signs = [side.sign for side in self.sides]
-        return any(
-            all(
-                sign * value >= sign * bound
-                for sign, value, bound in zip(signs, row, self.bounds, strict=True)
-            )
-            for row in rows
-        )
+#: times what counts as clear: what slips farther has been lost
+_SLIPPED = 4.0
 
 
 def monitors(suite: SuiteChecks, measured: Measured) -> Iterator[Monitor]:
@@ -91,7 +58,19 @@ def _columns(read: ValuesRead, owner: str) -> Columns | None:
     if owner not in read:
         return None
     texts, rows = json.loads(read[owner])
-    return dict(zip(texts, zip(*rows, strict=True), strict=True))
+    found = dict(zip(texts, zip(*rows, strict=True), strict=True))
+    return {**found, **dict(_distances(found))}
+
+
+def _distances(columns: Columns) -> Iterator[tuple[str, Sequence[float]]]:
+    """Yield how far things are from a tool that grips, along each axis."""
+    if not any(GATE.search(text) for text in columns):
+        return
+    places = {text: match[1] for text in columns if (match := COORDINATE.search(text))}
+    for one, other in permutations(places, 2):
+        if places[other] == "tool" != places[one] and one[-2:] == other[-2:]:
+            values = [a - b for a, b in zip(columns[one], columns[other], strict=True)]
+            yield f"{one}{FROM}{other}", values
 
 
 def _of_ways(
@@ -105,10 +84,12 @@ def _of_ways(
     shared = set.intersection(*({*one} for one in (*ways, *theirs.values())))
     shared -= {text for text in shared if text.replace("_pose()", "_position()") in shared - {text}}
     scales = {text: scale for text in sorted(shared) if (scale := _scale_of(text, ways, limits))}
-    zones: dict[str, _Zone] = {}
+    zones: dict[str, Zone] = {}
     for columns in theirs.values():
         for zone in _zones(columns, ways, scales):
-            zones.setdefault(f"{zone.sides} {zone.bounds}", zone)
+            (side, *_), (bound, *_) = zone.sides, zone.bounds
+            if not PEAKS.search(side.text) or bound >= limits.bound(side.text):
+                zones.setdefault(f"{zone.sides} {zone.bounds}", zone)
     for zone in zones.values():
         trials: Trials = frozenset(trial for trial, columns in theirs.items() if zone.has(columns))
         texts = [side.text for side in zone.sides]
@@ -121,18 +102,23 @@ def _of_ways(
             runs=len(ways),
             needs=tuple(needs),
             owner=owner,
-            condition=_condition(zone),
-            name=_name(zone),
-            is_release=any(_GATE.search(text) for text in texts),
+            condition=zone.condition,
+            name=zone.name,
+            is_release=zone.is_release,
             distance=zone.distance,
         )
 
 
 def _scale_of(text: str, ways: Sequence[Columns], limits: StatedTolerances) -> float | None:
     """Return the margin of a reading, never less than the tests allow; None if it has no bounds."""
-    if _GATE.search(text):
+    if GATE.search(text):
         values = [value for way in ways for value in way[text]]
         return (max(values) - min(values)) / 4 / _ROOM or None
+    if PEAKS.search(text):
+        least = _CLEAR_FORCE if text.endswith("force") else _CLEAR_SPEED
+        return max(least, _CLEAR_SHARE * max(value for way in ways for value in way[text]))
+    if FROM in text:
+        return max(_CLEAR_SLIP, limits.of(text.partition(FROM)[0]).tolerance)
     rank = rank_of(text)
     if rank == PLACE:
         return max(_CLEAR, limits.of(text).tolerance)
@@ -143,65 +129,85 @@ def _scale_of(text: str, ways: Sequence[Columns], limits: StatedTolerances) -> f
     return None
 
 
-def _zones(columns: Columns, ways: Sequence[Columns], scales: Mapping[str, float]) -> Iterator[_Zone]:
-    """Yield the zones of one survivor: at releases, with one bound; else the best with two bounds."""
-    pairs = [*_pairs(scales)]
-    gates = [pair for pair in pairs if _GATE.search(pair[1])]
-    found = [*_beyond_two(columns, ways, scales, gates), *_beyond_one(columns, ways, scales)]
-    if not found:
-        corners = [pair for pair in pairs if pair not in gates]
-        found = sorted(_beyond_two(columns, ways, scales, corners), key=lambda zone: -zone.distance)[:2]
-    yield from found
+def _zones(columns: Columns, ways: Sequence[Columns], scales: Mapping[str, float]) -> Iterator[Zone]:
+    """Yield the zones of one survivor: of what is let go or slips, and with one bound."""
+    for zones in (_of_releases, _of_slips, _of_bounds):
+        yield from zones(columns, ways, scales)
 
 
-def _beyond_one(columns: Columns, ways: Sequence[Columns], scales: Mapping[str, float]) -> Iterator[_Zone]:
+def _of_bounds(columns: Columns, ways: Sequence[Columns], scales: Mapping[str, float]) -> Iterator[Zone]:
+    """Yield the zones beyond one bound; forces and speeds have no least one."""
     for text, scale in scales.items():
-        for sign in (1, -1) if not _GATE.search(text) else ():
-            most = [max(sign * value for value in way[text]) for way in ways]
-            nearest = max(sign * value for value in columns[text])
-            far = (nearest - max(most)) / (scale + max(most) - min(most))
-            if far >= _ROOM:
-                bound = _readable(sign * max(most), sign * nearest)
-                yield _Zone((_Bound(text, sign, scale),), (bound,), min(far, _FAR))
+        is_paired = GATE.search(text) or FROM in text
+        for sign in () if is_paired else (1,) if PEAKS.search(text) else (1, -1):
+            side = Bound(text, sign, scale)
+            found = _beyond(side, columns[text], [way[text] for way in ways])
+            if found is not None:
+                yield Zone((side,), (found[0],), found[1])
 
 
-def _beyond_two(
-    columns: Columns,
-    ways: Sequence[Columns],
-    scales: Mapping[str, float],
-    pairs: Sequence[tuple[str, str]],
-) -> Iterator[_Zone]:
-    for one, other in pairs:
-        for signs in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
-            sides = _Bound(one, signs[0], scales[one]), _Bound(other, signs[1], scales[other])
-            if _GATE.search(other) and signs != (1, 1):  # only what is let go, and from higher
-                continue
-            front = _front([row for way in ways for row in _between(_scaled(way, sides))])
-            best, at = -math.inf, (0.0, 0.0)
-            for row in _scaled(columns, sides):
-                far = min(max(row[0] - a, row[1] - b) for a, b in front)
-                if far > best:
-                    best, at = far, row
-            if best >= _ROOM:
-                best = min(best, _FAR)
-                bounds = tuple(
-                    _readable(side.sign * (value - best) * side.scale, side.sign * value * side.scale)
-                    for side, value in zip(sides, at, strict=True)
-                )
-                yield _Zone(sides, bounds, best - _ROOM / 2)
+def _of_slips(columns: Columns, ways: Sequence[Columns], scales: Mapping[str, float]) -> Iterator[Zone]:
+    """Yield the zones of things that move in closed fingers."""
+    for gate in (text for text in scales if GATE.search(text)):
+        values = [value for way in ways for value in way[gate]]
+        half = _readable(min(values), max(values))
+        for text in (text for text in scales if FROM in text):
+            held = [_where_below(way, gate, half)[text] for way in ways]
+            own = _where_below(columns, gate, half)[text]
+            for sign in (1, -1) if own and all(held) else ():
+                side, closed = Bound(text, sign, scales[text]), Bound(gate, -1, scales[gate])
+                found = _beyond(side, own, held, _SLIPPED)
+                if found is not None:
+                    yield Zone((side, closed), (found[0], half), found[1])
 
 
-def _pairs(texts: Collection[str]) -> Iterator[tuple[str, str]]:
-    """Yield pairs of related readings: of one thing, or of a thing and the gripper's opening."""
-    gates = [text for text in texts if _GATE.search(text)]
-    places = [text for text in texts if text not in gates and rank_of(text) == PLACE]
-    for one, other in combinations(places, 2):
-        if one.rpartition(".")[0] == other.rpartition(".")[0]:
-            yield one, other
-    yield from ((one, gate) for one in places for gate in gates if one.endswith(".z") and "tool" not in one)
+def _where_below(columns: Columns, gate: str, bound: float) -> Columns:
+    """Return the moments at which a reading is below a bound."""
+    kept = [number for number, value in enumerate(columns[gate]) if value < bound]
+    return {text: [values[number] for number in kept] for text, values in columns.items()}
 
 
-def _scaled(columns: Columns, sides: Sequence[_Bound]) -> list[tuple[float, float]]:
+def _beyond(
+    side: Bound, own: Sequence[float], usual: Sequence[Sequence[float]], most: float = math.inf
+) -> tuple[float, float] | None:
+    """Return the bound on one side of what is usual, and how far beyond it is; None if not far enough.
+
+    ``most``: times the scale, where what is farther counts as near as that.
+    """
+    ends = [max(side.sign * value for value in values) for values in usual]
+    unit = side.scale + max(ends) - min(ends)
+    far = min((max(side.sign * value for value in own) - max(ends)) / unit, most)
+    if far < _ROOM:
+        return None
+    return _readable(side.sign * max(ends), side.sign * (max(ends) + far * unit)), min(far, _FAR)
+
+
+def _of_releases(columns: Columns, ways: Sequence[Columns], scales: Mapping[str, float]) -> Iterator[Zone]:
+    """Yield the zones of things that open fingers let go from higher."""
+    for sides in _releasing(scales):
+        front = _front([row for way in ways for row in _between(_scaled(way, sides))])
+        best, at = -math.inf, (0.0, 0.0)
+        for row in _scaled(columns, sides):
+            far = min(max(row[0] - a, row[1] - b) for a, b in front)
+            if far > best:
+                best, at = far, row
+        if best >= _ROOM:
+            best = min(best, _FAR)
+            bounds = tuple(
+                _readable((value - best) * side.scale, value * side.scale)
+                for side, value in zip(sides, at, strict=True)
+            )
+            yield Zone(sides, bounds, best - _ROOM / 2)
+
+
+def _releasing(scales: Mapping[str, float]) -> Iterator[tuple[Bound, Bound]]:
+    """Yield heights of things, each with the gripper's opening."""
+    gates = [text for text in scales if GATE.search(text)]
+    for text in (text for text in scales if text.endswith(".z") and "tool" not in text):
+        yield from ((Bound(text, 1, scales[text]), Bound(gate, 1, scales[gate])) for gate in gates)
+
+
+def _scaled(columns: Columns, sides: Sequence[Bound]) -> list[tuple[float, float]]:
     one, other = sides
     return [
         (one.sign * a / one.scale, other.sign * b / other.scale)
@@ -235,37 +241,3 @@ def _readable(free: float, taken: float) -> float:
         if low <= value <= high:
             return value + 0.0
     return (low + high) / 2
-
-
-def _condition(zone: _Zone) -> str:
-    """Return the condition that a moment lies outside the zone: ``a < 0.6 or b > 0.2``."""
-    return " or ".join(
-        f"{side.text} {'<' if side.sign > 0 else '>'} {_number(bound)}"
-        for side, bound in zip(zone.sides, zone.bounds, strict=True)
-    )
-
-
-def _number(value: float) -> str:
-    text = repr(value)
-    return text.removesuffix(".0") if digits_of(value) else text
-
-
-def _name(zone: _Zone) -> str:
-    """Return a description of the condition for people."""
-    (first, *more), (bound, *others) = zone.sides, zone.bounds
-    word = "below" if first.sign > 0 else "above"
-    text = f"{_thing(first.text)} stays {word} {_number(bound)}"
-    if not more:
-        return text
-    if _GATE.search(more[0].text):
-        return f"{_thing(first.text)} is {word} {_number(bound)} when the gripper opens"
-    side = "above" if more[0].sign > 0 else "below"
-    return f"{text} where {_thing(more[0].text)} is {side} {_number(others[0])}"
-
-
-def _thing(text: str) -> str:
-    """Return a short name of a reading: ``tool x`` for ``cell.truth.tool_position().x``."""
-    call, _, part = text.rpartition(").")
-    name = (call or text).partition("(")[0].rpartition(".")[2]
-    name = name.removesuffix("_position").removesuffix("_pose")
-    return f"{name} {part}".replace("_", " ").strip() if call else name.replace("_", " ")

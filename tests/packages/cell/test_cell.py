@@ -199,6 +199,26 @@ def test_world_is_the_flat_true_state_of_the_latest_cell(cell: Cell) -> None:
     assert all(type(value) is float for value in seen.values())
 
 
+def test_speeds_of_tool_and_box_are_those_of_their_places_from_tick_to_tick(
+    cell: Cell, grip: Callable[[Cell], None]
+) -> None:
+    grip(cell)
+    places: list[tuple[float, ...]] = []
+    speeds: list[tuple[float, float]] = []
+
+    def note() -> None:
+        tool, box = cell.truth.tool_position(), cell.truth.box_position()
+        places.append((cell.time, tool.x, tool.y, tool.z, box.x, box.y, box.z))
+        speeds.append((cell.truth.tool_speed(), cell.truth.box_speed()))
+
+    cell.simulation.after_tick.append(note)
+    cell.arm.move_by(z=0.1)
+    steps = np.diff(np.array(places), axis=0)
+    travelled = np.stack([np.hypot(*steps[:, 2:4].T), np.hypot(*steps[:, 5:7].T)], axis=1) / steps[:, :1]
+    assert travelled.max() > 0.2
+    assert np.array(speeds)[1:] == pytest.approx(travelled, abs=0.02)
+
+
 def test_every_public_name_exists() -> None:
     assert all(hasattr(mutabot_cell, name) for name in mutabot_cell.__all__)
     with pytest.raises(AttributeError, match="Robot"):

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import ast
+from dataclasses import replace
 from textwrap import dedent
 from typing import Any
 
 import pytest
 
 from mutabot.model import Mutant, Outcome, Role, Site, Span, Verdict
-from mutabot.model.outcome import Apart, Diverged, Looked
+from mutabot.model.outcome import Apart, Diverged, Looked, Measurement
 from mutabot.results.results import MutantResult
 from mutabot_suggest.output import print_suggestions
 from mutabot_suggest.places import chosen_places
@@ -107,6 +108,24 @@ def test_what_slips_on_its_way_is_told_so_though_no_position_differs(suite: Suit
     late = Apart("box", "m", 1.0, 0.04, 2.0, 0.0, 0.0, 0.04, 0.0001, 0.05)
     told = in_test("test_it", "box slipped 9.3 mm (original: 0.23 mm) in the grip", late)
     assert reason(suite, told).startswith("box slipped 9.3 mm (original: 0.23 mm) in the grip: nothing that")
+
+
+@pytest.mark.parametrize(
+    ("slip", "said"),
+    [(0.0093, "within your tolerance of 20 mm"), (0.031, "nothing that its tests can read tells it")],
+)
+def test_a_slip_that_the_suite_allows_at_the_end_is_told_with_its_tolerance(
+    suite: SuiteChecks, slip: float, said: str
+) -> None:
+    slipped = Measurement("slip", "box", "m", slip, 0.0002, 5.0, 0.001)
+    story = in_test("test_it", "box slipped in the grip")
+    assert reason(suite, replace(story, measurements=(slipped,), apart=(late(),))).startswith(
+        f"box slipped in the grip: {said}"
+    )
+
+
+def late() -> Apart:
+    return Apart("box", "m", 1.0, 0.04, 2.0, 0.0, 0.0, 0.04, 0.0001, 0.05)
 
 
 def test_the_same_reason_is_told_once(capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,0 +1,64 @@
+"""The upper bounds that the suite states for forces and speeds: no suggested monitor asks for less.
+
+``wrench.force < MOST`` and ``math.hypot(wrench.fx, wrench.fy) < 40`` bound ``cell.truth.wrench().force``.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator, Mapping
+
+from .forms import is_number
+from .project import SuiteFiles
+from .suite import assigned
+
+_NAME = re.compile(r"[^\W\d]\w*")
+#: names that every reading of the cell's state has
+_COMMON = {"cell", "truth"}
+
+
+def greatest_bound(project: SuiteFiles, text: str) -> float:
+    """Return the greatest number below which any comparison of the suite wants a reading; 0 without any."""
+    names = {*_NAME.findall(text)} - _COMMON
+    names |= {name.rpartition("_")[2] for name in names}
+    constants = dict(_constants(project))
+    sizes = [
+        size
+        for file in project.suite_files
+        for node in ast.walk(project.module(file) or ast.Module([], []))
+        if isinstance(node, ast.Compare)
+        for size in _bounds(node, names, constants)
+    ]
+    return max(sizes, default=0.0)
+
+
+def _constants(project: SuiteFiles) -> Iterator[tuple[str, float]]:
+    """Yield the numbers that files of the suite name at their top level."""
+    for file in project.suite_files:
+        module = project.module(file)
+        found = (one for one in module.body if isinstance(one, ast.Assign)) if module is not None else ()
+        for name, value in (pair for one in found for pair in assigned(one.targets[0], one.value)):
+            if isinstance(value, ast.Constant) and is_number(value.value):
+                yield name, float(value.value)
+
+
+def _bounds(node: ast.Compare, names: set[str], constants: Mapping[str, float]) -> Iterator[float]:
+    sides = [node.left, *node.comparators]
+    for one, operator, other in zip(sides, node.ops, sides[1:], strict=False):
+        match operator:
+            case ast.Lt() | ast.LtE():
+                smaller, larger = one, other
+            case ast.Gt() | ast.GtE():
+                smaller, larger = other, one
+            case _:
+                continue
+        size = _number(larger, constants)
+        if size is not None and names & {*_NAME.findall(ast.unparse(smaller))}:
+            yield size
+
+
+def _number(node: ast.expr, constants: Mapping[str, float]) -> float | None:
+    if isinstance(node, ast.Constant) and is_number(node.value):
+        return float(node.value)
+    return constants.get(node.id) if isinstance(node, ast.Name) else None
