@@ -135,7 +135,7 @@ class Planned:
 
     mutants: list[PlannedMutant] = field(default_factory=list)
     texts: tuple[ProgramText, ...] = ()
-    reached: dict[tuple[int, Place], list[str]] = field(default_factory=dict)
+    reached: dict[tuple[int, Place], tuple[str, ...]] = field(default_factory=dict)
     below: dict[tuple[int, Place, str], set[str]] = field(default_factory=dict)
     early: set[Place] = field(default_factory=set)
 
@@ -162,9 +162,7 @@ class Planned:
                         self._reach_place(round, places[number], origin, tests)
 
     def _reach(self, round: int, place: Place, tests: Iterable[str]) -> None:
-        known = self.reached.setdefault((round, place), [])
-        there = set(known)
-        known += [test for test in tests if test not in there]
+        self.reached[round, place] = tuple(dict.fromkeys((*self.reached.get((round, place), ()), *tests)))
 
     def _reach_place(self, round: int, found: TextPlace, origin: str, tests: list[str]) -> None:
         place = Place(found.site, "")

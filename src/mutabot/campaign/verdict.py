@@ -279,7 +279,7 @@ def _lacks_tests(run: Run, outcome: Outcome) -> bool:
 
 def _looked(run: Run, baseline: Baseline) -> tuple[Looked, ...]:
     """Return the tests that reach a survivor, first those in which it acted."""
-    reaching = baseline.tests_reaching(run.round, run.mutant)
+    reaching = set(baseline.tests_reaching(run.round, run.mutant))
     ends = (end for end in run.ends if end.test in reaching)
     found = [Looked(end.test, end.acted > 0, end.checks, end.more_checks) for end in ends]
     return tuple(sorted(found, key=lambda one: not one.acted)[:_MOST_LOOKED])

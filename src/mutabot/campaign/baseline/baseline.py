@@ -154,7 +154,7 @@ class Baseline(Original):
         further: by test, what is compared in runs with seeds of rounds in which no mutant runs.
     """
 
-    reaching: dict[tuple[int, Place], list[str]] = field(default_factory=dict)
+    reaching: dict[tuple[int, Place], tuple[str, ...]] = field(default_factory=dict)
     below: dict[tuple[int, Place, str], set[str]] = field(default_factory=dict)
     observations: dict[tuple[int, str], Observation] = field(default_factory=dict)
     unstable: dict[tuple[int, str], str] = field(default_factory=dict)
@@ -176,6 +176,7 @@ class Baseline(Original):
     collected: dict[int, frozenset[str]] = field(default_factory=dict)
     untested: Untested = field(default_factory=Untested)
     further: dict[str, list[Observation]] = field(default_factory=dict)
+    _in_order: dict[tuple[int, frozenset[str] | None], tuple[str, ...]] = field(default_factory=dict)
     _probe_spreads: dict[tuple[int, str], ProbeSpread] = field(default_factory=dict)
 
     def suite(self, round: int) -> tuple[str, ...]:
@@ -188,7 +189,7 @@ class Baseline(Original):
 
     def tests_reaching(self, round: int, mutant: Mutant) -> tuple[str, ...]:
         """Return the tests that reach a mutant, quickest first."""
-        return tuple(self.reaching.get((round, Place.of(mutant)), ()))
+        return self.reaching.get((round, Place.of(mutant)), ())
 
     def tests_judging(self, round: int, mutant: Mutant) -> tuple[str, ...]:
         """Return the tests that can notice a mutant, in their order: all from the first on that reaches it.
@@ -234,11 +235,20 @@ class Baseline(Original):
 
     def reach(self, round: int, place: Place, tests: Collection[str] | None) -> None:
         """Note that these tests reach a place in a round; None is a place that affects all tests."""
-        here = [test for test in self.tests[round] if tests is None or test in tests]
         aside = [test for where, test in self.unstable if where == round and (tests is None or test in tests)]
-        self.reaching[round, place] = sorted(here, key=lambda test: cost(self.ends[round, test]))
+        self.reaching[round, place] = self._fastest_first(round, tests if tests is None else frozenset(tests))
         if aside:
             self.flaky_reaching[round, place] = aside
+
+    def _fastest_first(self, round: int, tests: frozenset[str] | None) -> tuple[str, ...]:
+        # a suite may have ten thousand tests, and thousands of places that the same of them reach
+        if (round, tests) not in self._in_order:
+            if tests is None:
+                order = sorted(self.tests[round], key=lambda test: cost(self.ends[round, test]))
+            else:
+                order = [test for test in self._fastest_first(round, None) if test in tests]
+            self._in_order[round, tests] = tuple(order)
+        return self._in_order[round, tests]
 
     def reach_below(self, round: int, place: Place, test: str, origin: str) -> None:
         """Note that a test reaches a place in a process below it of this origin."""
@@ -304,9 +314,10 @@ class Baseline(Original):
         """Exclude a flaky test: from now on no mutant is judged by it in this round."""
         self.unstable[round, test] = reason
         self.tests[round] = [other for other in self.tests[round] if other != test]
+        self._in_order.clear()
         for (where, place), tests in self.reaching.items():
             if where == round and test in tests:
-                tests.remove(test)
+                self.reaching[where, place] = self._fastest_first(round, frozenset(tests))
                 self.flaky_reaching.setdefault((where, place), []).append(test)
 
     def ran(self, round: int) -> list[str]:

@@ -418,7 +418,7 @@ def _no_tests(baseline: Baseline) -> str:
 def _add_hits(
     baseline: Baseline, sources: Sources, round: int, result: Result, places: Mapping[int, Place]
 ) -> None:
-    good = baseline.tests[round]
+    good = set(baseline.tests[round])
     live = {places[index] for end in result.ends for index in end.live}
     baseline.written_through |= {one for one in live if sources.is_among(one.site.span, written_through)}
     for seen in result.sites:
@@ -447,6 +447,6 @@ def _add_hits(
         baseline.hits.setdefault(place, []).append(Hit(call.written, call.read, (round, "")))
         baseline.answers.setdefault(place, RecordedAnswers()).add(round, "", call.answer)
         baseline.early.add(place)
-        reaching[place] = set(good)
+        reaching[place] = good
     for place, tests in reaching.items():
         baseline.reach(round, place, tests)

@@ -246,7 +246,7 @@ class Dependencies:
 
     def tests(self, mutant: Mutant, round: int, *, whole: bool, until: str = "") -> tuple[str, ...]:
         """Return the tests that an outcome depends on, in order, up to the one that decided."""
-        reaching = self._baseline.tests_reaching(round, mutant)
+        reaching = set(self._baseline.tests_reaching(round, mutant))
         suite = tuple(test for test in self._baseline.suite(round) if test not in self.absent)
         found = suite if whole else tuple(test for test in suite if test in reaching)
         return found[: found.index(until) + 1] if until in found else found
