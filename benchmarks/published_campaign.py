@@ -1,11 +1,12 @@
 """What processor time does the published campaign take, beside that of another version of mutabot?
 
-    python benchmarks/published_campaign.py OTHER [pairs]
+    python benchmarks/published_campaign.py OTHER [pairs [rounds]]
 
 OTHER is the `mutabot` command of the other version, in a virtual environment with the same packages. In each
-pair, first the other version and then the one beside this Python runs the 26 mutants of `examples/paper` in
-five rounds, one process at a time, in a copy of the example. Printed are the processor times of each pair, of
-all processes, and in the end the ratio of their sums. The exit code is 1 if their verdicts differ.
+pair, first the other version and then the one beside this Python runs the 26 mutants of `examples/paper`, in
+five rounds if nothing else is asked, one process at a time, in a copy of the example. Printed are the processor
+times of each pair, of all processes, and in the end the ratio of their sums. The exit code is 1 if their
+verdicts differ.
 """
 
 from __future__ import annotations
@@ -28,10 +29,10 @@ def spent() -> float:
     return used.ru_utime + used.ru_stime
 
 
-def run(command: str, folder: Path) -> tuple[float, dict[str, object]]:
+def run(command: str, folder: Path, rounds: int) -> tuple[float, dict[str, object]]:
     """Processor time of one campaign, s, and of each mutant in how many rounds which verdict came out."""
     before = spent()
-    options = ["run", "--fresh", "-j", "1", "--only", f"@{PUBLISHED}"]
+    options = ["run", "--fresh", "-j", "1", "--only", f"@{PUBLISHED}", "--rounds", str(rounds)]
     subprocess.run([command, *options], cwd=folder, check=True, capture_output=True)
     took = spent() - before
     told = subprocess.run(
@@ -41,7 +42,7 @@ def run(command: str, folder: Path) -> tuple[float, dict[str, object]]:
     return took, {one["id"]: [outcome["verdict"] for outcome in one["rounds"]] for one in mutants}
 
 
-def main(other: str, pairs: int) -> int:
+def main(other: str, pairs: int = 4, rounds: int = 5) -> int:
     """Run so many pairs; the exit code."""
     commands = {"other": other, "own": str(Path(sys.executable).with_name("mutabot"))}
     sums = dict.fromkeys(commands, 0.0)
@@ -52,7 +53,7 @@ def main(other: str, pairs: int) -> int:
         for _ in range(pairs):
             times = {}
             for name, command in commands.items():
-                times[name], found = run(command, Path(folder, name))
+                times[name], found = run(command, Path(folder, name), rounds)
                 verdicts.append(found)
                 sums[name] += times[name]
             ratio = times["own"] / times["other"]
@@ -65,4 +66,4 @@ def main(other: str, pairs: int) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 4))
+    sys.exit(main(sys.argv[1], *map(int, sys.argv[2:])))

@@ -115,7 +115,7 @@ EVERY = ("robot", "graded", "catalogue", "conventional")
     ("engine", "families", "sample", "many", "least"),
     [
         ("auto", ("robot",), "6", 30, 500),
-        pytest.param("auto", EVERY, "25", 600, 100_000, marks=pytest.mark.whole),
+        pytest.param("auto", EVERY, "25", 150, 25_000, marks=pytest.mark.whole),
         pytest.param("replay", EVERY, "20", 100, 5_000, marks=pytest.mark.whole),
     ],
 )
