@@ -4,9 +4,9 @@
 
 OTHER is the `mutabot` command of the other version, in a virtual environment with the same packages. In each
 pair, first the other version and then the one beside this Python runs the 26 mutants of `examples/paper`, in
-five rounds if nothing else is asked, one process at a time, in a copy of the example. Printed are the processor
-times of each pair, of all processes, and in the end the ratio of their sums. The exit code is 1 if their
-verdicts differ.
+five rounds if nothing else is asked, one process at a time, in a copy of the example. Printed are the
+processor times of each pair, of all processes, and in the end the ratio of their sums. The exit code is 1 if
+their verdicts differ.
 """
 
 from __future__ import annotations
