@@ -20,7 +20,11 @@ def start(root: Path, program: Sequence[Path], name: str, files: Mapping[str, st
     Raises UsageError if a file is there already or cannot be written.
     """
     if program:
-        raise UsageError(f"--{name} writes a program: leave {', '.join(map(str, program))} out")
+        given = ", ".join(map(str, program))
+        raise UsageError(
+            f"--{name} writes a project into {root}, with a program of its own: leave {given} out, "
+            "and make a folder first for a project elsewhere"
+        )
     paths = {root.joinpath(*PurePosixPath(file).parts): text for file, text in files.items()}
     for path in paths:
         if path.exists():

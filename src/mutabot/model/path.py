@@ -174,7 +174,7 @@ def _known_steps(value: Any) -> list[str]:
     names = list(getattr(value, "_fields", ()))
     if not names and is_dataclass(value):
         names = [field.name for field in dataclass_fields(value)]
-    if not names and isinstance(value, list | tuple):
+    if not names and (isinstance(value, list | tuple) or hasattr(type(value), "tolist")):
         return [f"[{index}]" for index in range(min(len(value), 20))]
     if not names and not isinstance(value, int | float | str | bytes | bool | None):
         names = [name for name in dir(value) if not name.startswith("_")]

@@ -38,6 +38,7 @@ class Section:
         lines: what stands below the table.
         is_alarm: whether results cannot be relied on without knowing it.
         is_detail: whether the summary of a run shows the title of its table alone, and nothing without one.
+        code: statements above the lines, which are never wrapped.
     """
 
     title: str
@@ -46,6 +47,7 @@ class Section:
     lines: Sequence[str] = ()
     is_alarm: bool = False
     is_detail: bool = False
+    code: str = ""
 
 
 def sections(results: Results, place: PlaceName) -> Iterator[Section]:

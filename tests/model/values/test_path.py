@@ -208,6 +208,7 @@ def test_a_text_that_is_no_path_says_where_it_goes_wrong(text: str, rooted: bool
         (Point(1, 2), ".z", ["Point has no .z", "'.y'"]),
         ({"gap": 1}, "['gpa']", ["\"['gap']\""]),
         ((1, 2), "[2]", ["tuple has no [2]", "'[1]'"]),
+        (np.zeros(3), "[5]", ["ndarray has no [5]", "'[2]'"]),
         (Frozen(Point(1, 2)), ".x.xx", ["'.x'"]),
         (Point(1, 2), ".height", ["it has .x, .y"]),
         (3.5, ".x", ["float has no .x"]),

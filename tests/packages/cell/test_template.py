@@ -101,5 +101,5 @@ def test_a_file_that_is_there_is_left_alone(tmp_path: Path) -> None:
 
 
 def test_a_template_brings_its_own_program(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match=r"--cell writes a program: leave mine\.py out"):
+    with pytest.raises(UsageError, match=r"--cell writes a project into .*: leave mine\.py out"):
         start(tmp_path, [Path("mine.py")], "cell", project("gen3"))

@@ -318,7 +318,7 @@ def test_one_screen_shows_the_rounds_that_tell_most(results: Results) -> None:
     text = written(on)
     assert "round 1: S survived" in text
     assert "killed by a check" not in text
-    assert "Use --all for every round" in text
+    assert "Use --all for all rounds and checks." in text
 
 
 def test_show_tells_where_a_mutant_stayed_away_and_why(results: Results) -> None:

@@ -30,7 +30,7 @@ def test_a_pipe_gets_the_beginning_and_the_end_of_a_stage_and_little_between() -
             progress.advance(f"#{number} survived")
         progress.note("something to know")
     assert out.getvalue().splitlines() == [
-        "mutants: 100 runs",
+        "mutants 0/100",
         "mutants 100/100: took 0:00 (#99 survived)",
         "something to know",
     ]

@@ -27,17 +27,21 @@ def result_of(folder: Path, mutant: Mutant) -> MutantResult:
         return read_results(journal).mutant(str(mutant.number))
 
 
-def shown(folder: Path, mutant: Mutant, found: Suggestion | None) -> str:
+def shown(folder: Path, mutant: Mutant, found: Suggestion | None, width: int = 120) -> str:
     file = io.StringIO()
-    print_mutant(make_console(file, width=120), result_of(folder, mutant), lambda _: None, found)
+    print_mutant(make_console(file, width=width), result_of(folder, mutant), lambda _: None, found)
     return file.getvalue()
 
 
 def test_a_survivor_is_shown_with_the_check_that_kills_it(tmp_path: Path) -> None:
     text = shown(tmp_path, samples.NEGATE, CHECK)
-    assert "in tests/test_box.py::test_arrives:" in text
+    assert "A check that would catch it, in tests/test_box.py::test_arrives\n" in text
     assert CHECK.code in text
     assert "kills #4 in round 1" in text
+
+
+def test_a_suggested_statement_is_never_wrapped_so_that_it_can_be_copied(tmp_path: Path) -> None:
+    assert f"\n  {CHECK.code}\n" in shown(tmp_path, samples.NEGATE, CHECK, width=40)
 
 
 def test_where_none_was_looked_for_it_is_said_how(tmp_path: Path) -> None:

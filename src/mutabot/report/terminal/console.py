@@ -155,6 +155,8 @@ def print_section(console: Console, section: Section, at_most: int | None = None
         for row in section.rows[:at_most]:
             table.add_row(*(Breakable("\n".join(plain(row[index]) for index in group)) for group in groups))
         console.print(table)
+    for line in section.code.splitlines():
+        console.print(Text(f"  {plain(line)}"), soft_wrap=True)
     for line in section.lines[:at_most]:
         console.print(below(line.lstrip(), 2 + len(line) - len(line.lstrip())))
     left = max(len(section.rows), len(section.lines)) - (at_most or 0)

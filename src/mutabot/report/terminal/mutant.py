@@ -54,7 +54,8 @@ def print_mutant(
     for section in (*sections, *suggested_sections(result, suggestion)):
         print_section(console, section)
     if not everything:
-        console.print(Text("\nUse --all for every round.", style="dim"))
+        what = "rounds and checks" if len(result.rounds) > 1 else "checks"
+        console.print(Text(f"\nUse --all for all {what}.", style="dim"))
 
 
 def print_replayed(console: Console, mutant: Mutant, rounds: Iterable[Replayed]) -> None:
@@ -188,9 +189,11 @@ def suggested_sections(result: MutantResult, found: Suggestion | None) -> Iterat
     if not result.is_survivor or result.mutant.ladder:
         return
     if found is not None and found.code:
-        lines = [f"in {found.test}:", found.code, *found.notes]
-        lines.append("`mutabot suggest` prints it as a diff.")
-    elif found is not None:
+        where = f"A check that would catch it, in {found.test}"
+        more = "`mutabot suggest` prints it as a diff."
+        yield Section(where, code=found.code, lines=[*found.notes, more])
+        return
+    if found is not None:
         lines = [f"None was found: {found.reason}"]
     elif result.status is Verdict.NOT_COVERED:
         lines = ["No test runs this line. Add one that does."]

@@ -16,7 +16,6 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, ProgressColum
 from rich.table import Column
 from rich.text import Text
 
-from mutabot.errors import plural
 from mutabot.report.texts import one_line, places_text
 
 from .console import plain, short_place
@@ -233,9 +232,9 @@ class Lines:
         self._thread = threading.Thread(target=self._live, name="mutabot-progress", daemon=True)
 
     def stage(self, text: str, total: int | None = None) -> None:
-        """Print the stage's name, and how many runs it has."""
+        """Print the stage's name, and how many steps it has, as later lines do: ``mutants 0/100``."""
         self._text, self._pace = text, Pace(total)
-        self._print(f"{text}: {plural(total, 'run')}" if total is not None else text)
+        self._print(f"{text} 0/{total}" if total is not None else text)
 
     def mutant_ended(self, end: MutantEnd) -> None:
         """Count an outcome, and print a survivor."""
