@@ -30,6 +30,9 @@ _ABSOLUTE = re.compile(
     r"__w|Users|private|Volumes|Library)(?:/[^\s/:;,'\"<>()\[\]{}|]+)*/(?=[^\s/:;,'\"<>()\[\]{}|])"
 )
 
+#: what a mutant changed, as results say it before its effect
+_CHANGE = re.compile(r"(?:sent|read|had) (.+?) instead of (.+?); ")
+
 
 def legible(text: str) -> str:
     """Return a text of equal length in which characters that no format can hold are replaced."""
@@ -188,8 +191,13 @@ def places_text(site: Site, place: Callable[[Span], str]) -> str:
 
 
 def told_text(result: MutantResult) -> str:
-    """Return the line about a mutant with the test and the round in which it happened."""
-    why = result.why.removeprefix(f"{result.mutant.description}; ")
+    """Return the line about a mutant, without what its description says, with the test and the round."""
+    what = result.mutant.description
+    why = result.why.removeprefix(f"{what}; ")
+    change = _CHANGE.match(why)
+    said = (f" {change[2]} → {change[1]}", f" {change[1]} instead of {change[2]}") if change else ()
+    if change is not None and any(what.endswith(text) for text in said):
+        why = why.removeprefix(change[0])
     number, diverged = telling(result) or (0, None)
     if diverged is not None and diverged.story and diverged.story in why:
         place = place_text(result, number, diverged)

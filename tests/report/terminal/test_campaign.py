@@ -19,6 +19,7 @@ from mutabot.model import By, Outcome, Span, Verdict
 from mutabot.report.terminal.campaign import print_plan, print_results, print_summary
 from mutabot.report.terminal.console import make_console, mark_of, plain, short_place
 from mutabot.report.terminal.mutant import print_mutant
+from mutabot.report.texts import told_text
 from mutabot.results.results import Results, read_results
 from results import samples
 
@@ -319,6 +320,25 @@ def test_one_screen_shows_the_rounds_that_tell_most(results: Results) -> None:
     assert "round 1: S survived" in text
     assert "killed by a check" not in text
     assert "Use --all for all rounds and checks." in text
+
+
+@pytest.mark.parametrize(
+    ("description", "effect"),
+    [
+        ("arm.move_by: x 0.2 m → -0.2 m", "box fell"),
+        ("camera: reads x -0.2 m instead of 0.2 m", "box fell"),
+        ("arm.move_by: x 0.21 m → -0.21 m", "sent -0.2 m instead of 0.2 m; box fell"),
+        ("arm.move_by: x 10.2 m → -0.2 m", "sent -0.2 m instead of 0.2 m; box fell"),
+    ],
+)
+def test_an_effect_does_not_repeat_the_values_that_the_description_has(
+    results: Results, description: str, effect: str
+) -> None:
+    one = results.mutant("1")
+    told = replace(
+        one, mutant=replace(one.mutant, description=description), why="sent -0.2 m instead of 0.2 m; box fell"
+    )
+    assert told_text(told) == effect
 
 
 def test_show_tells_where_a_mutant_stayed_away_and_why(results: Results) -> None:

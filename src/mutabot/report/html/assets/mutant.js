@@ -22,7 +22,7 @@
         h("nav", { "aria-label": "Mutants beside this one" }, h("a", { href: address(["mutants"], mutabot.lastAsked) }, "All mutants"),
           step(before, "← Previous", "p"), h("span", null, where >= 0 ? `${where + 1} of ${order.length}` : ""), step(after, "Next →", "n")),
         upper || lower ? h("nav", { "aria-label": "Survivors beside this one in the source" }, h("span", null, "Survivors in the source:"),
-          step(upper, upper && `↑ ${upper.place}`, "Shift+P"), step(lower, lower && `↓ ${lower.place}`, "Shift+N")) : null),
+          step(upper, upper && `↑ ${upper.number} in ${upper.place}`, "Shift+P"), step(lower, lower && `↓ ${lower.number} in ${lower.place}`, "Shift+N")) : null),
       h("h1", { tabindex: "-1" }, h("span", { class: "number" }, `${one.number} `), one.description),
       h("p", { class: "under" }, marks.status(one.status), marks.ends(one.ends), h("span", { class: "place" }, one.place, one.function ? ` in ${one.function}` : ""), h("span", null, `${one.operator} (${one.family}, ${one.role})`)),
       h("p", { class: "story big" }, mutabot.breakable(one.why)));

@@ -44,7 +44,7 @@
     const meta = campaign.meta;
     const complete = campaign.state === "complete" && campaign.done >= campaign.planned;
     const facts = [typeof meta.seconds === "number" && `the last run took ${duration(meta.seconds)}`,
-      meta.families && `families ${meta.families.join(", ")}`, count(campaign.tests.length, "test"),
+      meta.families && `${meta.families.length > 1 ? "families" : "family"} ${meta.families.join(", ")}`, count(campaign.tests.length, "test"),
       campaign.drawing && `a sample of ${campaign.drawing.size} of ${count(campaign.drawing.selected, "mutant")}`];
     return [
       h("p", { class: "lead" }, complete ? "complete · " : "", facts.filter(Boolean).join(" · ")),
