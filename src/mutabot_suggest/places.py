@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Collection, Mapping, Sequence
 
 from mutabot.api.reports import MutantResult
 
@@ -38,11 +39,37 @@ def chosen_places(project: SuiteFiles, survivors: Sequence[MutantResult]) -> lis
     chosen: list[PlaceInTest] = []
     left = wanted
     while left:
-        counts = {place: sum(place in one for one in left) for one in left for place in one}
+        there = sorted({place for one in left for place in one}, key=lambda place: place.node)
+        counts = {place: sum(place in one for one in left) for place in there}
         best = max(counts, key=lambda place: (counts[place], -len(variants.get(place, ()))))
         chosen.append(best)
         left = [one for one in left if best not in one]
     return chosen
+
+
+def other_places(
+    project: SuiteFiles,
+    survivors: Sequence[MutantResult],
+    unnoticed: Sequence[MutantResult],
+    places: Collection[PlaceInTest],
+) -> list[PlaceInTest]:
+    """Return a further test in the same files for each survivor that no check would notice in these places.
+
+    That is the test that shows it and in which the fewest survivors act: where a program does little, a path
+    has bounds that it has not where the program does all.
+    """
+    acting: Counter[PlaceInTest] = Counter()
+    for one in survivors:
+        acted = {looked.test for out in one.survived for looked in out.looked if looked.acted}
+        acting.update({place for test in acted if (place := place_of(project, test))})
+    files, chosen = {one.file for one in places}, dict[PlaceInTest, None]()
+    for one in unnoticed:
+        tests = (test for test, weight in _weights(one)[-1].items() if weight > 1.0)
+        known = [place for test in tests if (place := place_of(project, test)) and place.file in files]
+        others = [place for place in known if place not in places]
+        if others:
+            chosen[min(others, key=lambda place: acting[place])] = None
+    return list(chosen)
 
 
 def _weights(survivor: MutantResult) -> list[Mapping[str, float]]:

@@ -179,6 +179,19 @@ class Measured:
     lost: dict[str, str] = field(default_factory=dict)
 
 
+def merged(one: Measured, other: Measured) -> Measured:
+    """Return what was measured in two different sets of places."""
+    return Measured(
+        originals={**one.originals, **other.originals},
+        mutants={**one.mutants, **other.mutants},
+        readings={**one.readings, **other.readings},
+        objects=one.objects,
+        reusable_checks={**one.reusable_checks, **other.reusable_checks},
+        watched={**one.watched, **other.watched},
+        lost={**one.lost, **other.lost},
+    )
+
+
 def is_reading(text: str) -> bool:
     """Return whether a recorded key is a reading at a test's end: no compared value, no tick recording."""
     return not text.startswith(_NO_READINGS)

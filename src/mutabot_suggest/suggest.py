@@ -12,10 +12,10 @@ from mutabot.api.reports import MutabotError, MutantResult, Progress
 from .bands import unseen
 from .candidates import candidates
 from .checks import CheckProposal, Trials
-from .places import chosen_places
+from .places import chosen_places, other_places
 from .project import OTHER, PlaceInTest, SuiteFiles
 from .proof import Proof, texts_with
-from .readings import Measured, Survivors, measure
+from .readings import Measured, Survivors, measure, merged
 from .reasons import NOT_REACHED, NOTHING_DIFFERS, why_unsolved
 from .results import Dropped, NothingToSuggestError, ProvenCheck, Suggestions, Unsolved
 from .suite import SuiteChecks
@@ -98,9 +98,15 @@ def suggest(
     project.tests = tuple(dict.fromkeys(place.file for place in places))
     suite = SuiteChecks.of(project)
     calibrated = request.rounds + seeds
-    measured = _measured(replace(request, rounds=calibrated), project, suite, places, to_kill, quiet)
-    found, refused = candidates(project, suite, measured)
-    found += monitors(suite, measured)
+    wide = replace(request, rounds=calibrated)
+    measured = _measured(wide, project, suite, places, to_kill, quiet)
+    found, refused = _proposals(project, suite, measured)
+    noticed = {mutant for one in found for mutant, _ in one.trials}
+    unnoticed = {mutant: one for mutant, one in to_kill.items() if mutant not in noticed}
+    others = other_places(project, chosen, [one for one, _ in unnoticed.values()], places)
+    if others:
+        measured = merged(measured, _measured(wide, project, suite, others, unnoticed, quiet))
+        found, refused = _proposals(project, suite, measured)
     proof = Proof(request, project, quiet)
     checks = _proven(proof, found, [*range(request.rounds), *range(calibrated, calibrated + seeds)])
     killed = {mutant for one in checks for mutant, _ in proof.kills[one]}
@@ -114,6 +120,14 @@ def suggest(
         unsolved=(*reasons, *never),
         dropped=tuple(Dropped(one.place.node, one.statement, why) for one, why in proof.failed.items()),
     )
+
+
+def _proposals(
+    project: SuiteFiles, suite: SuiteChecks, measured: Measured
+) -> tuple[list[CheckProposal], dict[str, str]]:
+    """Return the checks that would notice survivors; and by mutant, what would notice it and is no check."""
+    found, refused = candidates(project, suite, measured)
+    return [*found, *monitors(suite, measured)], refused
 
 
 def _measured(

@@ -13,7 +13,7 @@ from mutabot.model import Mutant, Outcome, Role, Site, Span, Verdict
 from mutabot.model.outcome import Apart, Diverged, Looked, Measurement
 from mutabot.results.results import MutantResult
 from mutabot_suggest.output import print_suggestions
-from mutabot_suggest.places import chosen_places
+from mutabot_suggest.places import chosen_places, other_places
 from mutabot_suggest.project import PlaceInTest
 from mutabot_suggest.readings import Measured
 from mutabot_suggest.reasons import why_unsolved
@@ -155,6 +155,19 @@ def test_one_test_is_looked_at_if_it_shows_all_survivors() -> None:
     project: Any = Project()
     places = chosen_places(project, [survivor(*both), survivor(*other, number=2)])
     assert [one.path for one in places] == [("test_other",)]
+
+
+def test_where_no_check_is_found_a_test_in_which_few_mutants_act_is_looked_at_too() -> None:
+    tests = [in_test(name, "tool", apart(0.0, 0.1)) for name in ("test_lost", "test_it", "test_other")]
+    here, everywhere = survivor(*tests), survivor(*tests[:2], number=2)
+    project: Any = Project()
+    places = chosen_places(project, [here, everywhere])
+    assert [one.path for one in places] == [("test_it",)]
+    others = other_places(project, [here, everywhere], [here], places)
+    assert [one.path for one in others] == [("test_other",)]
+    assert other_places(project, [here, everywhere], [], places) == []
+    near = survivor(*(in_test(name, "tool", apart(0.0, 0.00005)) for name in ("test_it", "test_other")))
+    assert other_places(project, [here], [near], places) == []
 
 
 def test_a_test_whose_end_scatters_is_not_looked_at_where_another_shows_the_survivor() -> None:
