@@ -10,6 +10,7 @@ from mutabot.frozen import frozen
 from mutabot.journal.records import RAN_OVER, REMARKS, SIMULATION, Repeated, Untested
 from mutabot.model import LeftOut, Mutant, Span, Verdict
 from mutabot.model.outcome import NOTHING, by_heading, first_line
+from mutabot.results.divergence import UNKNOWN_END
 from mutabot.results.results import OUTSIDE, Results, unlooked
 from mutabot.results.statistics import Estimate, Interval, false_kills, false_survivors
 from mutabot.thresholds.thresholds import line_of, thresholds_of
@@ -183,16 +184,19 @@ def _survivors(results: Results, place: PlaceName) -> Iterator[Section]:
     order = ", largest deviation from the original first" if len(shown) > 1 else ""
     if not shown and len(same) <= _FEW:  # else nothing would say which faults these are
         shown, same = survivors, []
+    effects = [effect_text(result) for result in shown]
+    unknown = sum(UNKNOWN_END in effect for effect in effects) > 1  # then it is said once
     rows = [
         (
             *mutant_cells(result.mutant, place),
-            effect_text(result),
+            effect.replace(UNKNOWN_END, "").removesuffix("; ") if unknown else effect,
             f"{result.kill_rate.valid - result.kill_rate.killed} of {result.kill_rate.valid}",
         )
-        for result in shown
+        for result, effect in zip(shown, effects, strict=True)
     ]
     columns = (*MUTANT_COLUMNS, "*effect", ">survived") if rows else ()
     lines = [f"{plural(len(same), 'survivor')} without a measured effect: {numbered(same)}"] if same else []
+    lines += [f"Where no effect stands, {UNKNOWN_END}."] if unknown else []
     yield Section(f"{plural(len(survivors), 'survivor')}{order}", columns, rows, lines)
 
 

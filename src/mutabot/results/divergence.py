@@ -9,6 +9,9 @@ from mutabot.model import Mutant, Outcome, Quantity, Verdict, Vocabulary
 from mutabot.model.outcome import first_line
 from mutabot.model.quantity import distinct_texts, value_text
 
+#: what is said of the world where nothing was compared
+UNKNOWN_END = "nothing tells how the world ended (the vocabulary names no probe)"
+
 
 def quantity_of(mutant: Mutant, vocabulary: Vocabulary | None) -> Quantity | None:
     """Return the quantity that a mutant changes; None if it changes none or the vocabulary is not known."""
@@ -76,7 +79,7 @@ def _world_text(outcome: Outcome) -> str:
         return f"not compared with the original: {outcome.gaps[0]}"
     if outcome.distance is not None:
         return "every probe ended within its tolerance"
-    return "nothing tells how the world ended (the vocabulary names no probe)"
+    return UNKNOWN_END
 
 
 def _end_text(outcome: Outcome) -> str:

@@ -170,6 +170,16 @@ def test_survivors_come_with_a_reason_the_farthest_first(results: Results) -> No
     assert "1 survivor without a measured effect: mutant 4" in section
 
 
+def test_that_no_probe_tells_how_the_world_ended_is_said_once(tmp_path: Path) -> None:
+    ends = [Outcome(one.id, 0, Verdict.SURVIVED) for one in (samples.REVERSE, samples.SKIP)]
+    with Journal.open(samples.write_journal(tmp_path / "journal.sqlite", outcomes=ends)) as journal:
+        text = report(read_results(journal))
+    assert text.count("nothing tells how the world ended") == 1
+    assert "\n  Where no effect stands, nothing tells how the world ended" in text
+    with Journal.open(samples.write_journal(tmp_path / "one.sqlite", outcomes=ends[:1])) as journal:
+        assert "Where no effect stands" not in report(read_results(journal))
+
+
 def test_what_stands_outside_the_score_is_listed_with_its_reason(results: Results) -> None:
     text = report(results)
     assert "Not counted in the score: 1 error, 1 refused" in text

@@ -153,7 +153,12 @@ def print_section(console: Console, section: Section, at_most: int | None = None
         names = (" and ".join(section.columns[index] for index in group) for group in groups)
         table = make_table([name.replace(" and *", " and ") for name in names])
         for row in section.rows[:at_most]:
-            table.add_row(*(Breakable("\n".join(plain(row[index]) for index in group)) for group in groups))
+            table.add_row(
+                *(
+                    Breakable("\n".join(plain(row[index]) for index in group if row[index]))
+                    for group in groups
+                )
+            )
         console.print(table)
     for line in section.code.splitlines():
         console.print(Text(f"  {plain(line)}"), soft_wrap=True)
