@@ -50,8 +50,10 @@ def check_lines(one: ProvenCheck, found: Suggestions) -> Iterator[str]:
     )
     if one.by_hand:
         where = f"where `{one.after}` is made" if one.after else "where it ends"
-        yield f"another tool makes this test: add this by hand {where}:"
-        yield from (f"  {line}" for line in one.by_hand.splitlines())
+        lines = one.statement.splitlines()
+        imports = [f"  {line}" for line in one.by_hand.splitlines() if line not in lines]
+        yield f"another tool makes this test: add the check by hand {where}{', with' if imports else ''}"
+        yield from imports
 
 
 def _kills(one: ProvenCheck, found: Suggestions) -> str:
