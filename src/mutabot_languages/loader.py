@@ -9,13 +9,13 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from .core.language import RobotLanguage
+from .core.language import MODULE, RobotLanguage
 from .core.schedule import TaskSchedule
 from .core.scope import ProgramUnit
 from .core.signals import CellMap
 from .core.station import Station
 from .core.text import decode
-from .core.tree import ProgramNode
+from .core.tree import ProgramNode, routines
 from .edits import ActiveEdits, active, applied, note_read
 from .errors import LanguageError
 from .registry import LANGUAGES, language_for
@@ -108,7 +108,16 @@ class RobotProgram:
         assigned = _assigned(self.language.read(file.name, text).tree) if found else frozenset()
         text = applied(text, [edit for one in found for edit in one.edits])
         parsed = self.language.read(file.name, text)
-        unit = ProgramUnit(str(file.resolve()), parsed.source, parsed.tree, assigned=assigned)
+        name = str(file.absolute())
+        numbers = {one.start: number for number, one in enumerate(routines(parsed.tree), 1)}
+        sys.audit("mutabot.executed", name, MODULE)
+        unit = ProgramUnit(
+            str(file.resolve()),
+            parsed.source,
+            parsed.tree,
+            assigned=assigned,
+            began=lambda start: sys.audit("mutabot.executed", name, numbers[start]),
+        )
         unit.watched = {start: one.reached for one in found for start in _watched(parsed.tree, one)}
         return unit
 
@@ -159,7 +168,8 @@ def _watched(tree: ProgramNode, edits: ActiveEdits) -> list[int]:
         start, end = edit.start + shift, edit.start + shift + len(edit.text)
         inside = [
             node
-            for body in _bodies(tree)
+            for parent in tree.walk()
+            for body in parent.bodies
             for node in body
             if node.kind != "routine" and node.start <= start and node.end >= end
         ]
@@ -167,7 +177,3 @@ def _watched(tree: ProgramNode, edits: ActiveEdits) -> list[int]:
             found.append(min(inside, key=lambda node: (node.end - node.start, -node.start)).start)
         shift += len(edit.text) - (edit.end - edit.start)
     return found
-
-
-def _bodies(tree: ProgramNode) -> list[list[ProgramNode]]:
-    return [body for node in tree.walk() for body in node.bodies]

@@ -20,7 +20,7 @@ from mutabot.campaign.plan import Plan, carry, drawing, reaching, summaries
 from mutabot.campaign.preparation import begin, locked_executor, selected, whole_plan
 from mutabot.campaign.reuse.keys import Dependencies, OutcomeWriter
 from mutabot.campaign.reuse.original import OriginalRuns
-from mutabot.campaign.reuse.snapshot import Snapshot, State
+from mutabot.campaign.reuse.snapshot import Snapshot, State, is_source
 from mutabot.campaign.schedule import OUT_OF_TIME, run_planned
 from mutabot.campaign.sharding.shards import part_of, write_shard
 from mutabot.campaign.suppressions import note_accepted, text_of
@@ -111,7 +111,7 @@ def _run(
     refuse_flaky(request, baseline)
     campaign = decide(campaign, plan.mutants, journal, decided)
     original.keep(journal.set_original)
-    edited = after.edited_programs(before)
+    edited = [name for name in after.edited_since(before.digests) if is_source(name, request)]
     dependencies, found = None, Reused()
     if edited:
         progress.note(f"{in_short(edited)} changed during the baseline: no outcome is reused, now or later")

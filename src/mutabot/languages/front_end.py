@@ -23,6 +23,10 @@ class FrontEnd(Protocol):
 
     It may say what reports mark in its files, as ``highlighting``: an ECMAScript regular expression of three
     groups, texts, comments and words of the language, and its flags.
+
+    It may say what its files consist of, as ``units``: a function of a file's content that returns
+    ``TextUnit`` by name. What runs such a file then raises an audit event ``mutabot.executed`` for each unit
+    that it begins, with the file's absolute path and the unit's number.
     """
 
     @property

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from mutabot.languages.front_end import FrontEnd
+    from mutabot.model.source_units import TextUnit
 
 
 @cache
@@ -51,15 +52,17 @@ def languages_of(root: Path, program: tuple[str, ...]) -> frozenset[str]:
 
 def front_end_of(file: str) -> FrontEnd:
     """Return the front end for a file, by its suffix; Python's for unknown suffixes."""
-    name = file.lower()
-    return next((one for one in front_ends() if name.endswith(one.suffixes)), front_ends()[-1])
+    return _by_language()[language_of(file) or "python"]
 
 
 def highlighting_of(file: str) -> tuple[str, str]:
     """What reports mark in a file, as ``FrontEnd`` says; empty if its language says nothing."""
-    name = file.lower()
-    found = next((one for one in front_ends() if name.endswith(one.suffixes)), None)
-    return getattr(found, "highlighting", ("", ""))
+    return getattr(_by_language().get(language_of(file) or ""), "highlighting", ("", ""))
+
+
+def units_of(file: str) -> Callable[[bytes], Mapping[str, TextUnit]] | None:
+    """Return what tells the units of a file, as ``FrontEnd`` says; None for Python, and if nothing does."""
+    return getattr(_by_language().get(language_of(file) or ""), "units", None)
 
 
 def program_files(root: Path, program: Iterable[str]) -> list[str]:

@@ -1,7 +1,8 @@
-"""Units of a Python file: each function, and the module level, which is the rest.
+"""Units of a program file: each function, and the module level, which is the rest.
 
 The runtime records which units are executed, by the lines of their ``def``; the controller compares what the
-units say. A unit says its syntax tree, without positions, comments and layout.
+units say. A unit says its syntax tree, without positions, comments and layout. Languages other than Python
+tell their units themselves.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ import os
 import warnings
 from _blake2 import blake2b  # hashlib has the same, and loads OpenSSL in every process
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from copy import copy
 from functools import cached_property
 from typing import NamedTuple
@@ -129,6 +130,11 @@ def _is_mark(decorator: ast.expr) -> bool:
     return is_mark and all(one is decorator or last_name(one) == "param" for one in calls)
 
 
+#: a unit of a file in another language than Python: its number when it is recorded (``MODULE``, or above 0),
+#: what it says without positions, comments and layout, and places in it, in an order that this decides
+TextUnit = tuple[int, str, Sequence[NodeExtent]]
+
+
 class _Units(NamedTuple):
     """The units of a file, with their lines and digests.
 
@@ -144,15 +150,18 @@ class _Units(NamedTuple):
 
 
 class File:
-    """The content of a Python file.
+    """The content of a program file.
 
     Args:
         name: its path relative to the project.
         text: what it holds.
+        units: gives the units of a text by their names, "" for the module level; None for Python.
     """
 
-    def __init__(self, name: str, text: bytes) -> None:
-        self.name, self._text = name, text
+    def __init__(
+        self, name: str, text: bytes, units: Callable[[bytes], Mapping[str, TextUnit]] | None = None
+    ) -> None:
+        self.name, self._text, self._told = name, text, units
 
     @cached_property
     def digest(self) -> str:
@@ -162,6 +171,10 @@ class File:
     @cached_property
     def _units(self) -> _Units | None:
         """The units; None if the file cannot be parsed. Trees, a hundred times larger, are not kept."""
+        if self._told is not None:
+            told = self._told(self._text)
+            texts = {name: digest(text.encode()) for name, (_, text, _) in told.items()}
+            return _Units({name: number for name, (number, *_) in told.items()}, texts, is_quiet=False)
         nodes = self._nodes()
         if nodes is None:
             return None
@@ -225,16 +238,21 @@ class File:
     def moves_to(self, new: File) -> dict[NodeExtent, NodeExtent | None]:
         """Map lines and nodes of this text to those of a new one; None where that is ambiguous."""
         found: dict[NodeExtent, NodeExtent | None] = {}
-        nodes, others = self._nodes() or {}, new._nodes() or {}
-        for name, node in nodes.items():
+        places, others = self._places(), new._places()
+        for name, before in places.items():
             if name not in others or self.said[name] != new.said.get(name):
                 continue
-            for before, now in zip(ast.walk(node), ast.walk(others[name]), strict=True):
-                was, is_now = _extent(before), _extent(now)
+            for was, is_now in zip(before, others[name], strict=True):
                 for part in (slice(None), slice(0, 1), slice(2, 3)) if was and is_now else ():
                     if found.setdefault(was[part], is_now[part]) != is_now[part]:
                         found[was[part]] = None
         return found
+
+    def _places(self) -> Mapping[str, Iterable[NodeExtent]]:
+        """Return the places in each unit, in the same order for all units that say the same."""
+        if self._told is not None:
+            return {name: extents for name, (_, _, extents) in self._told(self._text).items()}
+        return {name: map(_extent, ast.walk(node)) for name, node in (self._nodes() or {}).items()}
 
     def _said_by(self, node: ast.AST) -> str:
         names = {getattr(one, "attr", getattr(one, "id", "")) for one in ast.walk(node)}

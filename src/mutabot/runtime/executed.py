@@ -24,6 +24,8 @@ from mutabot.runtime.text_reads import TextReads, is_own
 
 #: the built-in name of the bytes, one for each function
 RAN = "__mutabot_ran__"
+#: audit event of what runs a program in another language: a unit begins
+EXECUTED = "mutabot.executed"
 #: audit events of the start of a process
 STARTS = {"subprocess.Popen", "os.posix_spawn", "os.system", "os.fork", "os.forkpty", "os.exec"}
 #: modules whose loading means that processes are started without an event
@@ -71,7 +73,7 @@ class ExecutedUnits(SourceStep):
         loading.add(self)
         loading.hook_pytest(self.wants, self.change)
         self._reads.install()
-        listen(("import", "exec", *STARTS), self._on_audit_event)
+        listen(("import", "exec", EXECUTED, *STARTS), self._on_audit_event)
 
     def wants(self, path: str) -> bool:
         """Return whether a file is the project's own."""
@@ -140,7 +142,10 @@ class ExecutedUnits(SourceStep):
         return found
 
     def _note_read(self, name: str, is_text: bool) -> None:
-        found = {(name, WHOLE), (name, AS_TEXT)} if is_text else {(name, WHOLE)}
+        self._note({(name, WHOLE), (name, AS_TEXT)} if is_text else {(name, WHOLE)})
+
+    def _note(self, found: set[_PLACES]) -> None:
+        """Count these units for the running test, and for all later ones."""
         if self._in_call:
             self._test |= found
         else:
@@ -148,7 +153,12 @@ class ExecutedUnits(SourceStep):
 
     def _on_audit_event(self, event: str, arguments: tuple[Any, ...]) -> None:
         """Record an audit event that outcomes may depend on, beside executed units."""
-        if event == "import" and arguments[0] in _SPAWNERS:
+        if event == EXECUTED:
+            path, number = arguments
+            name = self._name(path)
+            if name is not None:
+                self._note({(name, number)})
+        elif event == "import" and arguments[0] in _SPAWNERS:
             self._keep({(ALL_FILES, WHOLE)})
         elif event == "exec" and isinstance(arguments[0], CodeType):
             name = self._name(arguments[0].co_filename)

@@ -16,6 +16,7 @@ from types import FrameType
 from typing import Any
 
 from mutabot.extensions import packages
+from mutabot.languages.registry import units_of
 from mutabot.runtime import real_folder
 from mutabot.runtime.processes.environment import FRAMES, listen
 
@@ -76,7 +77,10 @@ class TextReads:
         if name is None or is_own(frame):
             return
         if not name.endswith(".py"):
-            self._tell(name, False)
+            told = units_of(name)
+            # the package that runs such files tells by itself which of their units are executed
+            if told is None or not _reader(frame, _FOR_OTHERS).startswith(_package_of(told)):
+                self._tell(name, False)
         elif not _reader(frame, _FOR_OTHERS).startswith(_IMPORTING):
             package = _reader(frame, _TEXT_FOR_OTHERS).partition(".")[0]
             # packages beside the core run programs, with the mutant in them
@@ -96,6 +100,10 @@ def _tell_of_lines() -> None:
 
     getlines.tells_mutabot = True  # type: ignore[attr-defined]  # a mark on it: others may wrap it as well
     linecache.getlines = getlines
+
+
+def _package_of(function: Callable[..., object]) -> str:
+    return function.__module__.partition(".")[0] + "."
 
 
 def is_own(frame: FrameType | None) -> bool:

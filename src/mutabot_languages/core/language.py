@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,9 +15,12 @@ from .scope import Steps
 from .station import Station
 from .task import ProgramTask
 from .text import SourceText, TextSpan, decode
-from .tree import STATEMENTS, ProgramNode
+from .tokens import scan
+from .tree import STATEMENTS, ProgramNode, in_short, routines
 
-_LONGEST = 60
+#: the rest of a file among its units
+MODULE = -1
+_LINE = "\n"
 _CALL = Station.call.__code__
 #: expressions that may read something of the cell
 _EXPRESSIONS = frozenset({"call", "method", "index", "name", "field"})
@@ -63,6 +67,29 @@ class RobotLanguage:
         """Read a file; what cannot be read is in its diagnostics."""
         return self.parser(SourceText(name, text)).parse()
 
+    def units(self, content: bytes) -> Mapping[str, tuple[int, str, list[TextSpan]]]:
+        """The bodies of a file's routines, each without those in it, and the rest of the file."""
+        parsed = self.read("", self.text_of(content))
+        source, tokens = parsed.source, scan(parsed.source.text, self.parser.lexis)
+        owners, names = [MODULE] * len(tokens.starts), {MODULE: ""}
+        for number, node in enumerate(routines(parsed.tree), 1):
+            names[number] = f"{node.name}#{number}" if node.name in names.values() else node.name
+            begins = min([one.start for one in node.bodies[0] if one.kind != "empty"], default=node.end)
+            first, last = (bisect_left(tokens.starts, one) for one in (begins, node.end))
+            owners[first:last] = [number] * (last - first)
+        said: dict[int, list[str]] = {number: [] for number in names}
+        for owner, kind, start, end in zip(owners, tokens.kinds, tokens.starts, tokens.ends, strict=True):
+            word = _LINE if kind == "newline" else source.text[start:end]
+            if word != _LINE or said[owner][-1:] not in ([], [_LINE]):  # how many lines are empty is layout
+                said[owner].append(word)
+        extents: dict[int, list[TextSpan]] = {number: [] for number in names}
+        for node in parsed.tree.walk():
+            if node is not parsed.tree and node.kind != "empty":
+                owner = owners[bisect_left(tokens.starts, node.start)]
+                extents[owner].append(source.extent(node.start, node.end))
+                said[owner].append(node.kind)  # around a mistake, how a text is read depends on its lines
+        return {name: (number, "\0".join(said[number]), extents[number]) for number, name in names.items()}
+
     def names(self, source: str) -> Mapping[TextSpan, tuple[str, int]]:
         """Names of all statements, calls and readings in a file."""
         parsed = self.read("", source)
@@ -107,5 +134,4 @@ def site_text(node: ProgramNode, text: str) -> str:
     """What a site's name is: what is called, or how the node begins."""
     if node.kind in ("call", "method") and node.name:
         return node.name
-    shown = " ".join(text[node.start : node.end].split("\n", maxsplit=1)[0].split())
-    return shown if len(shown) <= _LONGEST else f"{shown[: _LONGEST - 1]}…"
+    return in_short(node, text)

@@ -16,7 +16,7 @@ from mutabot_languages.errors import LanguageError, ProgramError, UnsupportedErr
 from .interrupts import Interrupts
 from .scope import ControlFlow, ProgramUnit, Routine, RoutineScope, Steps, TaskOperation, Variable
 from .station import TICK, ProgramPlace, Station
-from .tree import ProgramNode
+from .tree import ProgramNode, in_short
 
 #: statements that a program may carry out in all
 MOST_STEPS = 2_000_000
@@ -140,7 +140,9 @@ class Machine:
         found = self._sites.get(key)
         if found is None:
             extent = scope.unit.source.extent(node.start, node.end)
-            found = self._sites[key] = ProgramPlace(scope.unit.path, extent, scope.routine)
+            found = self._sites[key] = ProgramPlace(
+                scope.unit.path, extent, scope.routine, in_short(node, scope.unit.source.text)
+            )
         return found
 
     def start(self, name: str, steps: Steps) -> None:
@@ -184,7 +186,7 @@ class Evaluation:
     def unsupported(self, node: ProgramNode, scope: RoutineScope, what: str = "") -> UnsupportedError:
         """Say that something is not carried out."""
         source = scope.unit.source
-        why = ", which no loaded file declares" if node.kind == "name" and not what else ""
+        why = ", which no loaded file declares" if not (what or node.name.startswith("$")) else ""
         line = source.line_of(node.start)
         return UnsupportedError(f"unsupported: {what or node.name} at line {line} of {source.name}{why}")
 
@@ -348,6 +350,7 @@ class Evaluation:
 
     def body(self, routine: Routine, inner: RoutineScope) -> Steps:
         """Carry out the body of a routine."""
+        routine.unit.began(routine.node.start)
         yield from self.run(routine.node.bodies[0], inner)
 
     def _outer(self, routine: Routine, scope: RoutineScope) -> RoutineScope | None:
@@ -420,13 +423,12 @@ class Evaluation:
         self,
         node: ProgramNode,
         scope: RoutineScope,
-        condition: ProgramNode,
+        holds: Callable[[], Steps],
         seconds: float = 0.0,
-        wanted: Any = True,
     ) -> Steps:
         """Wait until a condition holds; returns whether it does, or the seconds (if any) are over."""
         began = self.station.time
-        while not self.dialect.matches(self.dialect.truth((yield from self.value(condition, scope))), wanted):
+        while not self.dialect.truth((yield from holds())):
             if seconds and self.station.time - began >= seconds - TICK / 2:
                 return False
             self.machine.step(node, scope)

@@ -70,6 +70,7 @@ class ProgramUnit:
         names: its own variables.
         watched: nodes by their starts of whose execution somebody is told.
         assigned: of a mutant, the variables that the original gives a value somewhere.
+        began: told where a routine begins that is called.
     """
 
     path: str
@@ -78,6 +79,7 @@ class ProgramUnit:
     names: dict[str, Variable] = field(default_factory=dict)
     watched: Mapping[int, Callable[[], None]] = field(default_factory=dict)
     assigned: frozenset[str] = frozenset()
+    began: Callable[[int], None] = lambda start: None
 
 
 @dataclass(slots=True)

@@ -22,15 +22,12 @@ from typing import Any
 
 from mutabot_languages.errors import LanguageError
 
-#: what an output, an input and a function may say
-_OUTPUTS = {"gripper", "suction", "belt", "speed", "force"}
-_INPUTS = {"light_barrier", "holding", "colour", "nearer", "opening", "constant", "output", "distance"}
-_FUNCTIONS = {"gripper", "suction", "wait", "force", "result"}
+#: the tables of a cell map, and what an entry in each may say
 _TABLES: Mapping[str, set[str]] = {
     "tool": set(),
-    "out": _OUTPUTS,
-    "in": _INPUTS,
-    "function": _FUNCTIONS,
+    "out": {"gripper", "suction", "belt", "speed", "force"},
+    "in": {"light_barrier", "holding", "colour", "nearer", "opening", "constant", "output", "distance"},
+    "function": {"gripper", "suction", "wait", "force", "result"},
 }
 
 InputReader = Callable[[], Any]

@@ -30,12 +30,13 @@ class ProgramPlace:
         file: where it stands.
         extent: its place in it.
         routine: what it belongs to.
+        shown: how it begins.
     """
 
-    __slots__ = ("extent", "file", "routine")
+    __slots__ = ("extent", "file", "routine", "shown")
 
-    def __init__(self, file: str, extent: tuple[int, int, int, int], routine: str) -> None:
-        self.file, self.extent, self.routine = file, extent, routine
+    def __init__(self, file: str, extent: tuple[int, int, int, int], routine: str, shown: str) -> None:
+        self.file, self.extent, self.routine, self.shown = file, extent, routine, shown
 
     @property
     def text(self) -> str:
@@ -97,7 +98,7 @@ class Station:
             return function(*arguments, **named)
         except self.errors as error:
             if not isinstance(error, AssertionError):  # of a test's condition
-                error.args = (f"{site.text}: {error} (in {site.routine})",)
+                error.args = (f"{site.text}: {site.shown}: {error} (in {site.routine})",)
             raise
 
     def note(self, text: str) -> None:
@@ -207,8 +208,8 @@ class Station:
         entry = self._map.inputs.get(key)
         if entry is None:
             raise UnsupportedError(
-                f"{site.text}: nothing says what {name} is: if it is an input, name it in the cell map "
-                f'([in."{name}"]) or in run(cell, inputs={{…}})'
+                f"{site.text}: nothing says what {name} is: load the file that declares it; if it is an "
+                f'input, name it in the cell map ([in."{name}"]) or in run(cell, inputs={{…}})'
             )
         return self._reader(site, entry)()
 

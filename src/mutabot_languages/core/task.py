@@ -11,7 +11,7 @@ from mutabot_languages.errors import LanguageError, ProgramError, UnreachableErr
 from .machine import Evaluation
 from .scope import ControlFlow, Routine, RoutineScope, Steps, Variable
 from .station import TICK
-from .tree import ProgramNode
+from .tree import ProgramNode, in_short
 
 _IDLE_LOOPS = 20
 #: functions of angles in degrees
@@ -58,8 +58,9 @@ class ProgramTask(Evaluation):
         except (TypeError, ValueError, ZeroDivisionError, OverflowError) as error:
             if isinstance(error, self.station.errors):
                 raise
-            kind = "" if isinstance(error, UnreachableError) else f"{type(error).__name__}: "
-            raise self.error(node, scope, f"{kind}{error}") from error
+            is_far = isinstance(error, UnreachableError)
+            what = in_short(node, scope.unit.source.text) if is_far else type(error).__name__
+            raise self.error(node, scope, f"{what}: {error}") from error
         except (AttributeError, LookupError) as error:
             if isinstance(error, self.station.errors):
                 raise
@@ -310,9 +311,9 @@ def of_values(function: Callable[..., Any]) -> Callable[..., Steps]:
     """What a name that is called means, if it is a function of values alone."""
 
     def call(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-        values, _ = yield from task.arguments(node, scope)
+        values, named = yield from task.arguments(node, scope)
         try:
-            return function(*values)
+            return function(*values, **named)
         except (TypeError, ValueError, IndexError, ZeroDivisionError, OverflowError) as error:
             raise task.error(node, scope, f"{node.name}: {error}") from error
 

@@ -19,6 +19,8 @@ STATEMENTS = frozenset(
     }
 )  # fmt: skip
 
+_LONGEST = 60
+
 
 class ProgramNode:
     """A part of a program.
@@ -61,6 +63,12 @@ class ProgramNode:
 
     def __repr__(self) -> str:
         return f"{self.kind} {self.name} {self.parts} {self.bodies or ''}"
+
+
+def in_short(node: ProgramNode, text: str) -> str:
+    """How a node of a text begins, on one line."""
+    shown = " ".join(text[node.start : node.end].split("\n", maxsplit=1)[0].split())
+    return shown if len(shown) <= _LONGEST else f"{shown[: _LONGEST - 1]}…"
 
 
 def routines(tree: ProgramNode) -> Iterator[ProgramNode]:

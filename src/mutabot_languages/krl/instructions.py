@@ -27,6 +27,8 @@ IGNORED = name_set(
     act_drive_bus"""
 )
 
+_AXES = ("a1", "a2", "a3", "a4", "a5", "a6", "e1")
+
 
 def machine_of(task: ProgramTask) -> KrlMachine:
     """The run that a task belongs to."""
@@ -38,14 +40,11 @@ def machine_of(task: ProgramTask) -> KrlMachine:
 def _angles(task: ProgramTask, value: Any) -> list[float]:
     """Joint angles of an axis position; axes that are not named stay."""
     now = [math.degrees(one) for one in task.station.cell.arm.setpoint]
-    names = [f"a{number}" for number in range(1, 7)] + ["e1"]
-    return [float(value.get(name, now[index])) for index, name in enumerate(names[: len(now)])]
+    return [float(value.get(name, angle)) for name, angle in zip(_AXES, now, strict=False)]
 
 
 def _is_axes(value: Any) -> bool:
-    return (isinstance(value, dict) and "a1" in value) or (isinstance(value, dict) and (
-        any(name in value for name in ("a2", "a3", "a4", "a5", "a6")) and "x" not in value
-    ))  # fmt: skip
+    return isinstance(value, dict) and not value.keys().isdisjoint(_AXES[:6])
 
 
 def _complete(task: ProgramTask, value: Any, site: ProgramPlace) -> Frame:
@@ -91,9 +90,7 @@ def _relative(task: ProgramTask, value: Any, options: dict[str, ProgramNode], st
     """The target of a relative motion: in the axes of the base, or of the tool."""
     if _is_axes(value):
         now = [math.degrees(one) for one in task.station.cell.arm.setpoint]
-        names = [f"a{number}" for number in range(1, 7)] + ["e1"]
-        angles = [one + float(value.get(name, 0.0)) for name, one in zip(names, now, strict=False)]
-        return of_axes(angles)
+        return of_axes([one + float(value.get(name, 0.0)) for name, one in zip(_AXES, now, strict=False)])
     shift = frame_of({"x": 0.0, **value})
     frame = options.get("frame")
     if frame is not None and frame.parts[0].name == "tool":
@@ -135,7 +132,7 @@ def _wait_seconds(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> 
 
 
 def _wait_for(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-    yield from task.until(node, scope, node.parts[0])
+    yield from task.until(node, scope, lambda: task.value(node.parts[0], scope))
 
 
 def _halt(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> None:

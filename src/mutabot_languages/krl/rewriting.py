@@ -120,7 +120,7 @@ class KrlRewriter(Rewriter):
         elif node.kind in ("index", "name") and self._meant(node) == "$in" and parents[-1].kind != "index":
             yield from self._input(node, parents)
         elif node.kind == "binary" and node.name == ":":
-            yield from self._reversed(node)
+            yield from self._reversed(node, node.parts[1], "xyz")
 
     def _call(self, node: ProgramNode) -> Iterator[TextChange]:
         if node.name in MOTIONS and node.parts:
@@ -135,7 +135,7 @@ class KrlRewriter(Rewriter):
     def _motion(self, node: ProgramNode) -> Iterator[TextChange]:
         target = node.parts[1] if node.name in ("circ", "scirc") and len(node.parts) > 1 else node.parts[0]
         if node.name.endswith("_rel"):
-            yield from self._reversed_relative(node, target)
+            yield from self._reversed(node, target)
         elif target.kind != "option":
             yield from self.moved(node, target)
         written = self.text[node.start : node.start + len(node.name)]
@@ -157,18 +157,10 @@ class KrlRewriter(Rewriter):
     def _is_in_form(self, node: ProgramNode) -> bool:
         return any(start <= node.start < end for start, end, _ in self._folds)
 
-    def _reversed_relative(self, node: ProgramNode, target: ProgramNode) -> Iterator[TextChange]:
-        for pair in target.parts if target.kind == "aggregate" else ():
-            value = signed_number(pair.parts[0])
-            if value:
-                edits = self.put(pair.parts[0], named_number(-value))
-                yield TextChange("reverse-offset", node, edits, pair.name)
-
-    def _reversed(self, node: ProgramNode) -> Iterator[TextChange]:
-        shift = node.parts[1]
+    def _reversed(self, node: ProgramNode, shift: ProgramNode, names: str = "") -> Iterator[TextChange]:
         for pair in shift.parts if shift.kind == "aggregate" else ():
             value = signed_number(pair.parts[0]) if pair.kind == "pair" else None
-            if value and pair.name in ("x", "y", "z"):
+            if value and pair.name in (names or pair.name):
                 edits = self.put(pair.parts[0], named_number(-value))
                 yield TextChange("reverse-offset", node, edits, pair.name)
 

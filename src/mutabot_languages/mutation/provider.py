@@ -111,7 +111,10 @@ class LanguageFaults(FaultProvider):
         keys = () if is_early else (Activation.EACH_TEST,)
         active = Activation(ACTIVE, data, keys, awaits=_AWAITED)
         order = (_ORDER.index(rule.family),)
-        return PlannedMutant(made, difference.reason, order=order, does=data, active=active)
+        # what changes elsewhere in the file does not change what it does
+        at = difference.node.start
+        does = [[edit.start - at, edit.end - at, edit.text] for edit in difference.edits]
+        return PlannedMutant(made, difference.reason, order=order, does=does, active=active)
 
 
 def _is_run_early(original: Original) -> bool:

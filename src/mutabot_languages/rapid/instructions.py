@@ -4,22 +4,23 @@ from __future__ import annotations
 
 import copy
 import math
+import operator
 from collections.abc import Callable, Sequence
 from typing import Any
 
 from mutabot_languages.core.frames import IDENTITY, Frame, cross
 from mutabot_languages.core.names import name_set
 from mutabot_languages.core.scope import ControlFlow, ProgramRaised, RoutineScope, Steps, Structure, Variable
-from mutabot_languages.core.station import TICK, matrix_frame
-from mutabot_languages.core.task import OF_DEGREES, ProgramTask
+from mutabot_languages.core.station import matrix_frame
+from mutabot_languages.core.task import OF_DEGREES, ProgramTask, of_values
 from mutabot_languages.core.tree import ProgramNode
 
-from .interrupts import INTERRUPTS, trigger_watch
+from .interrupts import INTERRUPTS, arguments_of, trigger_watch
 from .types import STRUCTURES, frame_of, put_frame, shaped
 
 #: what has no effect in the cell, and is noted
 IGNORED = name_set(
-    """confl confj singarea accset velset pathaccllim pathacclim gripload tpwrite errwrite tperase
+    """stop confl confj singarea accset velset pathaccllim pathacclim gripload tpwrite errwrite tperase
     tpshow skipwarn syncmoveon syncmoveoff waitsynctask syncmoveundo actunit deactunit actevent
     evtset motionsup speedrefresh worldacclim pathresol softact softdeact corrclear load unload save
     startload waitload cancelload erasemodule logtext spystart spystop setsysdata resetretrycount
@@ -37,9 +38,12 @@ def structures(task: ProgramTask) -> Any:
     return getattr(task.dialect, "structures", STRUCTURES)
 
 
-def _base(task: ProgramTask, wobj: Any) -> Frame:
-    """The frame of a work object on the robot's base, with the program's displacement."""
-    frame = IDENTITY if wobj is None else frame_of(wobj["uframe"]) * frame_of(wobj["oframe"])
+def _base(task: ProgramTask, named: dict[str, Any]) -> Frame:
+    """The frame of a work object among arguments on the robot's base, with the program's displacement."""
+    frame = IDENTITY
+    if named.get("wobj") is not None:
+        wobj = _target(task, named["wobj"], "wobjdata")
+        frame = frame_of(wobj["uframe"]) * frame_of(wobj["oframe"])
     shift = getattr(task.machine, "displacement", None)
     return frame if shift is None else frame * shift
 
@@ -66,8 +70,7 @@ def _move(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
     station = task.station
     if tool is not None:
         station.tool = frame_of(tool["tframe"])
-    wobj = named.get("wobj")
-    base = _base(task, _target(task, wobj, "wobjdata") if wobj is not None else None)
+    base = _base(task, named)
     pace = float(named.get("v") or speed["v_tcp"]) / 1000
     if pace <= 0:
         raise task.error(node, scope, f"{name} with the speed {pace * 1000:g} mm/s")
@@ -158,8 +161,7 @@ def _set_to(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
 
 
 def _pulse(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-    parts = [one for one in node.parts if one.kind != "option"]
-    named = {one.name: one for one in node.parts if one.kind == "option"}
+    parts, named = arguments_of(node)
     seconds = 0.2
     if "plength" in named:
         seconds = float((yield from task.value(named["plength"].parts[0], scope)))
@@ -201,7 +203,7 @@ def _wait_time(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Ste
 
 
 def _options(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Any:
-    named: dict[str, ProgramNode] = {one.name: one for one in node.parts if one.kind == "option"}
+    _, named = arguments_of(node)
     seconds = 0.0
     if "maxtime" in named:
         seconds = float((yield from task.value(named["maxtime"].parts[0], scope)))
@@ -214,40 +216,27 @@ def _wait_signal(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> S
     signal = _signal(task, node, scope, parts[0])
     site = task.site(node, scope)
 
-    def holds() -> bool:
+    def holds() -> Steps:
         is_output = node.name.startswith(("waitdo", "waitgo", "waitao"))
         value = task.station.outputs.get(signal.lower(), 0) if is_output else task.station.read(site, signal)
         return float(value) == float(wanted)
+        yield  # pragma: no cover  (makes it a generator)
 
-    yield from _poll(task, node, scope, holds)
-
-
-def _poll(task: ProgramTask, node: ProgramNode, scope: RoutineScope, holds: Callable[[], bool]) -> Steps:
-    seconds, flag = yield from _options(task, node, scope)
-    began = task.station.time
-    while not holds():
-        if seconds and task.station.time - began >= seconds - TICK / 2:
-            yield from _timed_out(task, node, scope, flag)
-            return
-        task.machine.step(node, scope)
-        yield from task.wait(node, scope, TICK)
-    if flag is not None and flag.parts:
-        yield from task.store(flag.parts[0], False, scope)
-
-
-def _timed_out(task: ProgramTask, node: ProgramNode, scope: RoutineScope, flag: ProgramNode | None) -> Steps:
-    if flag is None or not flag.parts:
-        raise ProgramRaised(_TIMEOUT, f"{node.name} waited in vain")
-    yield from task.store(flag.parts[0], True, scope)
+    yield from _wait_for(task, node, scope, holds)
 
 
 def _wait_until(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
     condition = next(one for one in node.parts if one.kind != "option")
+    yield from _wait_for(task, node, scope, lambda: task.value(condition, scope))
+
+
+def _wait_for(task: ProgramTask, node: ProgramNode, scope: RoutineScope, holds: Callable[[], Steps]) -> Steps:
     seconds, flag = yield from _options(task, node, scope)
-    if not (yield from task.until(node, scope, condition, seconds)):
-        yield from _timed_out(task, node, scope, flag)
-    elif flag is not None and flag.parts:
-        yield from task.store(flag.parts[0], False, scope)
+    is_over = not (yield from task.until(node, scope, holds, seconds))
+    if flag is not None and flag.parts:
+        yield from task.store(flag.parts[0], is_over, scope)
+    elif is_over:
+        raise ProgramRaised(_TIMEOUT, f"{node.name} waited in vain")
 
 
 # frames
@@ -279,8 +268,7 @@ def _here(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
     station = task.station
     if named.get("tool"):
         station.tool = frame_of(_target(task, named["tool"], "tooldata")["tframe"])
-    wobj = named.get("wobj")
-    base = _base(task, _target(task, wobj, "wobjdata") if wobj else None)
+    base = _base(task, named)
     at = base.inverse() * station.actual(task.site(node, scope))
     made = put_frame(_target(task, _NOWHERE, "robtarget"), at)
     return made["trans"] if node.name == "cpos" else made
@@ -303,8 +291,7 @@ def _joint_target(task: ProgramTask, angles: list[float]) -> Any:
 def _calc_joints(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
     values, named = yield from task.arguments(node, scope)
     task.station.tool = frame_of(_target(task, values[1], "tooldata")["tframe"])
-    wobj = named.get("wobj")
-    base = _base(task, _target(task, wobj, "wobjdata") if wobj else None)
+    base = _base(task, named)
     frame = base * frame_of(_target(task, values[0], "robtarget"))
     return _joint_target(task, task.station.inverse(frame))
 
@@ -314,11 +301,8 @@ def _calc_target(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> S
     joints = _target(task, values[0], "jointtarget")
     if len(values) > 1:
         task.station.tool = frame_of(_target(task, values[1], "tooldata")["tframe"])
-    wobj = named.get("wobj")
-    base = _base(task, _target(task, wobj, "wobjdata") if wobj else None)
-    angles = [*joints["robax"].values(), *_seventh(task, joints)]
-    now = [math.degrees(one) for one in task.station.cell.arm.setpoint]
-    at = task.station.forward([*angles, *now[len(angles) :]][: task.station.joints])
+    base = _base(task, named)
+    at = task.station.forward([*joints["robax"].values(), *_seventh(task, joints)])
     return put_frame(_target(task, _NOWHERE, "robtarget"), base.inverse() * at)
 
 
@@ -348,15 +332,14 @@ def _pose_record(task: ProgramTask, frame: Frame) -> Structure:
     return put_frame(_target(task, [[0, 0, 0], [1, 0, 0, 0]], "pose"), frame)
 
 
-def _pose_mult(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-    values, _ = yield from task.arguments(node, scope)
-    one, other = (frame_of(_target(task, value, "pose")) for value in values)
-    return _pose_record(task, one * other)
+def _of_poses(function: Callable[..., Frame]) -> Callable[..., Steps]:
+    """PoseMult and PoseInv."""
 
+    def call(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+        values, _ = yield from task.arguments(node, scope)
+        return _pose_record(task, function(*(frame_of(_target(task, one, "pose")) for one in values)))
 
-def _pose_inv(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-    values, _ = yield from task.arguments(node, scope)
-    return _pose_record(task, frame_of(_target(task, values[0], "pose")).inverse())
+    return call
 
 
 def _pose_vect(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
@@ -390,10 +373,8 @@ def _unit(vector: Any) -> Any:
 # program flow
 
 
-def _leave(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Any:
-    if node.name == "exitcycle":
-        raise ControlFlow("exit")
-    task.station.note(f"{node.name} at line {scope.unit.source.line_of(node.start)} has no effect here")
+def _exit_cycle(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> None:
+    raise ControlFlow("exit")
 
 
 def _late(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
@@ -458,19 +439,6 @@ def _dim(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
     return len(found)
 
 
-def _plain(function: Callable[..., Any]) -> Callable[..., Steps]:
-    """A function of values alone."""
-
-    def call(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-        values, named = yield from task.arguments(node, scope)
-        try:
-            return function(*values, **named)
-        except (TypeError, ValueError, IndexError, ZeroDivisionError, OverflowError) as error:
-            raise task.error(node, scope, f"{node.name}: {error}") from error
-
-    return call
-
-
 def _round(value: float, dec: int = 0, **_: Any) -> float:
     return float(math.floor(value * 10**dec + 0.5) / 10**dec)
 
@@ -513,7 +481,7 @@ def _str_to_val(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> St
 
 
 def _bits(change: Callable[[int, int], int]) -> Callable[..., Any]:
-    return _plain(lambda one, other: change(int(one), int(other)))
+    return of_values(lambda one, other: change(int(one), int(other)))
 
 
 _MOVES = (
@@ -532,33 +500,35 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
     **dict.fromkeys(["waitdi", "waitdo", "waitgi", "waitgo", "waitai", "waitao"], _wait_signal),
     "offs": _offs, "reltool": _rel_tool, "crobt": _here, "cpos": _here, "cjointt": _joints,
     "calcjointt": _calc_joints, "calcrobt": _calc_target, "pdispset": _displace, "pdispoff": _displace,
-    "orientzyx": _plain(_orient_zyx), "eulerzyx": _euler, "posemult": _pose_mult, "poseinv": _pose_inv,
+    "orientzyx": of_values(_orient_zyx), "eulerzyx": _euler, "posemult": _of_poses(operator.mul),
+    "poseinv": _of_poses(Frame.inverse),
     "posevect": _pose_vect, "defframe": _def_frame,
-    "%": _late, "callbyvar": _call_by_var, "present": _present, "stop": _leave, "exitcycle": _leave,
+    "%": _late, "callbyvar": _call_by_var, "present": _present, "exitcycle": _exit_cycle,
     "incr": _change(lambda now, by: now + 1), "decr": _change(lambda now, by: now - 1),
     "add": _change(lambda now, by: now + by), "clear": _change(lambda now, by: 0),
     **dict.fromkeys(["clkreset", "clkstart", "clkstop", "clkread"], _clock), "dim": _dim,
-    "abs": _plain(abs), "absnum": _plain(abs), "sqrt": _plain(math.sqrt), "pow": _plain(lambda a, b: a**b),
-    "exp": _plain(math.exp), "round": _plain(_round), "trunc": _plain(_trunc),
-    **{name: _plain(function) for name, function in OF_DEGREES.items()},
-    "atan": _plain(lambda value: math.degrees(math.atan(value))),
-    "max": _plain(max), "min": _plain(min), "distance": _plain(_distance),
-    "vectmagn": _plain(lambda value: math.hypot(*value.values())),
-    "numtostr": _plain(number_text), "dnumtostr": _plain(number_text), "valtostr": _plain(value_text),
-    "strlen": _plain(len), "strpart": _plain(lambda text, at,
+    "abs": of_values(abs), "absnum": of_values(abs), "sqrt": of_values(math.sqrt),
+    "pow": of_values(lambda a, b: a**b),
+    "exp": of_values(math.exp), "round": of_values(_round), "trunc": of_values(_trunc),
+    **{name: of_values(function) for name, function in OF_DEGREES.items()},
+    "atan": of_values(lambda value: math.degrees(math.atan(value))),
+    "max": of_values(max), "min": of_values(min), "distance": of_values(_distance),
+    "vectmagn": of_values(lambda value: math.hypot(*value.values())),
+    **dict.fromkeys(["numtostr", "dnumtostr"], of_values(number_text)), "valtostr": of_values(value_text),
+    "strlen": of_values(len), "strpart": of_values(lambda text, at,
     count: text[int(at) - 1 : int(at) - 1 + int(count)]),
-    "strfind": _plain(lambda text, at, chars: next(
+    "strfind": of_values(lambda text, at, chars: next(
         (n + 1 for n in range(int(at) - 1, len(text)) if text[n] in chars), len(text) + 1)),
-    "strmatch": _plain(lambda text, at, part: text.find(part, int(at) - 1) + 1 or len(text) + 1),
-    "strtoval": _str_to_val, "numtodnum": _plain(float), "dnumtonum": _plain(float),
+    "strmatch": of_values(lambda text, at, part: text.find(part, int(at) - 1) + 1 or len(text) + 1),
+    "strtoval": _str_to_val, "numtodnum": of_values(float), "dnumtonum": of_values(float),
     "bitand": _bits(lambda a, b: a & b), "bitor": _bits(lambda a, b: a | b), "bitxor": _bits(lambda a,
     b: a ^ b),
     "bitlsh": _bits(lambda a, b: a << b), "bitrsh": _bits(lambda a, b: a >> b),
     **dict.fromkeys(["bitcheckdnum", "bitcheck"], _bits(lambda value, bit: bool(value & 1 << bit - 1))),
-    "gettime": _plain(lambda **_: 0), "ctime": _plain(lambda: "00:00:00"),
-    "cdate": _plain(lambda: "2000-01-01"),
-    "runmode": _plain(lambda **_: 0), "opmode": _plain(lambda: 1),
-    "gettaskname": _plain(lambda **_: "T_ROB1"),
-    "robos": _plain(lambda: False), "isstopstateevent": _plain(lambda **_: False),
-    "cspeedoverride": _plain(lambda **_: 100.0), "maxrobspeed": _plain(lambda: 5000.0),
+    "gettime": of_values(lambda **_: 0), "ctime": of_values(lambda: "00:00:00"),
+    "cdate": of_values(lambda: "2000-01-01"),
+    "runmode": of_values(lambda **_: 0), "opmode": of_values(lambda: 1),
+    "gettaskname": of_values(lambda **_: "T_ROB1"),
+    "robos": of_values(lambda: False), "isstopstateevent": of_values(lambda **_: False),
+    "cspeedoverride": of_values(lambda **_: 100.0), "maxrobspeed": of_values(lambda: 5000.0),
 }  # fmt: skip

@@ -14,7 +14,7 @@ from mutabot_languages.core.task import ProgramTask
 from mutabot_languages.core.tree import ProgramNode
 
 
-def _plain(node: ProgramNode) -> tuple[list[ProgramNode], dict[str, ProgramNode]]:
+def arguments_of(node: ProgramNode) -> tuple[list[ProgramNode], dict[str, ProgramNode]]:
     """The arguments of an instruction in their order, and its options by their names."""
     options = {one.name: one for one in node.parts if one.kind == "option"}
     return [one for one in node.parts if one.kind != "option"], options
@@ -52,7 +52,7 @@ def _connect(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> None:
 def _order(
     task: ProgramTask, node: ProgramNode, scope: RoutineScope, value: Callable[[], Steps], wanted: Any
 ) -> None:
-    parts, options = _plain(node)
+    parts, options = arguments_of(node)
     number = _number(task, parts[-1], scope)
     if number not in _traps(task):
         raise ProgramRaised("err_unkino", f"the interrupt {parts[-1].name} is connected to no trap")
@@ -65,7 +65,7 @@ def _order(
 
 def _on_signal(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
     """ISignalDI and ISignalDO: when a signal becomes 0 or 1, or changes."""
-    parts, _ = _plain(node)
+    parts, _ = arguments_of(node)
     station, name, site = task.station, parts[0].name, task.site(node, scope)
     wanted = float((yield from task.value(parts[1], scope)))
 
@@ -78,7 +78,7 @@ def _on_signal(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Ste
 
 
 def _timer(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-    parts, _ = _plain(node)
+    parts, _ = arguments_of(node)
     seconds = float((yield from task.value(parts[0], scope)))
     if seconds <= 0:
         raise task.error(node, scope, f"a timer of {seconds:g} s")
@@ -134,7 +134,7 @@ class TriggerPoint:
 
 def _trigger(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
     """TriggIO and TriggEquip: what a later motion does where."""
-    parts, options = _plain(node)
+    parts, options = arguments_of(node)
     distance = float((yield from task.value(parts[1], scope))) / 1000
     variable = task.find(parts[0].name, scope)
     if variable is None or "time" in options:

@@ -10,6 +10,7 @@ from mutabot_languages.core.frames import Frame
 from mutabot_languages.core.machine import OF_NUMBERS, Dialect, Evaluation
 from mutabot_languages.core.names import name_set
 from mutabot_languages.core.scope import ControlFlow, RoutineScope, Steps, Structure
+from mutabot_languages.core.station import ProgramPlace, Station
 from mutabot_languages.core.task import ProgramTask, of_values
 from mutabot_languages.core.tree import ProgramNode
 from mutabot_languages.errors import ProgramError
@@ -242,14 +243,8 @@ def _run(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
     machine.threads = number  # type: ignore[attr-defined]
     name = f"{call.name} {number}"
     machine.start(name, ProgramTask(machine, name).call_routine(routine, call.parts, node, scope))
-    return UrThread([name])
+    return (name,)
     yield  # pragma: no cover
-
-
-class UrThread(tuple[str, ...]):
-    """A thread that was started."""
-
-    __slots__ = ()
 
 
 def _kill(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
@@ -272,35 +267,18 @@ def _join(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
         yield from task.wait(node, scope, 0.01)
 
 
-def _reader(name: str) -> Callable[..., Steps]:
-    """A function that reads a signal ``name[n]``."""
+def _signal(use: Callable[..., Any], name: str) -> Callable[..., Steps]:
+    """A function that does something with a signal ``name[n]``."""
 
-    def read(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
-        values, _ = yield from task.arguments(node, scope)
-        return task.station.read(task.site(node, scope), f"{name}[{int(values[0])}]")
+    def call(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
+        (number, *values), _ = yield from task.arguments(node, scope)
+        return use(task.station, task.site(node, scope), f"{name}[{int(number)}]", *values)
 
-    return read
-
-
-def _writer(name: str) -> Callable[..., Steps]:
-    """A function that sets a signal ``name[n]``."""
-
-    def write(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
-        values, _ = yield from task.arguments(node, scope)
-        number, value = values
-        task.station.write(task.site(node, scope), f"{name}[{int(number)}]", value)
-
-    return write
+    return call
 
 
-def _output(name: str) -> Callable[..., Steps]:
-    """A function that gives the last value of an output."""
-
-    def read(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
-        values, _ = yield from task.arguments(node, scope)
-        return task.station.outputs.get(f"{name}[{int(values[0])}]", False)
-
-    return read
+def _last(station: Station, site: ProgramPlace, name: str) -> Any:
+    return station.outputs.get(name, False)
 
 
 def _pose_now(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> UrPose:
@@ -332,22 +310,11 @@ def _halt(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Any:
     raise ControlFlow("exit")
 
 
-def _moved(a: Frame, b: Frame, sign: float) -> tuple[float, float, float]:
-    (x, y, z), (u, v, w) = a.position, b.position
-    return (x + sign * u, y + sign * v, z + sign * w)
-
-
-def _pose_add(one: Any, other: Any) -> UrPose:
+def _pose_add(one: Any, other: Any, sign: int = 1) -> UrPose:
     a, b = frame_of(one), frame_of(other)
-    shift = _moved(a, b, 1.0)
-    return pose_of(Frame(shift, (Frame(rotation=a.rotation) * Frame(rotation=b.rotation)).rotation))
-
-
-def _pose_sub(one: Any, other: Any) -> UrPose:
-    a, b = frame_of(one), frame_of(other)
-    shift = _moved(a, b, -1.0)
-    turn = Frame(rotation=a.rotation) * Frame(rotation=b.rotation).inverse()
-    return pose_of(Frame(shift, turn.rotation))
+    x, y, z = (p + sign * q for p, q in zip(a.position, b.position, strict=True))
+    turn = b if sign > 0 else b.inverse()
+    return pose_of(Frame((x, y, z), (a * turn).rotation))
 
 
 def _euler(roll: float, pitch: float, yaw: float) -> list[float]:
@@ -364,7 +331,7 @@ _PLAIN: dict[str, Callable[..., Any]] = {
     "pose_trans": lambda a, b: pose_of(frame_of(a) * frame_of(b)),
     "pose_inv": lambda a: pose_of(frame_of(a).inverse()),
     "pose_add": _pose_add,
-    "pose_sub": _pose_sub,
+    "pose_sub": lambda a, b: _pose_add(a, b, -1),
     "pose_dist": lambda a, b: frame_of(a).distance(frame_of(b)),
     "point_dist": lambda a, b: math.dist(a[:3], b[:3]),
     "interpolate_pose": lambda a, b, part: pose_of(frame_of(a).between(frame_of(b), part)),
@@ -407,9 +374,9 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
     "get_tcp_offset": lambda task, node, scope: pose_of(task.station.tool),
     "is_within_safety_limits": of_values(lambda *given: True),
     **{name: of_values(function) for name, function in _PLAIN.items()},
-    **{f"get_{name}_in": _reader(f"{signal}_in") for name, signal in _SIGNALS.items()},
-    **{f"set_{name}_out": _writer(f"{signal}_out") for name, signal in _SIGNALS.items()},
-    **{f"get_{name}_out": _output(f"{signal}_out") for name, signal in _SIGNALS.items()},
+    **{f"get_{name}_in": _signal(Station.read, f"{signal}_in") for name, signal in _SIGNALS.items()},
+    **{f"set_{name}_out": _signal(Station.write, f"{signal}_out") for name, signal in _SIGNALS.items()},
+    **{f"get_{name}_out": _signal(_last, f"{signal}_out") for name, signal in _SIGNALS.items()},
 }  # fmt: skip
 
 
@@ -422,5 +389,5 @@ def _has_inverse(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> St
 
 
 FUNCTIONS["get_inverse_kin_has_solution"] = _has_inverse
-FUNCTIONS["set_flag"] = _writer("flag")
-FUNCTIONS["get_flag"] = _output("flag")
+FUNCTIONS["set_flag"] = _signal(Station.write, "flag")
+FUNCTIONS["get_flag"] = _signal(_last, "flag")

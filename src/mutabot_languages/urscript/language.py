@@ -36,12 +36,13 @@ def _main(machine: Machine, task: ProgramTask, routine: str) -> Steps:
     yield from task.run([one for one in body if one.kind != "routine"], scope)
     if own and not calls:
         ends = [one for one in own if not one.parts]
-        if not ends:
+        if ends:
+            yield from call_main(task, ends[-1].name, [])
+        elif len(own) == len(body):
             raise LanguageError(
                 f"{unit.source.name}: nothing stands at its top, and each of its functions takes arguments: "
                 "load the file that calls them, or add a call"
             )
-        yield from call_main(task, ends[-1].name, [])
 
 
 URSCRIPT = RobotLanguage("urscript", (".script", ".urscript"), URScriptParser, UrDialect, _prepare, _main)

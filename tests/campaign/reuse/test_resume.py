@@ -644,5 +644,5 @@ def test_thousands_of_files_are_read_in_a_moment(tmp_path: Path) -> None:
     assert len(first.files) == 3000
     (tmp_path / "3" / "4.py").write_text("edited")
     again = Snapshot.take(tmp_path, first)
-    assert again.edited_programs(first) == ["3/4.py"]
+    assert again.edited_since(first.digests) == ["3/4.py"]
     assert again.touched_since(first) == {"3/4.py"}

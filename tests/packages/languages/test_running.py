@@ -130,7 +130,7 @@ def test_what_is_not_carried_out_is_said_by_name_and_line(
 ) -> None:
     with pytest.raises(UnsupportedError) as caught:
         run(tmp_path, name, text)
-    assert str(caught.value) == what
+    assert str(caught.value) == f"{what}, which no loaded file declares"
 
 
 def test_what_has_no_effect_is_noted(tmp_path: Path) -> None:
@@ -139,10 +139,26 @@ def test_what_has_no_effect_is_noted(tmp_path: Path) -> None:
 
 
 def test_a_pose_out_of_reach_stops_the_program(tmp_path: Path) -> None:
-    with pytest.raises(ProgramError, match=r"^a.script:2: unreachable: no joint angles .* \(in <module>\)$"):
-        run(tmp_path, "a.script", "sleep(0.1)\nmovej(p[3, 0, 0.3, 0, 3.14, 0])\n")
-    with pytest.raises(MotionRefused, match=r"^a.script:2: motion refused: out of reach .* \(in <module>\)$"):
-        run(tmp_path, "a.script", "sleep(0.1)\nmovel(p[3, 0, 0.3, 0, 3.14, 0])\n")
+    far = "far = p[3, 0, 0.3, 0, 3.14, 0]\n"
+    with pytest.raises(ProgramError, match=r"^a.script:2: movej\(far\): unreachable: .* \(in <module>\)$"):
+        run(tmp_path, "a.script", f"{far}movej(far)\n")
+    with pytest.raises(
+        MotionRefused, match=r"^a.script:2: movel\(far\): motion refused: out of reach .* \(in <m"
+    ):
+        run(tmp_path, "a.script", f"{far}movel(far)\n")
+
+
+def test_a_tool_that_no_file_declares_may_be_in_another_file(tmp_path: Path) -> None:
+    text = "MODULE M\nPROC main()\nMoveL Offs(CRobT(),0,0,9),v50,fine,tGrip;\nENDPROC\nENDMODULE"
+    with pytest.raises(
+        UnsupportedError, match=r"^m.mod:3: nothing says what tgrip is: load the file that decl"
+    ):
+        run(tmp_path, "m.mod", text)
+
+
+def test_a_script_whose_functions_take_arguments_runs_what_stands_beside_them(tmp_path: Path) -> None:
+    _, ended = run(tmp_path, "a.script", "def f(k):\n  sleep(k)\nend\nx = 2\n")
+    assert (ended.variables["x"], ended.seconds) == (2, 0)
 
 
 def test_pytest_shows_nothing_of_the_machine_where_a_program_stops(tmp_path: Path) -> None:

@@ -2,7 +2,7 @@
 
 An outcome has a *key* of five digests: of what all outcomes share (settings, versions, files that are no
 program text), of what those at its place share (tests, entries of the vocabulary), of the mutant's own, of
-the Python files when it was found, and of the units in them that its tests have executed. All but the third
+the program files when it was found, and of the units in them that its tests have executed. All but the third
 stand for *parts*, names with a digest or a plain value each.
 
 The tests are those that reach the mutant, up to the one that killed it. The others count only where one of
@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING, Any
 from mutabot.execution.versions import versions
 from mutabot.frozen import frozen
 from mutabot.journal.records import ACCEPTED
+from mutabot.languages.registry import units_of
 from mutabot.model.codec import to_data
 from mutabot.model.job import Idle
 from mutabot.model.mutant_end import MutantEnd
@@ -31,7 +32,7 @@ from mutabot.model.source_units import ALL_FILES, WHOLE, Executed, File, digest,
 from mutabot.model.suppression import Accepted
 
 from .packages import code_of_packages
-from .snapshot import _HASH, State, counts_by_name, digest_of, read
+from .snapshot import _HASH, State, counts_by_name, digest_of, read, role_of
 
 if TYPE_CHECKING:
     from mutabot.campaign.baseline.baseline import Baseline
@@ -50,7 +51,7 @@ _ASIDE = "which tests are set aside"
 
 
 class SourceTree:
-    """The Python files of a project at one moment.
+    """The program files of a project at one moment.
 
     Args:
         digests: by their names.
@@ -66,7 +67,7 @@ class SourceTree:
         """Return a file; None if it does not exist, or its content is no longer known."""
         if name not in self._files:
             text = self._text(name, self.digests[name]) if name in self.digests else None
-            self._files[name] = File(name, text) if text is not None else None
+            self._files[name] = File(name, text, units_of(name)) if text is not None else None
         return self._files[name]
 
     @cached_property
@@ -98,7 +99,7 @@ class SourceTree:
 
 
 #: a place as outcomes name it: ``file:line``, or ``file:line:column-line:column``
-_PLACE = re.compile(r"(?<![\w./-])([\w./-]+\.py):(\d+)(?::(\d+)-(\d+):(\d+))?")
+_PLACE = re.compile(r"(?<![\w./$-])([\w./$-]+\.\w+):(\d+)(?::(\d+)-(\d+):(\d+))?")
 
 #: of two files: most places that are moved lie in the same ones
 _moves = lru_cache(8)(File.moves_to)
@@ -110,7 +111,7 @@ class Was:
 
     Attributes:
         common, place, own: as in its key.
-        tree: the Python files of then.
+        tree: the program files of then.
         found_in: those in which it was found; the executed units are told by their lines.
         executed: what of them was executed; None if that is not known.
         notes: digests of notes that were read.
@@ -146,8 +147,8 @@ class Dependencies:
         files: the files that count, with their digests.
         notes: the others.
         parts: what the digests in keys stand for; grows as keys are made.
-        texts: what stands in the Python files.
-        tree: the Python files.
+        texts: what stands in the program files.
+        tree: the program files.
         common: what all outcomes depend on.
     """
 
@@ -183,7 +184,7 @@ class Dependencies:
         }
 
     def _around(self) -> Iterator[tuple[str, str]]:
-        """Yield the Python files that exist: a new one may shadow another, a new test cannot."""
+        """Yield the program files that exist: a new one may shadow another, a new test cannot."""
         for name in self.tree.digests:
             if not is_test_file(name):
                 yield name, "there"
@@ -202,7 +203,7 @@ class Dependencies:
 
         Args:
             parts: what a digest stands for.
-            tree: the Python files that a digest stands for.
+            tree: the program files that a digest stands for.
         """
         common, place, own, files, executed = (*key.split(), *[""] * 5)[:5]  # a journal may hold anything
         found_in = self.tree if files == self._tree else tree(files)
@@ -533,15 +534,6 @@ def _settings(request: Request) -> dict[str, str]:
         **({"every test": "run"} if request.every_test else {}),
         **({"guards": _HASH + _digest(request.guards)} if request.guards else {}),
     }
-
-
-def role_of(file: str, request: Request) -> str:
-    """Return the role of the calls in a file: ``program``, ``oracle``, or empty."""
-    configuration = request.configuration
-    for role, sources in (("program", configuration.program), ("oracle", configuration.oracle)):
-        if any(source in (".", file) or file.startswith(f"{source}/") for source in sources):
-            return role
-    return ""
 
 
 def _pytest_parts(request: Request, read: Callable[[Path], bytes | None]) -> dict[str, str]:

@@ -23,7 +23,7 @@ from mutabot.journal.records import SINCE, Kept, Since
 from mutabot.model import Mutant, Verdict
 from mutabot.repository import GitError, git, unignored
 
-from .snapshot import WRITTEN, State, counts_by_name, digest_of, is_note, own_files, read
+from .snapshot import WRITTEN, State, counts_by_name, digest_of, is_note, is_source, own_files, read
 
 if TYPE_CHECKING:
     from mutabot.campaign.campaign import Campaign, RunId
@@ -330,7 +330,7 @@ def _then(revision: Revision, campaign: Campaign, now: Dependencies) -> Dependen
     gone = {name: "" for name in revision.gone() if counts_by_name(name) and not is_note(name)}
     own = own_files(campaign.request)
     files = digests_then({**now.files, **{name: digest for name, digest in gone.items() if name not in own}})
-    texts = {name: revision.read(root / name) or b"" for name in files if name.endswith(".py")}
+    texts = {name: revision.read(root / name) or b"" for name in files if is_source(name, campaign.request)}
     tree = SourceTree({name: files[name] for name in texts}, lambda name, digest: texts[name])
     absent = {test for _, test in campaign.baseline.ends if not now.is_of(test, tree)}
     state = State(files, digests_then(now.notes), texts)

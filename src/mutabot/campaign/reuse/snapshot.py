@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 
 from mutabot.campaign.project_files import UNREAD, is_folder_of_project, is_name_of_project
 from mutabot.config.suppressions import FILE as ACCEPTED_FILE
+from mutabot.languages.registry import units_of
 
 if TYPE_CHECKING:
     from mutabot.campaign.request import Request
@@ -58,7 +59,7 @@ def counted(
         path = request.root / name
         is_idle = opened is not None and is_note(name) and name not in opened and not path.is_symlink()
         if name not in own and not is_idle and not _is_report(path):
-            is_result = name in written and not name.endswith(".py")
+            is_result = name in written and not is_source(name, request)
             found[name] = WRITTEN if is_result else digest
     return found
 
@@ -66,6 +67,20 @@ def counted(
 def is_note(name: str) -> bool:
     """Return whether people or tools leave files of this kind everywhere, such as notes and caches."""
     return PurePosixPath(name).suffix.lower() in _NOTES
+
+
+def role_of(file: str, request: Request) -> str:
+    """Return the role of the calls in a file: ``program``, ``oracle``, or empty."""
+    configuration = request.configuration
+    for role, sources in (("program", configuration.program), ("oracle", configuration.oracle)):
+        if any(source in (".", file) or file.startswith(f"{source}/") for source in sources):
+            return role
+    return ""
+
+
+def is_source(file: str, request: Request) -> bool:
+    """Return whether a file counts by its units: Python, or program text whose language tells them."""
+    return file.endswith(".py") or (units_of(file) is not None and role_of(file, request) == "program")
 
 
 def own_files(request: Request) -> set[str]:
@@ -144,11 +159,6 @@ class Snapshot:
         now = self.digests
         return [name for name, was in before.items() if was not in (WRITTEN, now.get(name))]
 
-    def edited_programs(self, before: Snapshot) -> list[str]:
-        """Return the Python files of ``before`` whose content has changed, or that no longer exist."""
-        programs = {name: digest for name, digest in before.digests.items() if name.endswith(".py")}
-        return self.edited_since(programs)
-
     def touched_since(self, before: Snapshot) -> set[str]:
         """Return files that were written since ``before``, even with the same content."""
         known = {name: file.status for name, file in before.files.items()}
@@ -206,7 +216,7 @@ class State:
     Attributes:
         files: those that count, with digests of their content.
         notes: digests of the others, which count for what opens them.
-        texts: what stands in the Python files.
+        texts: what stands in the program files.
     """
 
     files: Mapping[str, str]
@@ -224,7 +234,7 @@ class State:
         digests = after.digests
         files = counted(request, digests, after.touched_since(before), opened)
         notes = {name: digest for name, digest in digests.items() if name not in files}
-        found = {name: read(request.root / name) for name in files if name.endswith(".py")}
+        found = {name: read(request.root / name) for name in files if is_source(name, request)}
         return cls(files, notes, {name: text for name, text in found.items() if text is not None})
 
 
