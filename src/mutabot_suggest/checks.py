@@ -144,7 +144,11 @@ class Monitor(CheckProposal):
         line = f'{self.owner}.always(lambda: {self.condition}, "{self.name}")'
         if len(line) <= _LONG:
             return (line,)
-        return (f'{self.owner}.always(\n    lambda: {self.condition},\n    "{self.name}",\n)',)
+        condition = f"    lambda: {self.condition},"
+        if len(condition) > _LONG:  # formatters do not break what has no parentheses
+            parts = self.condition.replace(" or ", "\n        or ")
+            condition = f"    lambda: (\n        {parts}\n    ),"
+        return (f'{self.owner}.always(\n{condition}\n    "{self.name}",\n)',)
 
     @property
     def worth(self) -> tuple[float, ...]:

@@ -68,8 +68,10 @@ class Proof:
                         if end.outcome == "failed":
                             why = (end.message or "no message").splitlines()[0]
                             text = f"fails in {where}: {shorten(why, _MOST, placeholder=' …')}"
-                            for one in _blamed(checks, end.test, end.place or "", end.message or "", texts):
-                                found.setdefault(one, text)
+                            place, message = end.place or "", end.message or ""
+                            own = failing(checks, place, message, texts)
+                            for one in own or in_test(checks, end.test):
+                                found.setdefault(one, text if own else f"its test {text}")
         return found
 
     def on_survivors(self, checks: Sequence[CheckProposal]) -> None:
@@ -107,7 +109,8 @@ class Proof:
         for outcome in outcomes:
             for kill in outcome.kills if outcome.verdict is Verdict.KILLED else ():
                 place = outcome.place if kill.test == outcome.test else None
-                blamed = _blamed(checks, kill.test, place or "", kill.message or "", texts)
+                blamed = failing(checks, place or "", kill.message or "", texts)
+                blamed = blamed or in_test(checks, kill.test)
                 if kill.by == "check" and len(blamed) == 1:
                     found[blamed[0]].add((outcome.mutant, outcome.round))
         return {one: frozenset(trials) for one, trials in found.items()}
@@ -123,18 +126,21 @@ def _only(request: Request, checks: Sequence[CheckProposal]) -> Request:
     return request.changed(tests=tests)
 
 
-def _blamed(
-    checks: Sequence[CheckProposal], test: str, place: str, message: str, texts: Mapping[str, str]
+def failing(
+    checks: Sequence[CheckProposal], place: str, message: str, texts: Mapping[str, str]
 ) -> list[CheckProposal]:
-    """Return the checks to blame for a test's failure: at the place ``file:line``, by name, or else all."""
+    """Return the checks that failed: by a monitor's name, or at the place ``file:line``."""
     named = [one for one in checks if isinstance(one, Monitor) and one.name in message]
     if named:
         return [max(named, key=lambda one: len(one.name))]  # a short one may be part of a longer one
     file, _, line = place.rpartition(":")
     lines = texts.get(file, "").splitlines()
     if line.isdigit() and 0 < int(line) <= len(lines):
-        found = [one for one in checks if lines[int(line) - 1].strip() in one.lines]
-        if found:
-            return found
+        return [one for one in checks if lines[int(line) - 1].strip() in one.lines]
+    return []
+
+
+def in_test(checks: Sequence[CheckProposal], test: str) -> list[CheckProposal]:
+    """Return the checks in a test, or else all."""
     node = test.partition("[")[0]
     return [one for one in checks if one.place.node == node] or list(checks)

@@ -54,6 +54,8 @@ def why_unsolved(
 
 def _why_failed(check: CheckProposal, why: str) -> str:
     statement = " ".join(check.statement.split())
+    if why.startswith("its test"):
+        return "with a check of it, the test fails on the original with another seed"
     if why.startswith("fails in"):
         return f"what would notice it, the original itself breaks with another seed: {statement}"
     return f"a check that would notice it failed its proof ({why}): {statement}"

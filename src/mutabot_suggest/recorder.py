@@ -20,6 +20,8 @@ from . import tick_recorder
 _PARTS, _DEPTH, _LENGTH = 24, 3, 8
 #: characters of a text that may be a label
 _LABEL = 60
+#: s since 1970 of this century: when something ran is no reading of it
+_DATES = 9e8, 4e9
 _PLAIN = (bool, int, float, str, type(None))
 
 _noted: dict[str, dict[str, Any]] = {}
@@ -180,7 +182,9 @@ def _parts_of(text: str, read: Callable[[], Any]) -> dict[str, Any]:
 def _parts(text: str, value: Any, depth: int) -> Iterator[tuple[str, Any]]:
     """Yield plain values within a value, each with the expression that reads it."""
     if isinstance(value, _PLAIN) and type(value) in _PLAIN:
-        if not isinstance(value, str) or len(value) <= _LABEL:
+        is_long = isinstance(value, str) and len(value) > _LABEL
+        is_date = isinstance(value, float) and _DATES[0] < value < _DATES[1] and not value.is_integer()
+        if not is_long and not is_date:
             yield text, value
         return
     if hasattr(type(value), "tolist") and getattr(value, "size", 0) <= _LENGTH:

@@ -73,7 +73,7 @@ class Zone:
         limit = f"{'below' if first.sign > 0 else 'above'} {_number(bound)}"
         if self.is_slip:
             match = COORDINATE.search(first.text.partition(FROM)[0])
-            return f"{match[1] if match else 'nothing'} does not slip in the fingers"
+            return f"{match[1] if match else 'nothing'} stays in its place between the fingers"
         if self.is_release:
             return f"{_thing(first.text)} is {limit} when the gripper opens"
         if PEAKS.search(first.text):

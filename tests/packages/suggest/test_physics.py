@@ -62,7 +62,7 @@ def originals() -> Mapping[tuple[int, str], Any]:
     ("changed", "name"),
     [
         ({"depth": 0.006}, "force on the tool stays below "),
-        ({"grip": 33.0}, "box does not slip in the fingers"),
+        ({"grip": 33.0}, "box stays in its place between the fingers"),
         ({"speed": 1.0}, "tool speed stays below "),
     ],
 )

@@ -71,6 +71,11 @@ def test_what_cannot_be_read_is_no_reading(read: Any) -> None:
     assert recorder.values() == {}
 
 
+def test_the_date_of_a_run_is_no_reading_of_it() -> None:
+    recorder.note({}, [("tag", lambda: {"value": 3.5, "ts": 1795942100.25, "count": 1795942100})])
+    assert recorder.values() == {'tag["value"]': 3.5, 'tag["count"]': 1795942100}
+
+
 def test_another_test_has_noted_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     recorder.note({"x": 1})
     assert recorder.values() == {"x": 1}

@@ -92,6 +92,17 @@ def test_what_a_test_was_given_is_what_it_is_held_against() -> None:
     assert statements == {"assert box.x == pytest.approx(target.x, abs=0.1)"}
 
 
+def test_a_fact_is_held_against_its_value_and_not_against_another_fact() -> None:
+    found = of(
+        [{"stop.latched": True, "alarm.latched": True}] * 3,
+        {"stop.latched": True, "alarm.latched": False},
+        "stop.latched",
+        "alarm.latched",
+    )
+    statements = {check.statement for check in checks_of(PROJECT, found)[0]}
+    assert statements == {"assert alarm.latched"}
+
+
 @pytest.mark.parametrize("test", ["", "assert robot.time < 30"])
 def test_a_time_of_a_run_is_no_check_not_even_beside_a_deadline(test: str) -> None:
     found = of([{"robot.time": 10.0}] * 3, {"robot.time": 20.0}, "robot.time")

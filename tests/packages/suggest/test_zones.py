@@ -6,6 +6,7 @@ import ast
 import json
 import math
 from collections.abc import Mapping, Sequence
+from textwrap import indent
 from typing import Any
 
 import pytest
@@ -113,7 +114,7 @@ def test_what_slips_in_the_fingers_breaks_a_condition_on_its_distance_from_the_t
     assert 0.9 - 0.009 < bound < 0.9 - 0.001
     opening = float(best.condition.partition(f" or {OPENING} > ")[2])
     assert 0.055 < opening < 0.08
-    assert best.name == "box does not slip in the fingers"
+    assert best.name == "box stays in its place between the fingers"
     assert not best.is_release
 
 
@@ -165,6 +166,14 @@ def test_an_angle_that_is_kept_has_bounds_and_one_that_turns_has_none() -> None:
     best, *_ = found([kept], mutant=turned)
     assert THETA in best.condition
     assert found([{THETA: [0.0, 90.0, 180.0]}], mutant={THETA: [0.0, 90.0, 250.0]}) == []
+
+
+def test_a_long_monitor_is_written_as_formatters_do() -> None:
+    slipped = [*[0.0] * 8, *[0.009] * 14]
+    (best, *_) = found([carried([0.0] * 22)], mutant=carried(slipped))
+    text = f"if cell:\n{indent(best.statement, '    ')}\n"
+    assert max(map(len, text.splitlines())) <= 88
+    assert ast.unparse(ast.parse(best.statement)) == (f"cell.always(lambda: {best.condition}, '{best.name}')")
 
 
 def test_a_monitor_stands_behind_what_it_watches_and_is_a_statement() -> None:
