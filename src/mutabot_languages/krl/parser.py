@@ -47,7 +47,7 @@ class KrlParser(StatementParser):
         "<=": 5, ">=": 5, "+": 6, "-": 6, "*": 7, "/": 7, ":": 8,
     }  # fmt: skip
     unary: ClassVar = {"not": 4, "b_not": 4, "-": 9, "+": 9}
-    keywords: ClassVar = RESERVED | {"true", "false"}
+    keywords: ClassVar = RESERVED | MOTIONS | {"true", "false"}
     terminators: ClassVar = name_set(
         """end endfct enddat endif else endfor endwhile until endloop case default endswitch endspline def
         deffct

@@ -16,7 +16,7 @@ from mutabot_languages.registry import language_for
 
 from . import texts
 from .signals import cell_map_text, signals_of
-from .trial import LONGEST, ProgramTrial, tried
+from .trial import ARMS, LONGEST, ProgramTrial, is_out_of_reach, tried
 
 #: files that are left out and named
 _MOST_LEFT = 6
@@ -136,10 +136,10 @@ def _test_text(files: Iterable[str], found: ProgramTrial) -> str:
 def _told(found: ProgramTrial, name: str) -> list[str]:
     if found.problem:
         why = found.problem.partition(": ")[2] or found.problem  # without the name of the exception
-        return [
-            f"{name} does not run to its end on the cell: {why}",
-            "say in cell_map.toml, in the test or in the program what is lacking (docs/languages.md)",
-        ]
+        lacking = "say in cell_map.toml, in the test or in the program what is lacking (docs/languages.md)"
+        if is_out_of_reach(found.problem):
+            lacking = f"none of the arms {', '.join(ARMS)} reaches it: docs/languages.md says what to do"
+        return [f"{name} does not run to its end on the cell: {why}", lacking]
     ends = (
         f"runs without an end, tested for {LONGEST:g} s"
         if found.is_endless

@@ -65,10 +65,15 @@ def tried(files: Sequence[Path], cell_map: str) -> ProgramTrial:
             if not found.problem:
                 return found
             first = first or found
-            if "unreachable" not in found.problem and "MotionRefused" not in found.problem:
+            if not is_out_of_reach(found.problem):
                 break
     assert first is not None
     return first
+
+
+def is_out_of_reach(problem: str) -> bool:
+    """Whether another arm may carry out what stopped the program."""
+    return "unreachable" in problem or "MotionRefused" in problem
 
 
 def _run(arm: str, arguments: list[Any]) -> ProgramTrial:

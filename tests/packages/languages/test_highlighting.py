@@ -15,11 +15,12 @@ CASES = {
         ["word IF", "word THEN", 'text "say ""IF""; ! no"', 'comment ! the END "x"', "word endif"],
     ),
     "a.src": (
-        '&ACCESS RVP\nDEF a( ) ; loop\nWAIT FOR $IN[1] ; "x"\nx[]="a;b"',
+        '&ACCESS RVP\nDEF a( ) ; loop\nPTP xp\nWAIT FOR $IN[1] ; "x"\nx[]="a;b"',
         [
             "comment &ACCESS RVP",
             "word DEF",
             "comment ; loop",
+            "word PTP",
             "word WAIT",
             "word FOR",
             'comment ; "x"',

@@ -138,6 +138,25 @@ def test_why_a_program_does_not_run_is_said(tmp_path: Path, monkeypatch: pytest.
     assert "program.run(cell)" in files["tests/test_a.py"]
 
 
+@pytest.mark.parametrize(
+    ("problem", "hint"),
+    [
+        ("ProgramError: a.script:1: movej(p): unreachable: no joint angles", "none of the arms gen3, ur5e, "),
+        (
+            "MotionRefused: a.script:1: movel(p): motion refused: out of reach",
+            "none of the arms gen3, ur5e, ",
+        ),
+        ("UnsupportedError: unsupported: socket_open at line 1", "say in cell_map.toml, in the test or in "),
+    ],
+)
+def test_what_to_do_is_said_by_what_stopped_it(
+    problem: str, hint: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "a.script").write_text("movej(p)\n")
+    _, lines = begun(tmp_path, monkeypatch, ProgramTrial("gen3", problem=problem))
+    assert lines[-1].startswith(hint)
+
+
 def test_tests_and_cell_maps_that_are_there_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     written(tmp_path, "rapid")
     (tmp_path / "cell_map.toml").write_text("")
