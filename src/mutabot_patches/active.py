@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from random import Random
 from types import CodeType, FunctionType
-from typing import Any
+from typing import Any, ClassVar
 
 from mutabot.api.faults import ActiveFault
 
@@ -20,6 +20,8 @@ class PatchedFiles(ActiveFault):
     ``data``: the new contents by path, in Latin-1, and by path the functions to change in a process that has
     imported the file: qualified name, first line before and after.
     """
+
+    is_of_text: ClassVar[bool] = True
 
     def prepare_process(self) -> None:
         """Change the files; in a forked process, the loaded functions as well."""

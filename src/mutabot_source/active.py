@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from random import Random
+from typing import ClassVar
 
 from mutabot.api.faults import ActiveFault
 
@@ -13,6 +14,8 @@ class ChangedText(ActiveFault):
     ``data``: the file, what it holds, in Latin-1, and what stands where in it then: the first byte, the one
     after the last, and the text.
     """
+
+    is_of_text: ClassVar[bool] = True
 
     def prepare_process(self) -> None:
         """Change the file, before anything imports or reads it."""

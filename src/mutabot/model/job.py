@@ -19,7 +19,7 @@ from mutabot.model.codec import from_data, is_plain, to_data
 from mutabot.model.deadline import Limit
 from mutabot.model.event_file import FOLDER
 from mutabot.model.files import open_file, read_file
-from mutabot.model.mutant import Instrumentation, Mutant, Span
+from mutabot.model.mutant import Instrumentation, Mutant, Site, Span
 from mutabot.model.operation import Vocabulary
 
 #: environment variable that names the job file; the plugin sleeps without it
@@ -33,11 +33,11 @@ class RefusedAt:
     """The calls at one site that the robot refuses in the original, in one test.
 
     Attributes:
-        span, operation, pattern: the site, and what is called there.
+        site, operation, pattern: the site, and what is called there.
         numbers: of these calls among all of the site in the test, from 1.
     """
 
-    span: Span
+    site: Site
     operation: str
     pattern: str | None
     numbers: tuple[int, ...]

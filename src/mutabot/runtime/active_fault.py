@@ -69,6 +69,8 @@ class ActiveFault(ABC):
     Class attributes:
         is_checked: whether an exception that the program or a test meets is an error of the mutant if it
             comes from the fault's own package. The core's own tell such errors themselves.
+        is_of_text: whether it is a change of the program's files. A test that the robot's refusal ends has
+            then not judged it, unless the robot refuses the call in the original as well.
 
     Attributes:
         mutant: the mutant.
@@ -79,6 +81,7 @@ class ActiveFault(ABC):
     """
 
     is_checked: ClassVar[bool] = True
+    is_of_text: ClassVar[bool] = False
 
     def __init__(self, mutant: Mutant, data: Any, context: FaultContext) -> None:
         self.mutant, self.data, self.context = mutant, data, context

@@ -21,11 +21,13 @@ from mutabot.model import Mutant
 from mutabot.model.activation import Activation, Key
 from mutabot.operators.command import FatalFault
 from mutabot.runtime.active_fault import ActiveFault, FatalControl, FaultContext
-from mutabot.runtime.evidence import Evidence, everything
+from mutabot.runtime.evidence import Evidence, Refusal, everything
+from mutabot.runtime.interception.active_mutant import with_refusal
 
 if TYPE_CHECKING:
     from types import FrameType
 
+    from mutabot.model import Call
     from mutabot.runtime.interception.trace import Locator
 
 #: modules that stand in for the robot in tests
@@ -53,6 +55,8 @@ class FaultRunner:
     _fault: ActiveFault | None = None
     _failure: str | None = None
     _is_in_test: bool = False
+    _refusals: tuple[Refusal, ...] = ()
+    _is_unknown: bool = False
 
     def take_on(self, mutant: Mutant, activation: Activation) -> None:
         """Become this mutant, possibly within a test that has begun."""
@@ -72,6 +76,9 @@ class FaultRunner:
         if self._fault is not None:
             with self._guarded("asked what it did"):
                 found = _checked(self._fault.evidence)
+                if self._fault.is_of_text:
+                    refusals, unknown = self._refusals, self._is_unknown
+                    found = replace(found, is_of_text=True, refusals=refusals, is_unknown=unknown)
         return found if self._failure is None else replace(found, failure=self._failure)
 
     def _imported(self, *, is_later: bool) -> None:
@@ -83,6 +90,7 @@ class FaultRunner:
     def start_test(self) -> None:
         """Begin a test."""
         self.fatal, self._is_in_test = None, True
+        self._refusals, self._is_unknown = (), False
         if self._fault is None and self._awaits(Activation.FIRST_TEST):
             self._make()
         elif self._fault is not None:
@@ -106,6 +114,13 @@ class FaultRunner:
         with self._guarded("put in place"), self.context.untracked():
             fault.reach(key)
         return None
+
+    def refused(self, error: BaseException, call: Call) -> None:
+        """Note that the robot refuses a call, and not in the original: a changed program may cause that."""
+        if self._fault is not None and self._fault.is_of_text and self.evidence.acted:
+            self._refusals = with_refusal(self._refusals, error)
+            # the vocabulary says what commands there are; this is none of them
+            self._is_unknown = call.operation.message is not None and call.pattern is None
 
     def end_test(self) -> None:
         """End a test and its fixtures; the fault's evidence is read after this."""

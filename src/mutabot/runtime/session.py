@@ -334,6 +334,7 @@ class Session:
 
     def change_file(self, path: str, content: bytes) -> None:
         """Change a file of the project for this process; see ``FaultContext.change_file``."""
+        self.passing.refused.changed[path] = content
         if self.files is not None:  # else this process is below one that has changed it
             self.files.change(path, content)
 
@@ -446,10 +447,12 @@ class Session:
     def _raised(self, error: BaseException, made: SiteCall) -> None:
         names = self.refusals_of(made.call.operation)
         refused = self.passing.refused
-        if refused.on_refused is not None and is_refusal(error, names):
+        if not is_refusal(error, names):
+            return
+        if refused.on_refused is not None:
             refused.on_refused(made)
-        if self.text is not None and not refused.has(made):
-            self.text.raised(error, made.call, names)
+        if not refused.has(made):
+            self.fault.refused(error, made.call)
 
     def _note(self, made: SiteCall, *, is_refused: bool = False) -> None:
         """Note that the robot refused a call of the original, or returned its own memory."""

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mutabot.model import Call, Operation, Pattern, Role, Span
+from mutabot.model import Call, Operation, Pattern, Role, Site, Span
 from mutabot.model.job import RefusedAt
 from mutabot.model.operation import Form, Named, Refused
 from mutabot.runtime.interception.active_mutant import RefusedCalls, answered, heard, refused_of
@@ -107,7 +107,7 @@ def test_a_call_of_the_original_that_answers_so_is_noted() -> None:
 
 def test_what_is_known_of_a_test_holds_for_its_calls_alone() -> None:
     refused = RefusedCalls()
-    refused.start([RefusedAt(SITE[0], "robot:Arm.move", None, (2, 4))])
+    refused.start([RefusedAt(Site(SITE[0], "arm.move", 1, Role.PROGRAM), "robot:Arm.move", None, (2, 4))])
     assert [number for number in range(1, 6) if refused.has(SiteCall(SITE, call(), number))] == [2, 4]
     elsewhere = (Span("mission.py", 4, 4, 4, 20, "run"), Role.PROGRAM)
     assert not refused.has(SiteCall(elsewhere, call(), 2))

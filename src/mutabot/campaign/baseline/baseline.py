@@ -361,15 +361,14 @@ def observation(end: TestEnd, places: Mapping[int, Place]) -> Observation:
     )
 
 
-def refused_of(result: Result) -> dict[str, tuple[RefusedAt, ...]]:
-    """Return the calls that the robot refused in a run, by test."""
-    sites = {seen.index: seen for seen in result.sites}
+def refused_of(result: Result, places: Mapping[int, Place]) -> dict[str, tuple[RefusedAt, ...]]:
+    """Return the calls that the robot refused in a run, by test; ``places`` are those of its traces."""
     found: dict[str, tuple[RefusedAt, ...]] = {}
     for end in result.ends:
         numbers: dict[int, list[int]] = {}
         for index, number in sorted({*end.refused_calls}):
             numbers.setdefault(index, []).append(number)
-        of_sites = ((sites[index], tuple(those)) for index, those in numbers.items())
-        calls = tuple(RefusedAt(seen.span, seen.operation, seen.pattern, those) for seen, those in of_sites)
+        of_places = ((places[index], tuple(those)) for index, those in numbers.items())
+        calls = tuple(RefusedAt(one.site, one.operation, one.pattern, those) for one, those in of_places)
         found |= {end.test: calls} if calls else {}
     return found

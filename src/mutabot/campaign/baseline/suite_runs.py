@@ -404,7 +404,8 @@ def _add_round(
     is_set_aside = len(good) < len(runs[0]) and repetitions[0].exit_code == _FAILED
     baseline.exits[round] = 0 if is_set_aside else repetitions[0].exit_code
     _add_hits(baseline, sources, round, repetitions[0], places[0])
-    baseline.refused |= {(round, test): calls for test, calls in refused_of(repetitions[0]).items()}
+    refused = refused_of(repetitions[0], places[0])
+    baseline.refused |= {(round, test): calls for test, calls in refused.items()}
     return failed
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from functools import partial
@@ -12,11 +13,13 @@ from traceback import walk_tb
 from typing import Any
 
 from mutabot.errors import OperatorError, PathError, in_words
+from mutabot.languages.registry import front_end_of
 from mutabot.model import Call, Middleware, Moment, Mutant, Operation, Proceed, Reply, Span
 from mutabot.model.answer import restore
 from mutabot.model.data import UNKNOWN, data_of, is_of_numpy
 from mutabot.model.enumeration import is_member, member_of
 from mutabot.model.job import Idle, RefusedAt
+from mutabot.model.mutant import Extent
 from mutabot.model.operation import Form, Refused
 from mutabot.operators import Need, Subject, operator
 from mutabot.operators.command import FatalFault
@@ -31,8 +34,10 @@ from mutabot.runtime.targets.target import CallPlace, is_named
 
 #: exceptions by which others end what an operator does: a user, an event loop, the end of a generator
 _FROM_OUTSIDE = frozenset({"KeyboardInterrupt", "CancelledError", "Cancelled", "GeneratorExit"})
-#: a call of a test: its site, operation and pattern, and its number among those of the site
-_CallKey = tuple[Span, str, str | None]
+#: the name of a site: file, function, text and occurrence, which stay where the text around it changes
+_SiteName = tuple[str, str, str, int]
+#: the calls of a test at a site: where it is, the operation and the pattern
+_CallKey = tuple[Span | _SiteName, str, str | None]
 
 
 @dataclass(slots=True)
@@ -44,15 +49,21 @@ class RefusedCalls:
 
     Attributes:
         on_refused: told of each one in the baseline; None in all other runs.
+        changed: files of the program that are others in this process: sites are known by their names there.
     """
 
     on_refused: Callable[[SiteCall], None] | None = None
+    changed: dict[str, bytes] = field(default_factory=dict)
     _known: dict[_CallKey, frozenset[int]] = field(default_factory=dict)
     _watched: dict[str, tuple[SiteCall, tuple[Refused, ...]]] = field(default_factory=dict)
 
     def start(self, known: Iterable[RefusedAt]) -> None:
         """Begin a test with these known refusals."""
-        self._known = {(one.span, one.operation, one.pattern): frozenset(one.numbers) for one in known}
+        self._known = {
+            (where, one.operation, one.pattern): frozenset(one.numbers)
+            for one in known
+            for where in (one.site.span, _name(one.site.span, one.site.text, one.site.occurrence))
+        }
         self._watched.clear()
 
     def at(self, span: Span, operation: str, pattern: str | None) -> frozenset[int]:
@@ -62,7 +73,15 @@ class RefusedCalls:
     def has(self, made: SiteCall) -> bool:
         """Return whether this call is a known refusal of the original."""
         pattern = made.call.pattern.text if made.call.pattern is not None else None
-        return made.number in self.at(made.site[0], made.call.operation.target, pattern)
+        span = made.site[0]
+        where = self._name_of(span) if span.file in self.changed else span
+        return made.number in self._known.get((where, made.call.operation.target, pattern), ())
+
+    def _name_of(self, span: Span) -> _SiteName:
+        front_end, names = front_end_of(span.file), dict[Extent, tuple[str, int]]()
+        with suppress(SyntaxError, ValueError):
+            names |= front_end.names(front_end.text_of(self.changed[span.file]))
+        return _name(span, *names.get((span.line, span.column, span.end_line, span.end_column), ("", 0)))
 
     def begins(self, made: SiteCall) -> None:
         """Note a call of the original, to which refusals from now on belong."""
@@ -85,6 +104,10 @@ class RefusedCalls:
             if self.on_refused is not None and heard(refused, name, message) is not None:
                 del self._watched[target]
                 self.on_refused(made)
+
+
+def _name(span: Span, text: str, occurrence: int) -> _SiteName:
+    return span.file, span.function, text, occurrence
 
 
 def refused_of(call: Call) -> tuple[Refused, ...]:

@@ -27,7 +27,7 @@ from mutabot.model.mutant import RUNTIME, Alternative, Extent
 from mutabot.model.source_units import digest
 from mutabot.runtime import real_path
 from mutabot.runtime.event_file import EventWriter, Held
-from mutabot.runtime.evidence import Evidence, Refusal
+from mutabot.runtime.evidence import Evidence
 from mutabot.runtime.processes.environment import listen
 from mutabot.runtime.program_text import compiling, loading
 from mutabot.runtime.program_text.compiling import text_of
@@ -35,7 +35,7 @@ from mutabot.runtime.program_text.prediction import Forms, PredictedForm
 from mutabot.runtime.program_text.switches import Alternatives, Sightings
 
 if TYPE_CHECKING:
-    from mutabot.model import Call, Instrumentation, ProgramText, TextPlace
+    from mutabot.model import Instrumentation, ProgramText, TextPlace
     from mutabot.model.job import Job
 
 
@@ -331,8 +331,6 @@ class SessionText:
         self._originals: _Nodes = {}
         self._texts = {os.path.realpath(os.path.join(root, text.file)): text for text in texts}
         self._test: str | None = None
-        self._refusals: tuple[Refusal, ...] = ()
-        self._unknown = False
 
     @classmethod
     def of(cls, job: Job, pipe: EventWriter, on_act: Callable[[], None]) -> SessionText | None:
@@ -414,7 +412,7 @@ class SessionText:
             if self.sightings is not None:
                 self._report_reached()
             self.alternatives.keep()
-        self._test, self._refusals, self._unknown = test, (), False
+        self._test = test
         (self.sightings or self.alternatives).start()
 
     def watch(
@@ -448,15 +446,6 @@ class SessionText:
                 loader = getattr(module, "__loader__", None)
                 self._refuse(text, f"{loading.UNSEEN} ({loading.loader_name(loader)})")
 
-    def raised(self, error: BaseException, call: Call, refusals: Iterable[str]) -> None:
-        """Note an exception of an operation, as the mutant may have caused the robot's refusal."""
-        from mutabot.runtime.interception.active_mutant import is_refusal, with_refusal  # noqa: PLC0415
-
-        if self.is_mutant and self.alternatives.acted and is_refusal(error, refusals):
-            self._refusals = with_refusal(self._refusals, error)
-            # the vocabulary says what commands there are; this is none of them
-            self._unknown = call.operation.message is not None and call.pattern is None
-
     @property
     def evidence(self) -> Evidence:
         """What the mutant did in the running test."""
@@ -464,9 +453,6 @@ class SessionText:
             hits=self.alternatives.hits.get(self.alternatives.place, 0),
             acted=self.alternatives.acted,
             example=self.alternatives.example,
-            refusals=self._refusals,
-            is_of_text=True,
-            is_unknown=self._unknown,
         )
 
     def _report_reached(self) -> None:

@@ -24,6 +24,7 @@ class TextMutant(ActiveFault):
 
     context: TextContext
     is_checked: ClassVar[bool] = False
+    is_of_text: ClassVar[bool] = True
 
     def prepare_process(self) -> None:
         """Activate the alternative in place of the original."""
