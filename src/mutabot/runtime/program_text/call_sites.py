@@ -24,8 +24,6 @@ from functools import partial
 from types import FrameType, FunctionType, MethodType
 from typing import Any
 
-import wrapt
-
 from mutabot.languages.python import extent_of
 from mutabot.model import Role
 from mutabot.model.mutant import Extent
@@ -35,6 +33,7 @@ from mutabot.runtime.program_text.compiling import SourceStep
 from mutabot.runtime.program_text.instrument import declare_global, is_ours
 from mutabot.runtime.program_text.returns import is_translated
 from mutabot.runtime.targets.target import CallPlace
+from mutabot.runtime.targets.wrapper import WRAPPERS
 
 _PLACE = "handed_to"
 
@@ -76,7 +75,6 @@ def _parts(node: ast.AST) -> Iterator[ast.expr]:
 
 #: the built-in name of the list
 CALLS = "__mutabot_calls__"
-WRAPPERS = (wrapt.FunctionWrapper, wrapt.BoundFunctionWrapper)
 #: of all sites of this process: text that was loaded before is asked as before
 _entries: list[Any] = []
 #: the most arguments that Python gives a method without binding it first

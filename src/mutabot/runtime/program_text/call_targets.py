@@ -36,7 +36,6 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from inspect import Signature
-from pkgutil import resolve_name
 from types import BuiltinMethodType, FrameType, FunctionType, MethodType, ModuleType
 from typing import Any
 
@@ -50,9 +49,10 @@ from mutabot.runtime.interception.adapter import Adapter, is_mock
 from mutabot.runtime.interception.dispatcher import is_coroutine_function, is_untracked
 from mutabot.runtime.interception.frames import ModuleCache, is_border
 from mutabot.runtime.interception.trace import Locator
-from mutabot.runtime.program_text.call_sites import NOTHING, WRAPPERS, CallSite, Guards
+from mutabot.runtime.program_text.call_sites import NOTHING, CallSite, Guards
 from mutabot.runtime.targets.callables import Callables
 from mutabot.runtime.targets.target import CallPlace, Finding, Handler, Where, named_class
+from mutabot.runtime.targets.wrapper import WRAPPERS, Wrapper
 
 #: calls that are listed in one sentence
 _MOST = 5
@@ -316,7 +316,7 @@ class CallTargets:
             owners = self.callables.owners.values()
             found: dict[str, Any] = {}
             for name, value in list(names.items()):
-                if type(value) is wrapt.FunctionWrapper and value._self_wrapper in self.sees_itself:
+                if type(value) is Wrapper and value._self_wrapper in self.sees_itself:
                     found[name] = value._self_wrapper
                 elif any(value is owner for owner in owners):
                     found[name] = value
@@ -392,7 +392,7 @@ def _is_a(value: Any, kind: Any) -> bool:
 _MARK = "_mutabot_handed"
 
 
-class PassedCallable(wrapt.FunctionWrapper):  # type: ignore[type-arg]
+class PassedCallable(Wrapper):
     """A callable that was passed on; if it is a partial, its calls count."""
 
     def __new__(cls, wrapped: Any, handed: Any) -> Any:
@@ -401,18 +401,8 @@ class PassedCallable(wrapt.FunctionWrapper):  # type: ignore[type-arg]
             return super().__new__(cls, wrapped, handed)  # type: ignore[call-arg]
         return MethodType(wrapped, handed)
 
-    def __copy__(self) -> Any:
-        return self
-
     def __deepcopy__(self, known: dict[int, Any]) -> Any:
         return PassedCallable(copy.deepcopy(self.__wrapped__, known), self._self_wrapper)
-
-    def __reduce_ex__(self, protocol: Any) -> Any:
-        function = self.__wrapped__
-        owner = getattr(function, "__self__", None)
-        if owner is None or isinstance(owner, ModuleType):
-            return resolve_name, (f"{function.__module__}:{function.__qualname__}",)
-        return getattr, (owner, function.__name__)
 
 
 class PassedCallables:
@@ -439,7 +429,7 @@ class PassedCallables:
             if own is None:
                 return found
             self._call_targets.stood[place[0]] = own.operation.target
-            if type(found) is wrapt.FunctionWrapper:  # all names of a function mean this very object
+            if type(found) is Wrapper:  # all names of a function mean this very object
                 known = self._given.setdefault(own, place)
                 if known == place or not site.is_given:
                     self._given[own] = place if known == place else None

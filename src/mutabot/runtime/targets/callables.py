@@ -20,6 +20,7 @@ import wrapt
 from mutabot.model.path import class_name
 from mutabot.model.signature import parse_signature, signature_of, takes_anything
 from mutabot.runtime.targets.target import Finding, Handler, NotFoundError, Tell, resolve
+from mutabot.runtime.targets.wrapper import Wrapper
 
 if TYPE_CHECKING:
     from mutabot.model import Operation
@@ -180,7 +181,7 @@ def _wrapper(owner: Any, name: str, original: Any, handler: Handler, *, is_set: 
         raise NotCallableError(f"{class_name(original)} is a class; name one of its methods")
     if not callable(original) and not isinstance(original, classmethod | staticmethod):
         raise NotCallableError(f"{name!r} is {type(original).__name__}, which cannot be called")
-    return wrapt.FunctionWrapper(original, handler)
+    return Wrapper(original, handler)
 
 
 def _of_property(handler: Handler) -> Handler:
