@@ -95,7 +95,7 @@ comparison: $(READY)
 ## run the robot mutants and conventional ones of each kind of task against every test, and write docs/tasks.md
 ## from it; that takes hours of processor time
 tasks: $(READY)
-	for name in paper pick_and_place tracking palletising dispensing handover assembly; do \
+	for name in paper pick_and_place tracking palletising dispensing handover assembly bin_picking; do \
 	    $(RUN) benchmarks/tasks.py run $$name --robot 60 --conventional 60 || exit; \
 	done
 	$(RUN) benchmarks/tasks.py
@@ -115,6 +115,7 @@ bench: $(READY)
 	$(RUN) benchmarks/example_seeds.py dispensing 100
 	$(RUN) benchmarks/example_seeds.py handover 30
 	$(RUN) benchmarks/example_seeds.py assembly 30
+	$(RUN) benchmarks/example_seeds.py bin_picking 30
 	$(RUN) benchmarks/stories_judged.py
 	$(RUN) benchmarks/stories_judged.py --bare --sample 60
 	$(RUN) benchmarks/html_report.py

@@ -39,6 +39,7 @@ EXAMPLES = {
     "dispensing": {"robot": 40},
     "handover": {"robot": 40},
     "assembly": {"robot": 40},
+    "bin_picking": {"robot": 40},
     "ros1": {"robot": 25, "middleware": 35, "conventional": 10},
     "ros2": {"robot": 25, "middleware": 35, "conventional": 10},
     "ros2_docking": {"robot": 23, "conventional": 10},
