@@ -19,7 +19,7 @@ from mutabot.model.source_units import Executed
 
 #: origins of processes below the tests: a program that was started, or a copy of another process
 STARTED, FORKED = "started", "forked"
-#: hits per test that are reported with their values; a test is compared and planned from these
+#: hits per test that are reported with their values, and compared; of later ones the first at each site
 TRACE_LIMIT = 5000
 
 

@@ -10,6 +10,7 @@ import os
 import sys
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 from mutabot.frozen import frozen
 from mutabot.model import events
@@ -266,12 +267,21 @@ def _with_calls(end: events.TestEnd, records: Sequence[ChildRecord], facts: Fact
         refused_calls=(*end.refused_calls, *((site, number) for site, number in noted if number is not None)),
         live=tuple(sorted({*end.live, *(site for site, number in noted if number is None)})),
         below={origin: tuple(sorted(sites)) for origin, sites in below.items() if sites},
-        trace=tuple(trace[: events.TRACE_LIMIT]) if facts.job.record else (),
+        trace=tuple(_within_limit(trace)) if facts.job.record else (),
         truncated=end.truncated or len(trace) > events.TRACE_LIMIT,
         operations=end.operations + max(len(called), sum(one.operations for one in used)),
         commands=end.commands + sum(one.commands for one in used),
         simulated=max((time for time in times if time is not None), default=None),
     )
+
+
+def _within_limit(trace: Sequence[tuple[Any, ...]]) -> Iterator[tuple[Any, ...]]:
+    """Yield the hits that are kept: the first ones, and of what comes later the first at each site."""
+    reached: set[int] = set()
+    for number, hit in enumerate(trace):
+        if number < events.TRACE_LIMIT or hit[0] not in reached:
+            reached.add(hit[0])
+            yield hit
 
 
 def _with_deeds(end: events.TestEnd, records: Sequence[ChildRecord]) -> events.TestEnd:

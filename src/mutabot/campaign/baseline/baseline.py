@@ -19,7 +19,7 @@ from mutabot.journal.records import Untested
 from mutabot.languages.python import FRONT_END as PYTHON
 from mutabot.languages.registry import front_end_of
 from mutabot.model.activation import Activation
-from mutabot.model.events import Remark, SiteSeen, TestEnd
+from mutabot.model.events import TRACE_LIMIT, Remark, SiteSeen, TestEnd
 from mutabot.model.job import RefusedAt
 from mutabot.model.mutant import Extent, Instrumentation, Mutant, Place, ProgramText, Role, Site, Span
 from mutabot.operators.command import Identity
@@ -352,7 +352,7 @@ def observation(end: TestEnd, places: Mapping[int, Place]) -> Observation:
         place = places[index]
         known[index] = place.key, (place.operation, place.pattern)
     events = []
-    for index, written, read, _ in end.trace:
+    for index, written, read, _ in end.trace[:TRACE_LIMIT]:
         key, what = known[index]
         events.append(TraceCall(key, written, read, what))
     prepared, called = end.returned[: end.prepared], end.returned[end.prepared :]

@@ -46,7 +46,8 @@ class Recorder:
     Attributes:
         on_site: told about each site when it is first reached.
         answers: notes what commands answered, in the baseline; None in all other sessions.
-        trace: hits of the running test: site index, written values, read values, note of the answer.
+        trace: hits of the running test: site index, written values, read values, note of the answer. Beyond
+            the first ``TRACE_LIMIT`` hits, the first one of each site.
         truncated: whether hits were left out of the trace.
         sites: all sites reached so far, in the order of their indexes.
         on_hit: told of each hit, as it is in the trace; None while nobody asks.
@@ -65,21 +66,25 @@ class Recorder:
     when: list[tuple[float | None, float | None]] = field(default_factory=list)
     began: float | None = None
     _indexes: dict[SiteSeen, int] = field(default_factory=dict)
+    _reached: set[int] = field(default_factory=set)
 
     def start(self) -> None:
         """Begin a new test."""
         self.trace, self.when = [], []
         self.truncated = False
+        self._reached.clear()
         if self.answers is not None:
             self.answers.start()
 
     def record(self, made: SiteCall, reply: Reply | None, began: float | None) -> None:
         """Record a call that has ended; ``reply`` is the robot's last reply, None if the call raised."""
-        if len(self.trace) >= TRACE_LIMIT:
-            self.truncated = True
-            return
         call = made.call
         index = self.index_of(seen_by(made))
+        # a program that polls makes thousands of calls before it comes to other sites
+        if len(self.trace) >= TRACE_LIMIT and index in self._reached:
+            self.truncated = True
+            return
+        self._reached.add(index)
         answer = self.answers.note(index, call, reply) if self.answers is not None else None
         read = reply.values if reply is not None else {}
         self.trace.append((index, _frozen(call.values), _frozen(read), answer))
