@@ -203,7 +203,10 @@ class Series:
         """A campaign got to its end: it must have found what the first one did."""
         with Journal.open(self.home / project / ".mutabot" / "journal.sqlite") as journal:
             self._expect(journal.finished == "complete", f"{what}: {journal.finished}")
-            found = {one.mutant: f"{one.verdict} by {one.by} in {one.test}" for one in journal.outcomes()}
+            found = {
+                outcome.mutant: f"{outcome.verdict} by {outcome.by} in {outcome.test}"
+                for outcome in journal.outcomes()
+            }
         expected = self.expected.setdefault(project, found)
         self._expect(found == expected, f"{what}: {_difference(found, expected)}")
         self.ends["complete"] += 1

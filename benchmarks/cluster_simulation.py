@@ -156,11 +156,11 @@ def units_of(costs: Costs, way: Way, workers: int, mutants: int = MUTANTS) -> li
     """The units of a campaign, in the order in which they are given away."""
     chance = random.Random(f"{SEED}:{way.engine}")
     if way.engine == "replay":
-        units = [Unit(0.0, one, 1) for one in chance.choices(costs.replay, k=mutants * ROUNDS)]
+        units = [Unit(0.0, seconds, 1) for seconds in chance.choices(costs.replay, k=mutants * ROUNDS)]
     else:
         drawn = chance.choices(costs.fork, k=mutants)
-        units = [one for _ in range(ROUNDS) for one in _cut(costs, drawn, way, workers)]
-    return sorted(units, key=lambda one: -one.seconds) if way.longest_first else units
+        units = [unit for _ in range(ROUNDS) for unit in _cut(costs, drawn, way, workers)]
+    return sorted(units, key=lambda unit: -unit.seconds) if way.longest_first else units
 
 
 def _cut(costs: Costs, drawn: Sequence[float], way: Way, workers: int) -> Iterator[Unit]:
@@ -219,7 +219,7 @@ def simulate(costs: Costs, way: Way, workers: int, mutants: int = MUTANTS) -> Ru
         world.process(worker())
     world.run()
     run.ended = max(run.last)
-    run.idle = sum(run.ended - one for one in run.last)
+    run.idle = sum(run.ended - last for last in run.last)
     return run
 
 
@@ -247,7 +247,7 @@ def study(costs: Costs, mutants: int = MUTANTS, workers: Sequence[int] = WORKERS
     """All numbers of the page."""
     found: dict[str, Any] = {"mutants": mutants, "rounds": ROUNDS}
     for engine in ("replay", "fork"):
-        one = alone(costs, engine, mutants)
+        alone_seconds = alone(costs, engine, mutants)
         rows = []
         for number in workers:
             run = simulate(costs, Way(engine), number, mutants)
@@ -256,8 +256,8 @@ def study(costs: Costs, mutants: int = MUTANTS, workers: Sequence[int] = WORKERS
             rows.append({
                 "workers": number,
                 "hours": round(run.ended / 3600, 3),
-                "speed_up": round(one / run.ended, 2),
-                "efficiency": round(one / run.ended / number, 4),
+                "speed_up": round(alone_seconds / run.ended, 2),
+                "efficiency": round(alone_seconds / run.ended / number, 4),
                 "units": run.units,
                 "controller": round(run.controller / run.ended, 4),
                 "shares": run.shares() | {
@@ -275,14 +275,14 @@ def study(costs: Costs, mutants: int = MUTANTS, workers: Sequence[int] = WORKERS
         "16 parts, in any order": Way("fork", parts=16, longest_first=False),
         "64 parts": Way("fork", parts=64),
     }
-    one = alone(costs, "fork", mutants)
+    alone_seconds = alone(costs, "fork", mutants)
     found["sizes"] = []
     for name, way in ways.items():
         run = simulate(costs, way, 100, mutants)
         found["sizes"].append({
             "name": name,
             "units": run.units,
-            "efficiency": round(one / run.ended / 100, 4),
+            "efficiency": round(alone_seconds / run.ended / 100, 4),
             "shares": run.shares(),
         })  # fmt: skip
     found["baseline"] = [
@@ -298,16 +298,16 @@ def study(costs: Costs, mutants: int = MUTANTS, workers: Sequence[int] = WORKERS
 def measure(replay: Path, fork: Path, controllers: Sequence[Path], how: str) -> dict[str, Any]:
     """The costs in the journals of real campaigns, and in what ``benchmarks/controller.py --json`` prints."""
     with JournalReader.open(replay) as journal:
-        sessions = [one.wall for one in journal.outcomes() if one.tests]
+        sessions = [outcome.wall for outcome in journal.outcomes() if outcome.tests]
         tests = journal.tests()
         meta = journal.meta()
     with JournalReader.open(fork) as journal:
-        forks = [one.wall for one in journal.outcomes() if one.tests and one.engine == "fork"]
+        forks = [outcome.wall for outcome in journal.outcomes() if outcome.tests and outcome.engine == "fork"]
     walls: dict[tuple[int, str], list[float]] = {}
-    for one in tests:
-        walls.setdefault((one.round, one.test.test), []).append(one.test.wall)
+    for baseline_test in tests:
+        walls.setdefault((baseline_test.round, baseline_test.test.test), []).append(baseline_test.test.wall)
     spread = [wall / (sum(each) / len(each)) for each in walls.values() if len(each) > 1 for wall in each]
-    rounds = len({one.round for one in tests})
+    rounds = len({journal_test.round for journal_test in tests})
     controller = {}
     for path in controllers:
         data = json.loads(path.read_text(encoding="utf-8"))
@@ -318,9 +318,9 @@ def measure(replay: Path, fork: Path, controllers: Sequence[Path], how: str) -> 
         "costs": {
             "mutants": meta[DRAWING].selected if DRAWING in meta else len(Counter(sessions)),
             "suite": round(sum(sum(each) / len(each) for each in walls.values()) / rounds, 3),
-            "replay": [round(one, 3) for one in sorted(sessions)],
-            "fork": [round(one, 4) for one in sorted(forks)],
-            "spread": [round(one, 4) for one in sorted(spread)],
+            "replay": [round(session, 3) for session in sorted(sessions)],
+            "fork": [round(seconds, 4) for seconds in sorted(forks)],
+            "spread": [round(seconds, 4) for seconds in sorted(spread)],
             "controller": controller,
         },
     }

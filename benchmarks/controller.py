@@ -99,7 +99,7 @@ class Recorder:
 
     def run(self, tasks: Iterable[Task]) -> Iterator[Result]:
         """The same without lines."""
-        return (one for one in self.events(tasks) if isinstance(one, Result))
+        return (event for event in self.events(tasks) if isinstance(event, Result))
 
     def rest(self, is_awaited: Callable[[], bool], seconds: float) -> Iterator[Result | tuple[Task, Event]]:
         """What the other one says after an interruption: nobody interrupts what is recorded."""
@@ -138,7 +138,7 @@ class Player:
 
     def run(self, tasks: Iterable[Task]) -> Iterator[Result]:
         """The same without lines."""
-        return (one for one in self.events(tasks) if isinstance(one, Result))
+        return (event for event in self.events(tasks) if isinstance(event, Result))
 
     def rest(self, is_awaited: Callable[[], bool], seconds: float) -> Iterator[Result | tuple[Task, Event]]:
         """Nothing is left to wait for: what was written down has been told."""
@@ -175,7 +175,7 @@ def _forked(lines: Iterable[str], forking: Forking) -> Iterator[str]:
             hits = data["hits"]
             data["hits"] = {copy: hits[name] for name in hits for copy in copies.get(name, ())}
             yield json.dumps(data)
-        elif kind in {one.__name__ for one in (ForkDied, ForkTestEnd)} and mutant:
+        elif kind in {event.__name__ for event in (ForkDied, ForkTestEnd)} and mutant:
             yield from (json.dumps({**data, "mutant": copy}) for copy in copies.get(mutant, ()))
         else:
             yield text
@@ -203,8 +203,8 @@ def copies(mutants: list[Mutant], number: int) -> list[Mutant]:
     """So many mutants: these under ever new names."""
     found = []
     for at in range(number):
-        one = mutants[at % len(mutants)]
-        found.append(replace(one, number=at + 1, variant=f"{one.variant}{MARK}{at}"))
+        mutant = mutants[at % len(mutants)]
+        found.append(replace(mutant, number=at + 1, variant=f"{mutant.variant}{MARK}{at}"))
     return found
 
 
@@ -228,15 +228,15 @@ def measure(given: argparse.Namespace, folder: Path) -> dict[str, Any]:
             number, repetition = result.task.key
             journal.add_tests(BaselineTest.of(number, repetition, end) for end in result.ends)
         if evidence is not None:
-            runs = [(*one.task.key, one.ends) for one in results]
+            runs = [(*found_result.task.key, found_result.ends) for found_result in results]
             evidence.begin(runs, plan.mutants)
         state = State.now(request, original.before, original.after, None)
         dependencies = Dependencies(request, campaign.baseline, state, original.installed)
         recorder.told.clear()
         began = time.monotonic()
-        run_trials(campaign, [(one, 0) for one in plan.mutants], OutcomeWriter(journal))
+        run_trials(campaign, [(mutant, 0) for mutant in plan.mutants], OutcomeWriter(journal))
         took = time.monotonic() - began
-        by_hand = {(one.mutant, one.round): one.verdict for one in journal.outcomes()}
+        by_hand = {(outcome.mutant, outcome.round): outcome.verdict for outcome in journal.outcomes()}
         return _play(
             given, request, campaign, plan.mutants, recorder.told, journal, dependencies, evidence
         ) | {
@@ -253,8 +253,8 @@ def _play(
 ) -> dict[str, Any]:  # fmt: skip
     many = copies(mutants, given.mutants)
     planned = campaign.baseline.faults.by_id
-    for at, one in enumerate(many):
-        planned[one.id] = replace(planned[mutants[at % len(mutants)].id], mutant=one)
+    for at, mutant in enumerate(many):
+        planned[mutant.id] = replace(planned[mutants[at % len(mutants)].id], mutant=mutant)
     journal.set_plan(many, ())
     looks: list[tuple[int, float, float]] = []
     step = max(1, given.mutants // LOOKS)
@@ -272,12 +272,12 @@ def _play(
     began = time.process_time()
     size = PART if given.engine == "fork" else len(many)
     for start in range(0, len(many), size):
-        run_trials(playing, [(one, 0) for one in many[start : start + size]], sink)
+        run_trials(playing, [(candidate, 0) for candidate in many[start : start + size]], sink)
     cpu = time.process_time() - began
     if profile is not None:
         profile.disable()
         pstats.Stats(profile, stream=sys.stderr).sort_stats("tottime").print_stats(35)
-    tenth = next(one for one in looks if one[0] >= given.mutants / 10)
+    tenth = next(measured for measured in looks if measured[0] >= given.mutants / 10)
     return {
         "mutants": len(many),
         "cpu_seconds": round(cpu, 1),

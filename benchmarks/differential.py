@@ -103,16 +103,16 @@ def compare(
             began = time.monotonic()
             request = request_for(folder, engine, rounds, families, sample)
             with Journal.open(run_campaign(request, Silent())) as journal:
-                found[engine] = {(one.mutant, one.round): one for one in journal.outcomes()}
+                found[engine] = {(outcome.mutant, outcome.round): outcome for outcome in journal.outcomes()}
             seconds[engine] = round(time.monotonic() - began, 1)
     forked = found["fork"].values()  # some of them may have fallen back to replay
     return Row(
         example=example,
         rounds=rounds,
-        mutants=len({one.mutant for one in forked}),
+        mutants=len({outcome.mutant for outcome in forked}),
         mutant_rounds=len(found["fork"]),
-        outcomes=sum(one.tests for one in forked),
-        fallen_back=sum(bool(one.tests) and one.engine != "fork" for one in forked),
+        outcomes=sum(outcome.tests for outcome in forked),
+        fallen_back=sum(bool(outcome.tests) and outcome.engine != "fork" for outcome in forked),
         disagreements=tuple(disagreements(found["fork"], found["replay"])),
         seconds=seconds,
     )
@@ -138,7 +138,7 @@ def disagreements(fork: Mapping[Key, Outcome], replay: Mapping[Key, Outcome]) ->
     for mutant, number in sorted({*fork, *replay}):
         pair = [facts(outcomes.get((mutant, number))) for outcomes in (fork, replay)]
         for fact in dict.fromkeys([*pair[0], *pair[1]]):
-            first, second = (one.get(fact) for one in pair)
+            first, second = (outcome.get(fact) for outcome in pair)
             if first != second:
                 found.append(Disagreement(mutant, number, fact, first, second))
     return found
@@ -163,11 +163,21 @@ def show(rows: list[Row]) -> None:
     console = Console(width=130)
     console.print(table)
     for row in rows:
-        for one in row.disagreements:
-            place = f"{row.example}: {one.mutant}, round {one.round + 1}, {one.fact}"
-            console.print(f"{place}:\n  fork: {one.fork!r}\n  replay: {one.replay!r}", markup=False)
+        for disagreement in row.disagreements:
+            place = (
+                f"{row.example}: {disagreement.mutant}, round {disagreement.round + 1}, {disagreement.fact}"
+            )
+            console.print(
+                f"{place}:\n  fork: {disagreement.fork!r}\n  replay: {disagreement.replay!r}", markup=False
+            )
     outcomes = sum(row.outcomes for row in rows)
-    wrong = len({(row.example, one.mutant, one.round) for row in rows for one in row.disagreements})
+    wrong = len(
+        {
+            (row.example, difference.mutant, difference.round)
+            for row in rows
+            for difference in row.disagreements
+        }
+    )
     total = sum(row.mutant_rounds for row in rows)
     console.print(
         f"{total - wrong} of {total} mutant-rounds agree, over {outcomes} (mutant, test, round) outcomes"
@@ -186,8 +196,13 @@ def main() -> int:
     parser.add_argument("--json", action="store_true", help="print JSON instead of a table")
     given = parser.parse_args()
     rows = [
-        compare(one, given.rounds or EXAMPLES[one], tuple(given.families), given.sample or SAMPLES.get(one))
-        for one in given.examples
+        compare(
+            example,
+            given.rounds or EXAMPLES[example],
+            tuple(given.families),
+            given.sample or SAMPLES.get(example),
+        )
+        for example in given.examples
     ]
     if given.json:
         print(json.dumps([asdict(row) for row in rows], indent=2))

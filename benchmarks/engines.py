@@ -101,7 +101,9 @@ def typical(example: str, engine: str, folder: Path, sample: int | None) -> Row:
     used = sorted((run(command, folder) for _ in range(TIMES if engine == "auto" else 1)), key=_cpu)
     told = subprocess.run([MUTABOT, "results", "--json"], cwd=folder, check=True, capture_output=True)
     mutants = json.loads(told.stdout)["mutants"]
-    verdicts = {(one["id"], end["round"]): end["verdict"] for one in mutants for end in one["rounds"]}
+    verdicts = {
+        (mutant["id"], end["round"]): end["verdict"] for mutant in mutants for end in mutant["rounds"]
+    }
     return Row(example, engine, used[len(used) // 2], verdicts)
 
 

@@ -175,7 +175,7 @@ def series(chance: float, count: int, moves: int) -> Tally:
         folder = Path(name)
         write_project(folder, 0.0, moves)
         exact = campaign(folder, 1, repeats=False)
-        truth = {one.mutant.id: one.outcomes[0].verdict for one in exact.mutants}
+        truth = {result.mutant.id: result.outcomes[0].verdict for result in exact.mutants}
         write_project(folder, chance, moves)
         started = time.monotonic()
         for seed in range(count):
@@ -202,16 +202,16 @@ def main() -> int:
     print("|---|---:|---:|---:|---:|---:|---:|---:|---:|")
     wrong = 0
     for percent in options.chance or [3.0, 10.0]:
-        one = series(percent / 100, options.count, options.moves)
-        n = max(1, one.campaigns)
+        tally = series(percent / 100, options.count, options.moves)
+        n = max(1, tally.campaigns)
         print(
-            f"\r| {percent:g} % | {one.campaigns} | {one.stopped} "
-            f"| {one.before / n:.2f} | {one.left / n:.2f}, {one.most} | {one.unstable / n:.2f} "
-            f"| {one.survivors / n:.2f} | {one.held} of {one.told} "
-            f"| {one.seconds / options.count:.1f} |",
+            f"\r| {percent:g} % | {tally.campaigns} | {tally.stopped} "
+            f"| {tally.before / n:.2f} | {tally.left / n:.2f}, {tally.most} | {tally.unstable / n:.2f} "
+            f"| {tally.survivors / n:.2f} | {tally.held} of {tally.told} "
+            f"| {tally.seconds / options.count:.1f} |",
             flush=True,
         )
-        wrong += one.told > 0 and one.held / one.told < 0.9
+        wrong += tally.told > 0 and tally.held / tally.told < 0.9
     return int(wrong > 0)
 
 

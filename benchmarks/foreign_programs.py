@@ -43,7 +43,7 @@ def main() -> int:
             figures[name] = _try(name, RECIPES[name], Path(folder) / "project")
     if given.json:
         given.json.write_text(json.dumps(figures, indent=2) + "\n", encoding="utf-8")
-    return int(any(one["failed"] or one["disagree"] for one in figures.values()))
+    return int(any(figure["failed"] or figure["disagree"] for figure in figures.values()))
 
 
 def files_of(page: Path) -> dict[str, str]:
@@ -75,10 +75,10 @@ def _try(name: str, recipe: dict[str, Any], folder: Path) -> dict[str, Any]:
     results = json.loads(done.stdout)
     mutants = results["mutants"]
     verdicts = Counter(_verdict(mutant) for mutant in mutants)
-    groups = {f"{one['family']} {one['role']}": one["score"] for one in results["groups"]}
+    groups = {f"{group['family']} {group['role']}": group["score"] for group in results["groups"]}
     figures |= {"mutants": len(mutants), "verdicts": dict(verdicts), "scores": groups}
     figures["judged"] = list(_judge(folder, recipe, mutants))
-    figures["disagree"] = [one for one in figures["judged"] if not one["agree"]]
+    figures["disagree"] = [verdict for verdict in figures["judged"] if not verdict["agree"]]
     _print(figures)
     return figures
 
@@ -124,10 +124,10 @@ def _print(figures: dict[str, Any]) -> None:
         f"{name} {score:.1%}" for name, score in figures["scores"].items() if score is not None
     )
     print(f"  {seconds}\n  {figures['mutants']} mutants: {verdicts}; {scores}")
-    for one in figures["judged"]:
-        said = f"{one.get('verdict', one.get('why'))}, by hand: pytest {one.get('pytest', '-')}"
-        word = "agrees" if one["agree"] else "DISAGREES"
-        print(f"  {word} {said}: {one.get('description', one.get('edit'))}")
+    for ended in figures["judged"]:
+        said = f"{ended.get('verdict', ended.get('why'))}, by hand: pytest {ended.get('pytest', '-')}"
+        word = "agrees" if ended["agree"] else "DISAGREES"
+        print(f"  {word} {said}: {ended.get('description', ended.get('edit'))}")
 
 
 def _mutabot(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:

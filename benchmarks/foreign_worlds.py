@@ -154,7 +154,7 @@ def rows(name: str, folder: Path, seeds: int) -> Iterator[str]:
     (folder / "tests").mkdir()
     (folder / "policy.py").write_text(task.policy, encoding="utf-8")
     (folder / "tests" / "test_task.py").write_text(TEST.format(seeds=seeds), encoding="utf-8")
-    names = ", ".join(f'{one} = "{pattern}"' for one, pattern in task.names.items())
+    names = ", ".join(f'{key} = "{pattern}"' for key, pattern in task.names.items())
     text = CONFIGURATION.format(vocabulary=task.vocabulary, only=[*task.names], names=names)
     (folder / "pyproject.toml").write_text(text, encoding="utf-8")
     done = subprocess.run(
@@ -177,7 +177,7 @@ def rows(name: str, folder: Path, seeds: int) -> Iterator[str]:
 def others(ends: Sequence[str]) -> str:
     """What else than a test that passes or fails came out."""
     found = sorted({*ends} - {"survived", "killed"})
-    return f" ({', '.join(f'{ends.count(one)} {one}' for one in found)})" if found else ""
+    return f" ({', '.join(f'{ends.count(found_end)} {found_end}' for found_end in found)})" if found else ""
 
 
 if __name__ == "__main__":

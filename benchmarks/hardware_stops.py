@@ -250,11 +250,11 @@ def _stop_once(folder: Path, server: RobotServer, seconds: float, number: int, f
     time.sleep(_AFTER)
     log = _log(folder)[lines:]
     got = server.received[before:]
-    sent = [one for one in log if "sent" in one]
-    stop = next((place for place, one in enumerate(log) if "stop" in one), len(log))
+    sent = [entry for entry in log if "sent" in entry]
+    stop = next((place for place, entry in enumerate(log) if "stop" in entry), len(log))
     found.kinds[_kind(log[:stop]) if stop < len(log) else "came too late"] += 1
     found.commands += len(got)
-    after = sum("sent" in one for one in log[stop:])
+    after = sum("sent" in entry for entry in log[stop:])
     late = sum(moment > ended for moment, _ in got)
     # one command may have had leave when its process was killed
     if not 0 <= len(sent) - len(got) <= 1 or after or late:
@@ -285,7 +285,7 @@ def _log(folder: Path) -> list[dict[str, object]]:
 
 def _kind(log: list[dict[str, object]]) -> str:
     """What was running last."""
-    begun = [one for one in log if "begin" in one]
+    begun = [entry for entry in log if "begin" in entry]
     return "ended in a mutant" if begun and "mutant" in begun[-1] else "ended in the original"
 
 

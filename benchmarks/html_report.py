@@ -93,7 +93,7 @@ def recording(seed: int, fault: float | None) -> Recording:
                 [source.uniform(-0.6, 0.6), source.uniform(-0.6, 0.6), source.uniform(0.1, 0.8)],
             )
         ease = share * share * (3 - 2 * share)
-        at = [one + ease * (other - one) for one, other in zip(start, goal, strict=True)]
+        at = [first + ease * (second - first) for first, second in zip(start, goal, strict=True)]
         turn = 0.1 * math.sin(step / 15)
         tool.extend((*at, math.cos(turn), 0.0, 0.0, math.sin(turn)))
         box.extend((at[0], at[1], max(0.025, at[2] - 0.1), 1.0, 0.0, 0.0, 0.0))
@@ -125,7 +125,7 @@ def build(folder: Path, count: int, rounds: int) -> Path:
     path = folder / ".mutabot" / "journal.sqlite"
     tests = [f"tests/test_cell.py::test_step_{number}[{number % 3}]" for number in range(TESTS)]
     planned = [*mutants(count)]
-    sites = {one.site.id: sorted(chance.sample(range(TESTS), 12)) for one in planned}
+    sites = {candidate.site.id: sorted(chance.sample(range(TESTS), 12)) for candidate in planned}
     meta = {
         "mutabot": "0.1.0",
         "python": "3.11",
@@ -147,14 +147,14 @@ def build(folder: Path, count: int, rounds: int) -> Path:
             for test in tests[:3]:
                 kept.add(ORIGINAL, round, test, Rank.ORIGINAL, to_bytes(recording(0, None)))
         journal.set_plan(planned, (), sources={f"cell/part_{file}.py": lines for file in range(FILES)})
-        for one in planned:
+        for mutant in planned:
             usual = chance.choice(VERDICTS)
             for round in range(rounds):
                 verdict = usual if chance.random() < 0.9 else chance.choice(VERDICTS)
-                journal.add_outcome(_outcome(one, round, verdict, tests, chance))
+                journal.add_outcome(_outcome(mutant, round, verdict, tests, chance))
                 if verdict in (Verdict.KILLED, Verdict.SURVIVED):
-                    made = recording(one.number * 10 + round, 2.0 + one.number % 15)
-                    kept.add(one.id, round, tests[one.number % 3], Rank.SURVIVOR, to_bytes(made))
+                    made = recording(mutant.number * 10 + round, 2.0 + mutant.number % 15)
+                    kept.add(mutant.id, round, tests[mutant.number % 3], Rank.SURVIVOR, to_bytes(made))
         journal.finish("complete")
     return path
 
@@ -183,7 +183,7 @@ def _outcome(
             indistinguishable=False,
             distance=chance.uniform(1, 300),
             divergence=("world.box.x: 0.8 instead of 0.488 (off by 0.312)",),
-            looked=tuple(Looked(one, acted=True, checks=checks) for one in tests[:2]),
+            looked=tuple(Looked(test_name, acted=True, checks=checks) for test_name in tests[:2]),
             diverged=(_diverged(test, chance),),
         )
     return common
@@ -282,7 +282,7 @@ def main() -> int:
             build(folder.resolve(), given.mutants, given.rounds)
         written, seconds, cpu = write(journal, folder.resolve() / "report")
         times = opened(written.page, given.repeats)
-        files = sum(1 for one in written.page.parent.rglob("*") if one.is_file())
+        files = sum(1 for path in written.page.parent.rglob("*") if path.is_file())
     found: dict[str, Any] = {
         "mutants": given.mutants,
         "rounds": given.rounds,

@@ -110,19 +110,23 @@ def main() -> int:
         print(line(found, time.monotonic() - began), flush=True)
         for text in found.disagreements:
             print(text, flush=True)
-        for one in found.compared:
-            if one.agrees and one.names_another_test:
-                print(f"  another test is named: {one.line}", flush=True)
+        for verdict in found.compared:
+            if verdict.agrees and verdict.names_another_test:
+                print(f"  another test is named: {verdict.line}", flush=True)
         if given.unwritable:
-            for text in sorted({f"  {one.mutant}: {one.plain.text}" for one in found.verdicts
-                                if one.plain.state == "unwritable"}):  # fmt: skip
+            for text in sorted({f"  {judged.mutant}: {judged.plain.text}" for judged in found.verdicts
+                                if judged.plain.state == "unwritable"}):  # fmt: skip
                 print(text, flush=True)
     if not every:
         return 0
     print(total(every))
     if given.table:
         print(table(every))
-    return 0 if any(one.compared for one in every) and not any(one.disagreements for one in every) else 1
+    return (
+        0
+        if any(project.compared for project in every) and not any(project.disagreements for project in every)
+        else 1
+    )
 
 
 def asked_of(example: str, given: argparse.Namespace) -> tuple[tuple[str, ...], dict[str, int]]:
@@ -136,8 +140,8 @@ def asked_of(example: str, given: argparse.Namespace) -> tuple[tuple[str, ...], 
 
 def line(found: Found, seconds: float) -> str:
     """What came of one project, in one line."""
-    ends = Counter(one.ours for one in found.verdicts)
-    agreed = sum(one.agrees for one in found.compared)
+    ends = Counter(verdict.ours for verdict in found.verdicts)
+    agreed = sum(verdict.agrees for verdict in found.compared)
     counts = ", ".join(f"{count} {verdict}" for verdict, count in ends.most_common())
     return f"{found.project}: {agreed} of {len(found.compared)} agree, {seconds:.0f} s ({counts})"
 
@@ -146,12 +150,12 @@ def table(every: list[Found]) -> str:
     """What came of each style of suites."""
     lines = ["| suites | how many | mutants | verdicts | as plain pytest |", "|---|---:|---:|---:|---:|"]
     for style in STYLES:
-        found = [one for one in every if style_of(one.project) == style]
+        found = [project for project in every if style_of(project.project) == style]
         if not found:
             continue
-        compared = [one for project in found for one in project.compared]
-        mutants = len({(one.project, one.mutant) for one in compared})
-        agreed = sum(one.agrees for one in compared)
+        compared = [verdict for project in found for verdict in project.compared]
+        mutants = len({(verdict.project, verdict.mutant) for verdict in compared})
+        agreed = sum(verdict.agrees for verdict in compared)
         lines.append(f"| {style} | {len(found)} | {mutants} | {len(compared)} | {agreed} |")
     return "\n".join(lines)
 
@@ -163,11 +167,11 @@ def style_of(project: str) -> str:
 
 def total(every: list[Found]) -> str:
     """The last line."""
-    compared = [one for found in every for one in found.compared]
-    agreed = sum(one.agrees for one in compared)
-    unwritten = sum(one.plain.state == "unwritable" for found in every for one in found.verdicts)
+    compared = [verdict for found in every for verdict in found.compared]
+    agreed = sum(verdict.agrees for verdict in compared)
+    unwritten = sum(verdict.plain.state == "unwritable" for found in every for verdict in found.verdicts)
     failed = sum(len(found.failed) for found in every)
-    mutants = len({(one.project, one.mutant) for one in compared})
+    mutants = len({(verdict.project, verdict.mutant) for verdict in compared})
     return (
         f"{agreed} of {len(compared)} verdicts agree, over {mutants} mutants of {len(every)} projects; "
         f"{unwritten} not compared, since the judge cannot write the mutant; {failed} campaigns stopped"

@@ -223,8 +223,8 @@ class Trial:
         """All outcomes, bar what differs between equal runs."""
         with Journal.open(self.journal) as journal:
             found: list[dict[str, Any]] = [to_data(outcome) for outcome in journal.outcomes()]
-        kept = ({name: one[name] for name in one if name not in _ACCIDENTAL} for one in found)
-        return sorted(json.dumps(one, sort_keys=True) for one in kept)
+        kept = ({name: row[name] for name in row if name not in _ACCIDENTAL} for row in found)
+        return sorted(json.dumps(row, sort_keys=True) for row in kept)
 
     def files(self) -> dict[str, str]:
         """The user's files with a hash of each."""

@@ -79,9 +79,13 @@ def main() -> int:
 def compare(name: str, engine: str, sample: int, seed: int) -> tuple[int, int]:
     """Judge a program; print what differs, and return how many verdicts agree and how many do not."""
     example, files = PROGRAMS[name]
-    planned = [one for one in planned_texts(example, [*files]) if one.difference.reason is None]
+    planned = [
+        planned_text
+        for planned_text in planned_texts(example, [*files])
+        if planned_text.difference.reason is None
+    ]
     chosen = random.Random(seed).sample(planned, min(sample, len(planned)))
-    by_id = {mutant_id(one): one for one in chosen}
+    by_id = {mutant_id(planned_text): planned_text for planned_text in chosen}
     with tempfile.TemporaryDirectory() as folder:
         copy = copied(example, Path(folder).resolve() / "campaign")
         configure(copy, name)
@@ -109,10 +113,10 @@ def request_of(request: Any, ids: list[str]) -> Any:
     return replace(request, only=tuple(ids))
 
 
-def mutant_id(one: PlannedText) -> str:
+def mutant_id(planned_text: PlannedText) -> str:
     """The id that a campaign gives it."""
-    variant = variant_of(one.difference)
-    return f"{one.site.id}:{one.difference.operator}{f'={variant}' if variant else ''}"
+    variant = variant_of(planned_text.difference)
+    return f"{planned_text.site.id}:{planned_text.difference.operator}{f'={variant}' if variant else ''}"
 
 
 def configure(copy: Path, name: str) -> None:
@@ -126,9 +130,9 @@ def configure(copy: Path, name: str) -> None:
     tests.write_text(text, encoding="utf-8")
 
 
-def judged(copy: Path, one: PlannedText, seeds: Mapping[str, int]) -> str:
+def judged(copy: Path, planned_text: PlannedText, seeds: Mapping[str, int]) -> str:
     """What plain pytest says of a copy with the edited program: ``passes``, ``fails``, or how it ended."""
-    apply(copy / one.program.file, one.program.diff(one.difference))
+    apply(copy / planned_text.program.file, planned_text.program.diff(planned_text.difference))
     tests = copy / "tests" / "conftest.py"
     seed = (
         f"\n\n@pytest.fixture\ndef mutabot_seed(request: pytest.FixtureRequest) -> int:\n"

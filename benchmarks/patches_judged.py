@@ -44,7 +44,9 @@ def main() -> int:
     parser.add_argument("--patches", type=int, default=3, help="patches of each project")
     parser.add_argument("--projects", type=int, default=36, help="projects, drawn by a fixed seed")
     given = parser.parse_args()
-    projects = [one for one in corpus() if not given.names or one.name in given.names]
+    projects = [
+        known_project for known_project in corpus() if not given.names or known_project.name in given.names
+    ]
     if not given.names:
         projects = sorted(random.Random(1).sample(projects, min(given.projects, len(projects))))
     counts, wrong = Counter[str](), 0
@@ -91,7 +93,9 @@ def _words(fails: bool) -> str:
 def _write_patches(folder: Path, count: int) -> list[str]:
     """Write patches of one to three edits into the project's folder of patches."""
     files = [
-        one for one in sorted(folder.rglob("*.py")) if "tests" not in one.parts and one.name != "conftest.py"
+        path
+        for path in sorted(folder.rglob("*.py"))
+        if "tests" not in path.parts and path.name != "conftest.py"
     ]
     draw = random.Random(folder.name)
     (folder / "patches").mkdir()
@@ -106,7 +110,9 @@ def _write_patches(folder: Path, count: int) -> list[str]:
                 shutil.copytree(folder, side, ignore=shutil.ignore_patterns("patches", "__pycache__"))
             for file in {file for file, _ in chosen}:
                 text = file.read_text(encoding="utf-8")
-                for start, end, other in _apart([edit for one, edit in chosen if one == file]):
+                for start, end, other in _apart(
+                    [edit for changed_file, edit in chosen if changed_file == file]
+                ):
                     text = text[:start] + other + text[end:]
                 (pair[1] / file.relative_to(folder)).write_text(text, encoding="utf-8")
             words = ["git", "diff", "--no-index", "--no-prefix", "a", "b"]
@@ -120,9 +126,9 @@ def _write_patches(folder: Path, count: int) -> list[str]:
 def _apart(edits: list[Edit]) -> list[Edit]:
     """Edits that do not overlap, the last first."""
     kept = list[Edit]()
-    for one in sorted(edits, reverse=True):
-        if not kept or one[1] <= kept[-1][0]:
-            kept.append(one)
+    for edit in sorted(edits, reverse=True):
+        if not kept or edit[1] <= kept[-1][0]:
+            kept.append(edit)
     return kept
 
 
@@ -147,7 +153,7 @@ def _edits(text: str) -> Iterator[Edit]:
             yield start, end, "pass"
         elif isinstance(node, ast.Call) and len(node.args) > 1:
             first, second, *others = map(ast.unparse, node.args)
-            keywords = [ast.unparse(one) for one in node.keywords]
+            keywords = [ast.unparse(keyword) for keyword in node.keywords]
             yield start, end, f"{ast.unparse(node.func)}({', '.join([second, first, *others, *keywords])})"
         elif isinstance(node, ast.Return) and node.value is not None:
             yield start, end, "return None"
@@ -189,8 +195,11 @@ def _campaign(folder: Path, engine: str) -> dict[str, tuple[str, str]]:
         print(f"{folder.name} [{engine}]: {done.stderr}")
         return {}
     return {
-        one["description"].partition(" ")[0]: (one["rounds"][0]["verdict"], one["rounds"][0]["message"] or "")
-        for one in mutants
+        mutant["description"].partition(" ")[0]: (
+            mutant["rounds"][0]["verdict"],
+            mutant["rounds"][0]["message"] or "",
+        )
+        for mutant in mutants
     }
 
 

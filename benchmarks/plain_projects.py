@@ -150,7 +150,7 @@ def main() -> int:
             found[name] = _compare(project, PROJECTS[name], pythons, given)
     if given.json:
         given.json.write_text(json.dumps(found, indent=2) + "\n", encoding="utf-8")
-    return int(any(one.get("mutabot", {}).get("wrong") for one in found.values()))
+    return int(any(figures.get("mutabot", {}).get("wrong") for figures in found.values()))
 
 
 def _compare(
@@ -173,10 +173,10 @@ def _compare(
     found: dict[str, Any] = {"pytest": round(suite, 2)}
     for tool, campaigns in runs.items():
         if campaigns:
-            figures, judged = min(campaigns, key=lambda one: one[0].cpu)
-            figures.every = [one.cpu for one, _ in campaigns]
-            for one in _drawn(judged, given.judged if tool in given.judge else 0):
-                _judge(python, folder, project, one, figures, suite)
+            figures, judged = min(campaigns, key=lambda campaign: campaign[0].cpu)
+            figures.every = [facts.cpu for facts, _ in campaigns]
+            for chosen in _drawn(judged, given.judged if tool in given.judge else 0):
+                _judge(python, folder, project, chosen, figures, suite)
             found[tool] = asdict(figures)
             _print(name, suite, tool, figures)
     return found
@@ -265,7 +265,11 @@ def _mutabot(python: str, folder: Path, project: Project, mutants: int) -> tuple
 
         return write
 
-    judged = [Judged(one["id"], one["rounds"][0]["verdict"], writer(one)) for one in found if one["rounds"]]
+    judged = [
+        Judged(mutant["id"], mutant["rounds"][0]["verdict"], writer(mutant))
+        for mutant in found
+        if mutant["rounds"]
+    ]
     return _figures(cpu, judged), judged
 
 
@@ -284,9 +288,9 @@ def _irradiate(python: str, folder: Path, project: Project, mutants: int) -> tup
     files = [str(path.relative_to(folder)) for path in (folder / program).rglob("*.py")]
     place = {str(Path(file).relative_to(Path(program).parent)): file for file in files}
     judged = [
-        Judged(one["id"], one["status"], _written_by_location(folder, place.get(file, file), one))
+        Judged(mutant["id"], mutant["status"], _written_by_location(folder, place.get(file, file), mutant))
         for file, found in json.loads(report.read_text())["files"].items()
-        for one in found["mutants"]
+        for mutant in found["mutants"]
     ]
     return _figures(cpu, judged), judged
 
@@ -302,7 +306,7 @@ def _moonbuggy(python: str, folder: Path, project: Project, mutants: int) -> tup
         return lambda: (mutant["file"], mutant["text"].encode())
 
     found = json.loads(done.stdout.splitlines()[-1])
-    judged = [Judged(one["id"], one["status"], writer(one)) for one in found]
+    judged = [Judged(mutant["id"], mutant["status"], writer(mutant)) for mutant in found]
     return _figures(cpu, judged), judged
 
 
@@ -324,17 +328,19 @@ _RUNS = {"mutabot": _mutabot, "irradiate": _irradiate, "moonbuggy": _moonbuggy}
 
 
 def _figures(cpu: float, judged: list[Judged]) -> Figures:
-    killed = sum(one.verdict in _NOTICED for one in judged)
-    survived = sum(one.verdict in _MISSED for one in judged)
+    killed = sum(verdict.verdict in _NOTICED for verdict in judged)
+    survived = sum(verdict.verdict in _MISSED for verdict in judged)
     return Figures(round(cpu, 1), len(judged), killed, survived)
 
 
 def _drawn(judged: list[Judged], count: int) -> Iterator[Judged]:
     """Some survivors and some kills, always the same ones; what no test reaches only if there are too few."""
     for verdicts in (_MISSED, _NOTICED):
-        some = sorted((one for one in judged if one.verdict in verdicts), key=lambda one: one.name)
+        some = sorted(
+            (verdict for verdict in judged if verdict.verdict in verdicts), key=lambda verdict: verdict.name
+        )
         Random(1).shuffle(some)
-        yield from sorted(some, key=lambda one: one.verdict in _NOT_REACHED)[:count]
+        yield from sorted(some, key=lambda verdict: verdict.verdict in _NOT_REACHED)[:count]
 
 
 def _judge(

@@ -63,7 +63,8 @@ def ends(request: Request) -> dict[str, str]:
     """Run a campaign: how each mutant ends in each round."""
     with Journal.open(run_campaign(request, Silent())) as journal:
         return {
-            f"{one.mutant} in round {one.round + 1}": f"{one.verdict} {one.by}" for one in journal.outcomes()
+            f"{outcome.mutant} in round {outcome.round + 1}": f"{outcome.verdict} {outcome.by}"
+            for outcome in journal.outcomes()
         }
 
 
@@ -93,7 +94,7 @@ def unused(names: set[str]) -> list[str]:
                 used.update(
                     line.split("/dev/shm/")[1] for line in lines_of(process / "maps") if "/dev/shm/" in line
                 )
-                used.update(one.readlink().name for one in (process / "fd").iterdir())
+                used.update(path.readlink().name for path in (process / "fd").iterdir())
             except OSError:
                 continue
     return sorted(names - used)
@@ -115,7 +116,7 @@ def digest(folder: Path) -> str:
 
 def entries(folder: Path) -> set[str]:
     """Names in a folder, if it is there."""
-    return {one.name for one in folder.iterdir()} if folder.is_dir() else set()
+    return {path.name for path in folder.iterdir()} if folder.is_dir() else set()
 
 
 def run(example: str, given: argparse.Namespace) -> list[str]:
@@ -133,15 +134,15 @@ def run(example: str, given: argparse.Namespace) -> list[str]:
             shared, logs, began = entries(SHARED), entries(LOGS), time.monotonic()
             found = ends(request_for(folder / below, given))
             first = first or found
-            left = [f"process {one}" for one in processes_below(folder)]
+            left = [f"process {process}" for process in processes_below(folder)]
             if example != "scales":
-                left += [f"shared memory {one}" for one in unused(entries(SHARED) - shared)]
-                left += [f"log {one}" for one in sorted(entries(LOGS) - logs)]
+                left += [f"shared memory {segment}" for segment in unused(entries(SHARED) - shared)]
+                left += [f"log {entry}" for entry in sorted(entries(LOGS) - logs)]
             left += [f"files of {example} have changed"] if digest(folder) != files else []
             left += [
-                f"{one}: {first.get(one)}, then {end}" for one, end in found.items() if first.get(one) != end
+                f"{key}: {first.get(key)}, then {end}" for key, end in found.items() if first.get(key) != end
             ]
-            wrong += [f"{example}, campaign {number}: {one}" for one in left]
+            wrong += [f"{example}, campaign {number}: {left_over}" for left_over in left]
             place = f"{example} {number}/{given.count}"
             seconds = time.monotonic() - began
             print(f"{place}: {len(found)} outcomes, {seconds:.1f} s, {len(left)} wrong", flush=True)
@@ -160,10 +161,12 @@ def main() -> int:
     parser.add_argument("--families", default=",".join(USUAL))
     parser.add_argument("--selection", help="a file of the example with the ids of mutants")
     given = parser.parse_args()
-    there = [one for one in given.examples if importlib.util.find_spec(EXAMPLES[one][1]) is not None]
+    there = [
+        example for example in given.examples if importlib.util.find_spec(EXAMPLES[example][1]) is not None
+    ]
     for missing in sorted(set(given.examples) - set(there)):
         print(f"{missing} is left out: {EXAMPLES[missing][1]} is not installed")
-    wrong = [one for example in there for one in run(example, given)]
+    wrong = [finding for example in there for finding in run(example, given)]
     print("\n".join(wrong) or "nothing is left behind, and all campaigns find the same")
     return bool(wrong)
 

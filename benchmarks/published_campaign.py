@@ -39,7 +39,7 @@ def run(command: str, folder: Path, rounds: int) -> tuple[float, dict[str, objec
         [command, "results", "--json"], cwd=folder, check=True, capture_output=True, text=True
     )
     mutants = json.loads(told.stdout)["mutants"]
-    return took, {one["id"]: [outcome["verdict"] for outcome in one["rounds"]] for one in mutants}
+    return took, {mutant["id"]: [outcome["verdict"] for outcome in mutant["rounds"]] for mutant in mutants}
 
 
 def main(other: str, pairs: int = 4, rounds: int = 5) -> int:

@@ -532,13 +532,13 @@ def replaced(text: str, node: Any, new: str) -> str:
 def other_number(text: str, chance: random.Random, scale: float = 0.02) -> str:
     """A number in some function is a little different."""
     found = [
-        (one, one.value)
+        (inner, inner.value)
         for function in functions(text)
         for statement in function.body
-        for one in ast.walk(statement)
-        if isinstance(one, ast.Constant)
-        and isinstance(one.value, int | float)
-        and one.value not in (0, 1, True)
+        for inner in ast.walk(statement)
+        if isinstance(inner, ast.Constant)
+        and isinstance(inner.value, int | float)
+        and inner.value not in (0, 1, True)
     ]
     if not found:
         raise NotPossibleError
@@ -599,7 +599,7 @@ def other_sign(text: str, chance: random.Random) -> str:
 def no_statement(text: str, chance: random.Random) -> str:
     """A statement of a function does nothing any more."""
     plain = ast.Expr | ast.AugAssign | ast.Break
-    found = [one for function in functions(text) for one in ast.walk(function) if isinstance(one, plain)]
+    found = [node for function in functions(text) for node in ast.walk(function) if isinstance(node, plain)]
     if not found:
         raise NotPossibleError
     return replaced(text, chance.choice(found), "pass")
@@ -623,7 +623,11 @@ def new_test(folder: Path, subject: Subject, chance: random.Random) -> str:
     """A test is there twice, the second time at the end of its file and with one more assert."""
     path = folder / chance.choice(subject.tests)
     text = path.read_text()
-    able = [one for one in functions(text) if one.name.startswith("test_") and not one.decorator_list]
+    able = [
+        function
+        for function in functions(text)
+        if function.name.startswith("test_") and not function.decorator_list
+    ]
     if not able:
         raise NotPossibleError
     node = chance.choice(able)
@@ -654,7 +658,7 @@ def of_text(kind: Callable[[Subject], list[str]]) -> Callable[[Path, Subject, ra
 def changed_test(folder: Path, subject: Subject, chance: random.Random) -> str:
     path = folder / chance.choice(subject.tests)
     text = path.read_text()
-    tests = [one for one in functions(text) if one.name.startswith("test_")]
+    tests = [function for function in functions(text) if function.name.startswith("test_")]
     if tests and chance.random() < 0.5:
         last = chance.choice(tests).body[-1]
         lines = text.splitlines(keepends=True)
@@ -670,17 +674,19 @@ def moved_function(folder: Path, subject: Subject, chance: random.Random) -> str
     path = folder / name
     text = path.read_text()
     tree = ast.parse(text)
-    own = {one.name for one in tree.body if isinstance(one, ast.FunctionDef | ast.ClassDef)}
+    own = {statement.name for statement in tree.body if isinstance(statement, ast.FunctionDef | ast.ClassDef)}
     own |= {
         node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
     }
     able = [
-        one
-        for one in tree.body
-        if isinstance(one, ast.FunctionDef)
-        and not one.decorator_list
-        and not any(isinstance(node, ast.Name) and node.id in own - {one.name} for node in ast.walk(one))
-        and not any(isinstance(node, ast.Global) for node in ast.walk(one))
+        statement
+        for statement in tree.body
+        if isinstance(statement, ast.FunctionDef)
+        and not statement.decorator_list
+        and not any(
+            isinstance(node, ast.Name) and node.id in own - {statement.name} for node in ast.walk(statement)
+        )
+        and not any(isinstance(node, ast.Global) for node in ast.walk(statement))
     ]
     if not able:
         raise NotPossibleError
@@ -688,11 +694,11 @@ def moved_function(folder: Path, subject: Subject, chance: random.Random) -> str
     lines = text.splitlines(keepends=True)
     body = "".join(lines[node.lineno - 1 : node.end_lineno])
     imports = "".join(
-        "".join(lines[one.lineno - 1 : one.end_lineno])
-        for one in tree.body
-        if isinstance(one, ast.Import | ast.ImportFrom)
-        and getattr(one, "module", "") != "__future__"
-        and any(re.search(rf"\b{alias.asname or alias.name}\b", body) for alias in one.names)
+        "".join(lines[statement.lineno - 1 : statement.end_lineno])
+        for statement in tree.body
+        if isinstance(statement, ast.Import | ast.ImportFrom)
+        and getattr(statement, "module", "") != "__future__"
+        and any(re.search(rf"\b{alias.asname or alias.name}\b", body) for alias in statement.names)
     )
     future = "from __future__ import annotations\n"
     new = path.with_name(f"{node.name.strip('_')}_apart.py")
@@ -701,8 +707,8 @@ def moved_function(folder: Path, subject: Subject, chance: random.Random) -> str
     starts = ("import ", "from ", "def ", "class ")
     able_lines = (
         index
-        for index, one in enumerate(lines)
-        if one.startswith(starts) and not one.startswith("from __future__")
+        for index, line in enumerate(lines)
+        if line.startswith(starts) and not line.startswith("from __future__")
     )
     place = next(able_lines, len(lines))
     lines.insert(place, f"from {new.stem} import {node.name}\n")

@@ -20,27 +20,27 @@ def differences(first: Mapping[str, Any], second: Mapping[str, Any]) -> Iterator
     """What differs between two records of a project, a line each."""
     for part in ("plan", "left_out"):
         before, after = dict(first[part]), dict(second[part])
-        yield from (f"{part}: {one} is gone" for one in before if one not in after)
-        yield from (f"{part}: {one} is new" for one in after if one not in before)
-        for one, text in before.items():
-            if one in after and text != after[one]:
-                yield f"{part}: {one}: {text!r} → {after[one]!r}"
+        yield from (f"{part}: {gone} is gone" for gone in before if gone not in after)
+        yield from (f"{part}: {new} is new" for new in after if new not in before)
+        for name, text in before.items():
+            if name in after and text != after[name]:
+                yield f"{part}: {name}: {text!r} → {after[name]!r}"
         if list(before) != list(after) and set(before) == set(after):
             yield f"{part}: the order differs"
     before, after = first["outcomes"], second["outcomes"]
-    yield from (f"{one}: was run and is not" for one in before if one not in after)
-    yield from (f"{one}: is run and was not" for one in after if one not in before)
-    for one, facts in before.items():
-        for key, fact in facts.items() if one in after else ():
-            if _lasting(fact) != _lasting(after[one].get(key)):
-                yield f"{one}: {key} {fact!r} → {after[one].get(key)!r}"
+    yield from (f"{gone}: was run and is not" for gone in before if gone not in after)
+    yield from (f"{new}: is run and was not" for new in after if new not in before)
+    for name, facts in before.items():
+        for key, fact in facts.items() if name in after else ():
+            if _lasting(fact) != _lasting(after[name].get(key)):
+                yield f"{name}: {key} {fact!r} → {after[name].get(key)!r}"
 
 
 def _lasting(fact: Any) -> Any:
     """A fact without what was seen along the way: how often that is looked at depends on processor time."""
     if not isinstance(fact, list):
         return fact
-    return [one for one in fact if not str(one).startswith("on the way")]
+    return [line for line in fact if not str(line).startswith("on the way")]
 
 
 def renamed(value: Any, names: Mapping[str, str]) -> Any:
@@ -49,9 +49,9 @@ def renamed(value: Any, names: Mapping[str, str]) -> Any:
         for old, new in names.items():
             value = value.replace(old, new)
     elif isinstance(value, list):
-        value = [renamed(one, names) for one in value]
+        value = [renamed(part, names) for part in value]
     elif isinstance(value, dict):
-        value = {renamed(key, names): renamed(one, names) for key, one in value.items()}
+        value = {renamed(key, names): renamed(part, names) for key, part in value.items()}
     return value
 
 
@@ -71,7 +71,7 @@ def main() -> int:
         help="what is called otherwise since then",
     )
     given = parser.parse_args()
-    names = dict(one.split("=", 1) for one in given.renamed)
+    names = dict(pair.split("=", 1) for pair in given.renamed)
     compared = different = 0
     for file in sorted(given.folder.glob("*.json.gz")):
         name = file.name.removesuffix(".json.gz")

@@ -87,7 +87,7 @@ def campaign(folder: Path, rounds: int, *options: str) -> str | None:
 def outcomes_of(folder: Path) -> tuple[dict[tuple[str, int], dict[str, Any]], set[tuple[str, int]]]:
     """All outcomes without their cost, and which of them were taken over."""
     with JournalReader.open(folder / ".mutabot" / "journal.sqlite") as journal:
-        found = {(one.mutant, one.round): to_data(one) for one in journal.outcomes()}
+        found = {(outcome.mutant, outcome.round): to_data(outcome) for outcome in journal.outcomes()}
         reused = journal.reused()
     return {pair: without_cost(data) for pair, data in found.items()}, reused
 
@@ -96,7 +96,8 @@ def without_cost(outcome: dict[str, Any]) -> dict[str, Any]:
     """An outcome without what no two runs have alike: times of the wall clock."""
     kept = {name: value for name, value in outcome.items() if name not in COST}
     kept["diverged"] = [
-        one if one["is_simulated"] else {**one, "at": None, "fault": None} for one in outcome["diverged"]
+        divergence if divergence["is_simulated"] else {**divergence, "at": None, "fault": None}
+        for divergence in outcome["diverged"]
     ]
     return kept
 
@@ -124,8 +125,8 @@ def one_edit(
 ) -> tuple[str, str, Path, Path] | None:
     """Edit a copy and run both campaigns; None if the edit cannot be made, or the tests fail after it."""
     folder, whole = work / "since", work / "whole"
-    for one in (folder, whole):
-        shutil.rmtree(one, ignore_errors=True)
+    for folder_to_remove in (folder, whole):
+        shutil.rmtree(folder_to_remove, ignore_errors=True)
     shutil.copytree(original, folder)
     try:
         told = " and ".join(EDITS[kind](folder, subject, chance) for kind in kinds)
@@ -151,10 +152,10 @@ def compare(
                 outcome.pop(fact, None)
     for pair in sorted(found.keys() | right.keys()):
         if found.get(pair) != right.get(pair):
-            one, other = found.get(pair) or {}, right.get(pair) or {}
-            fields = [name for name in {**one, **other} if one.get(name) != other.get(name)]
+            first, second = found.get(pair) or {}, right.get(pair) or {}
+            fields = [name for name in {**first, **second} if first.get(name) != second.get(name)]
             how = "taken over" if pair in reused else "run"
-            shown = {name: (one.get(name), other.get(name)) for name in fields}
+            shown = {name: (first.get(name), second.get(name)) for name in fields}
             tally.wrong.append(f"{told}: {pair} ({how}): {shown}")
     run = found.keys() - reused
     altered = {pair for pair in run if lasting(old.get(pair)) != lasting(right.get(pair))}
@@ -204,7 +205,7 @@ def main() -> int:
             original, subject, old = known[name]
             edits = [kind] * given.together
             tries = (one_edit(work, original, subject, edits, chance, given.rounds) for _ in range(TRIES))
-            done = next((one for one in tries if one is not None), None)
+            done = next((attempt for attempt in tries if attempt is not None), None)
             if done is None:
                 continue
             told, said, since, whole = done

@@ -97,21 +97,25 @@ def judged(folder: Path, count: int) -> Counter[str]:
     """Judge survivors of a project; print what is untrue."""
     with Journal.open(folder / ".mutabot" / "journal.sqlite") as journal:
         results = read_results(journal)
-    survivors = [one for one in results.mutants if one.survived and not is_drawn(data_of(one.mutant))]
+    survivors = [
+        mutant for mutant in results.mutants if mutant.survived and not is_drawn(data_of(mutant.mutant))
+    ]
     drawn = random.Random(1).sample(survivors, min(count, len(survivors)))
     simulation = Simulation(folder, results.meta["seed"])
     counts: Counter[str] = Counter()
-    for one in sorted(drawn, key=lambda one: one.mutant.number):
+    for result in sorted(drawn, key=lambda found_result: found_result.mutant.number):
         counts["survivors"] += 1
         try:
-            lines = list(simulation.untrue(one, counts))
+            lines = list(simulation.untrue(result, counts))
         except CannotWriteError as error:
             counts["not written"] += 1
             lines = []
-            print(f"{folder.name} #{one.mutant.number} cannot be written: {error}")
+            print(f"{folder.name} #{result.mutant.number} cannot be written: {error}")
         counts["untrue"] += len(lines)
         for line in lines:
-            print(f"{folder.name} #{one.mutant.number} {one.mutant.description}\n    {line}", flush=True)
+            print(
+                f"{folder.name} #{result.mutant.number} {result.mutant.description}\n    {line}", flush=True
+            )
     print(f"{folder.name}: {dict(counts)}", flush=True)
     return counts
 
@@ -139,7 +143,7 @@ class Simulation:
                 yield from (f"{test}: {line}" for line in _differing(cells, ran.get(test, [])))
             return
         runs = self.original(told.test, 0), self.run(edits, told.test, 0)
-        original, mutant = (one.get(told.test, []) for one in runs)
+        original, mutant = (run.get(told.test, []) for run in runs)
         if len(original) != 1 or len(mutant) != 1:
             counts["several cells"] += 1
             return
@@ -164,18 +168,22 @@ class Simulation:
         with kept as recordings:
             for test, _, data in recordings.of(result.mutant.id, 0):
                 known = [recordings.data(ORIGINAL, round, test) for round in range(SEEDED)]
-                runs = [RecordedPaths(from_bytes(one)) for one in known if one is not None]
+                runs = [RecordedPaths(from_bytes(recorded)) for recorded in known if recorded is not None]
                 mutant = RecordedPaths(from_bytes(data))
                 found.append(diverged(test, runs[0], mutant, spread=spread_between(runs)))
-        return max((one for one in found if one is not None), key=lambda one: one.rank, default=None)
+        return max(
+            (divergence for divergence in found if divergence is not None),
+            key=lambda divergence: divergence.rank,
+            default=None,
+        )
 
     def spread(self, test: str) -> dict[str, float]:
         """How far each thing ends apart with other seeds, m."""
         runs = [self.original(test, round)[test][0] for round in range(SEEDED)]
         found: dict[str, float] = {}
-        for one, other in combinations(runs, 2):
-            for name in one.poses.keys() & other.poses.keys():
-                first, second = one.poses[name][:, :3], other.poses[name][:, :3]
+        for left, right in combinations(runs, 2):
+            for name in left.poses.keys() & right.poses.keys():
+                first, second = left.poses[name][:, :3], right.poses[name][:, :3]
                 ends = float(np.linalg.norm(first[-1] - second[-1]))
                 moved = float(np.linalg.norm((first[-1] - first[0]) - (second[-1] - second[0])))
                 found[name] = max(found.get(name, 0.0), min(ends, moved))
@@ -218,7 +226,7 @@ class Simulation:
     def seeds(self, round: int) -> Mapping[str, int]:
         """What the fixture ``mutabot_seed`` gives in a round, by test."""
         with Journal.open(self.folder / ".mutabot" / "journal.sqlite") as journal:
-            tests = [one.test.test for one in journal.tests()]
+            tests = [baseline_test.test.test for baseline_test in journal.tests()]
         return {test: derive(self.seed, round, test) for test in tests}
 
 
@@ -227,14 +235,14 @@ def _differing(original: Sequence[Watched], mutant: Sequence[Watched]) -> Iterat
     if len(original) != len(mutant):
         yield f"{len(mutant)} cells instead of {len(original)}"
         return
-    for one, other in zip(original, mutant, strict=True):
-        count = min(len(one.times), len(other.times))
-        for name in one.poses:
-            gaps = np.linalg.norm(one.poses[name][:count, :3] - other.poses[name][:count, :3], axis=1)
+    for first, second in zip(original, mutant, strict=True):
+        count = min(len(first.times), len(second.times))
+        for name in first.poses:
+            gaps = np.linalg.norm(first.poses[name][:count, :3] - second.poses[name][:count, :3], axis=1)
             if gaps.max() > SAME:
-                yield f"{name} is {gaps.max():.4f} m away at {one.times[gaps.argmax()]:.2f} s"
-        if abs(one.times[-1] - other.times[-1]) > 0.15:
-            yield f"ends at {other.times[-1]:.2f} s instead of {one.times[-1]:.2f} s"
+                yield f"{name} is {gaps.max():.4f} m away at {first.times[gaps.argmax()]:.2f} s"
+        if abs(first.times[-1] - second.times[-1]) > 0.15:
+            yield f"ends at {second.times[-1]:.2f} s instead of {first.times[-1]:.2f} s"
 
 
 if __name__ == "__main__":

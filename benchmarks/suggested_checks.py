@@ -51,7 +51,7 @@ def _example(name: str, seeds: int) -> bool:
         shutil.copytree(EXAMPLES / name, project, ignore=shutil.ignore_patterns(".mutabot", "__pycache__"))
         before = _mutabot(project, "run", "--family", "robot", "--json")
         found = _mutabot(project, "suggest", "--json")
-        tests = sorted({one["test"] for one in found["suggestions"] if not one["by_hand"]})
+        tests = sorted({proposal["test"] for proposal in found["suggestions"] if not proposal["by_hand"]})
         if tests:
             subprocess.run(["patch", "-p1", "-s"], cwd=project, input=found["diff"], text=True, check=True)
         after = _mutabot(project, "run", "--family", "robot", "--json")
@@ -60,14 +60,16 @@ def _example(name: str, seeds: int) -> bool:
     print("| family · role | score before | after | check score before | after |\n|---|---|---|---|---|")
     for old, new in zip(before["groups"], after["groups"], strict=True):
         cells = [old["score"], new["score"], old["check_score"], new["check_score"]]
-        print(f"| {old['family']} · {old['role']} |", " | ".join(f"{100 * one:.1f} %" for one in cells), "|")
-    for one in found["suggestions"]:
-        kills = ", ".join(f"#{kill['mutant']['number']}" for kill in one["kills"])
-        print(f"\n- `{one['statement']}` ({one['runs']} runs) kills {kills}")
-    for one in found["unsolved"]:
-        mutant = one["mutant"]
-        word = "never" if one["never"] else "not"
-        print(f"- {word}: #{mutant['number']} {mutant['description']}: {one['reason']}")
+        print(
+            f"| {old['family']} · {old['role']} |", " | ".join(f"{100 * cell:.1f} %" for cell in cells), "|"
+        )
+    for suggestion in found["suggestions"]:
+        kills = ", ".join(f"#{kill['mutant']['number']}" for kill in suggestion["kills"])
+        print(f"\n- `{suggestion['statement']}` ({suggestion['runs']} runs) kills {kills}")
+    for survivor in found["unsolved"]:
+        mutant = survivor["mutant"]
+        word = "never" if survivor["never"] else "not"
+        print(f"- {word}: #{mutant['number']} {mutant['description']}: {survivor['reason']}")
     print(f"\nfalse alarms: {len(alarms)} of {seeds} runs {alarms[:3] or ''}", flush=True)
     print(f"dropped in the proof: {len(found['dropped'])}", flush=True)
     rose = [new["score"] > old["score"] for old, new in zip(before["groups"], after["groups"], strict=True)]

@@ -73,12 +73,12 @@ def main() -> int:
 
 
 def _print(found: list[Figures], rows: list[Figures]) -> None:
-    for one in found:
-        print(f"{one['tests']:6.0f} tests: pytest {one['pytest']:.1f} s")
+    for figures in found:
+        print(f"{figures['tests']:6.0f} tests: pytest {figures['pytest']:.1f} s")
         for what in ("list", "run"):
-            if what in one:
-                times = f"{what}: {one[what]:.1f} s, {one[what] / one['pytest']:.2f} times that"
-                memory = [f"{one[f'{what}_{who}']:.0f} MB" for who in ("controller", "others")]
+            if what in figures:
+                times = f"{what}: {figures[what]:.1f} s, {figures[what] / figures['pytest']:.2f} times that"
+                memory = [f"{figures[f'{what}_{who}']:.0f} MB" for who in ("controller", "others")]
                 print(f"  {times}; at most {memory[0]} in the controller and {memory[1]} in another process")
     for row in rows:
         each = f"pytest {row['pytest_ms']:.2f} ms a test, list {row['list_ms']:.2f} ms"

@@ -42,10 +42,10 @@ def kept(results: Results, family: str) -> dict[str, Any]:
             "place": result.mutant.site.span.place,
             "operator": result.mutant.operator,
             "fault": result.mutant.description,
-            "ends": one["ends"],
+            "ends": mutant["ends"],
             "noticed": noticed(result),
         }
-        for one, result in zip(data["mutants"], results.mutants, strict=True)
+        for mutant, result in zip(data["mutants"], results.mutants, strict=True)
     ]
     own = family_of(data, family)
     return {**{key: data[key] for key in ("state", "meta", "sample")}, "families": own, "mutants": mutants}
@@ -56,19 +56,19 @@ def noticed(result: MutantResult) -> list[str | None]:
 
     "all" where the tests are one suite, "unknown" where the process ended before it came to a weaker one.
     """
-    return [_weakest(one) if one is not None else None for one in result.rounds]
+    return [_weakest(outcome) if outcome is not None else None for outcome in result.rounds]
 
 
 def _weakest(outcome: Outcome) -> str | None:
     tests = noticing_tests(outcome)
     folders = {test.split("/")[1] for test in tests if test.count("/") > 1}
-    found = next((one for one in STRENGTHS if one in folders), "all" if tests else None)
+    found = next((strength for strength in STRENGTHS if strength in folders), "all" if tests else None)
     return found if outcome.complete or found in ("weak", "all", None) else UNKNOWN
 
 
 def weak_first(project: Path) -> list[str]:
     """The setting that runs weaker suites first: a process that ends early ends in the weakest."""
-    folders = [f"tests/{one}" for one in STRENGTHS if (project / "tests" / one).is_dir()]
+    folders = [f"tests/{strength}" for strength in STRENGTHS if (project / "tests" / strength).is_dir()]
     return [f"tests={json.dumps(folders)}"] if folders else []
 
 
@@ -130,7 +130,7 @@ def _run(given: argparse.Namespace, data: Path) -> int:
             print(
                 f"{given.name}, {family}: {found[family]['state']}, {len(found[family]['mutants'])} mutants"
             )
-    if any(one["state"] != "complete" for one in found.values()):
+    if any(state["state"] != "complete" for state in found.values()):
         return 1
     data.mkdir(parents=True, exist_ok=True)
     lines = json.dumps(json.loads(dumps({"campaigns": found})), ensure_ascii=False, indent=None)

@@ -80,17 +80,17 @@ def record(name: str, folder: Path, command: Sequence[str], wanted: Iterable[str
         copy = copied(folder, Path(place).resolve() / name)
         shared = ["--family", ",".join(limits), "--rounds", str(rounds), "--seed", "1"]
         plan = _json([*command, "-C", str(copy), "list", *shared, "--json"])
-        ids = [one["id"] for one in plan["mutants"]]
+        ids = [mutant["id"] for mutant in plan["mutants"]]
         chosen = set(drawn(plan["mutants"], limits) if wanted is None else wanted)
-        run = [one for one in ids if one in chosen]
+        run = [mutant_id for mutant_id in ids if mutant_id in chosen]
         selection = Path(place, "selection.txt")
-        selection.write_text("".join(f"{one}\n" for one in run), encoding="utf-8")
+        selection.write_text("".join(f"{mutant_id}\n" for mutant_id in run), encoding="utf-8")
         _json([*command, "-C", str(copy), "run", *shared, "--only", f"@{selection}", "--json"])
         results = _json([*command, "-C", str(copy), "results", "--json"])
     facts = FACTS[:1] if name in ROS else FACTS
     return {
-        "plan": [[one["id"], one["description"]] for one in plan["mutants"]],
-        "left_out": [[one["id"], one["reason"]] for one in plan["left_out"]],
+        "plan": [[mutant["id"], mutant["description"]] for mutant in plan["mutants"]],
+        "left_out": [[omission["id"], omission["reason"]] for omission in plan["left_out"]],
         "outcomes": {
             f"{mutant['id']} [{outcome['round']}]": {key: told(outcome.get(key), str(copy)) for key in facts}
             for mutant in results["mutants"]
@@ -102,10 +102,12 @@ def record(name: str, folder: Path, command: Sequence[str], wanted: Iterable[str
 def drawn(mutants: Iterable[Mapping[str, Any]], limits: Mapping[str, int]) -> list[str]:
     """Of each family as many as its limit, those whose ids have the least hashes."""
     families: dict[str, list[str]] = {}
-    for one in mutants:
-        families.setdefault(one["family"], []).append(one["id"])
+    for mutant in mutants:
+        families.setdefault(mutant["family"], []).append(mutant["id"])
     return [
-        one for family, ids in families.items() for one in sorted(ids, key=_hash)[: limits.get(family, 0)]
+        mutant_id
+        for family, ids in families.items()
+        for mutant_id in sorted(ids, key=_hash)[: limits.get(family, 0)]
     ]
 
 
@@ -120,7 +122,7 @@ def told(value: Any, root: str) -> Any:
         for pattern, text in ACCIDENTS:
             value = pattern.sub(text, value)
     elif isinstance(value, list):
-        value = [told(one, root) for one in value]
+        value = [told(part, root) for part in value]
     return value
 
 

@@ -48,8 +48,8 @@ def main() -> int:
     for when in given.when:
         cost = {"fork": 0.0, "replay": 0.0}
         for engine in cost:
-            one, several = (spent(engine, when, count) for count in (1, given.magnitudes))
-            cost[engine] = (several - one) / (given.magnitudes - 1)
+            single, several = (spent(engine, when, count) for count in (1, given.magnitudes))
+            cost[engine] = (several - single) / (given.magnitudes - 1)
         share = cost["fork"] / cost["replay"]
         is_dear |= share > 1 / 3
         print(f"{when}: fork {cost['fork']:.2f} s, replay {cost['replay']:.2f} s, {share:.0%}", flush=True)

@@ -174,7 +174,7 @@ def compare(name: str, engines: Sequence[str], only: set[str]) -> tuple[int, int
         results = {}
         for engine in engines:
             copy = copied(ROOT / "examples" / name, Path(folder).resolve() / engine / name)
-            configure(copy, what, [one for one in what.parameters if one in only])
+            configure(copy, what, [parameter for parameter in what.parameters if parameter in only])
             needed = Facts.of(copy).hints.get("plugins", ())
             results[engine] = campaign(request_for(copy, engine, ["world"], 1, needed))
         seeds = seeds_of(results)

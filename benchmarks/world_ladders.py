@@ -97,7 +97,7 @@ def measured(name: str, copy: Path, only: Sequence[str], jobs: int) -> list[Worl
     what = EXAMPLES[name]
     if not copy.is_dir():
         copied(ROOT / "examples" / name, copy)
-        names = ", ".join(f'"{key}" = "{one}"' for key, one in what.names.items())
+        names = ", ".join(f'"{key}" = "{value}"' for key, value in what.names.items())
         lines = (
             f'tests = ["{what.test}"]',
             "[tool.mutabot.world]",
@@ -131,41 +131,41 @@ def table(found: Sequence[WorldLadder]) -> Iterator[str]:
     """Yield the lines of a table: what is suffered unseen, noticed and lived with, and what happened."""
     yield f"| {' | '.join(HEAD)} |"
     yield f"|{'---|' * len(HEAD)}"
-    for one in found:
-        if one.ends:
-            yield f"| {' | '.join(_row(one))} |"
+    for ladder in found:
+        if ladder.ends:
+            yield f"| {' | '.join(_row(ladder))} |"
 
 
 def without(found: Sequence[WorldLadder]) -> Iterator[str]:
     """Yield what the example has nothing of."""
-    names = list(dict.fromkeys(f"`{one.parameter}`" for one in found if not one.ends))
+    names = list(dict.fromkeys(f"`{ladder.parameter}`" for ladder in found if not ladder.ends))
     if names:
         yield f"The test has nothing of what these disturb: {', '.join(names)}."
         yield ""
 
 
-def _row(one: WorldLadder) -> Iterator[str]:
-    sizes = sorted(one.found)
-    yield f"{one.parameter} {one.direction.replace('-', '−')}".strip()
-    yield f"{sizes[0]:g} to {with_unit(sizes[-1], one.unit)}"
-    yield "none" if one.robust_to is None else with_unit(one.robust_to, one.unit)
-    least, most = (one.unseen[0], one.unseen[-1]) if one.unseen else (0.0, 0.0)
-    span = with_unit(most, one.unit) if least == most else f"{least:g} to {with_unit(most, one.unit)}"
-    yield span if one.unseen else ""
-    some = [with_unit(size, one.unit) for size, end in one.ends.items() if end is WorldEnd.NOTICED]
+def _row(ladder: WorldLadder) -> Iterator[str]:
+    sizes = sorted(ladder.found)
+    yield f"{ladder.parameter} {ladder.direction.replace('-', '−')}".strip()
+    yield f"{sizes[0]:g} to {with_unit(sizes[-1], ladder.unit)}"
+    yield "none" if ladder.robust_to is None else with_unit(ladder.robust_to, ladder.unit)
+    least, most = (ladder.unseen[0], ladder.unseen[-1]) if ladder.unseen else (0.0, 0.0)
+    span = with_unit(most, ladder.unit) if least == most else f"{least:g} to {with_unit(most, ladder.unit)}"
+    yield span if ladder.unseen else ""
+    some = [with_unit(size, ladder.unit) for size, end in ladder.ends.items() if end is WorldEnd.NOTICED]
     never = f"never, but {' and '.join(some)} is" if some else "never"
-    yield never if one.noticed_from is None else with_unit(one.noticed_from, one.unit)
-    yield _happened(one)
+    yield never if ladder.noticed_from is None else with_unit(ladder.noticed_from, ladder.unit)
+    yield _happened(ladder)
 
 
-def _happened(one: WorldLadder) -> str:
+def _happened(ladder: WorldLadder) -> str:
     """What happened at the largest magnitude that is suffered unseen, or at the threshold."""
-    if one.unseen:
-        story = one.story(one.unseen[-1], WorldEnd.UNSEEN)[0]
-    elif one.noticed_from is not None:
-        story = one.story(one.noticed_from, WorldEnd.NOTICED)[0]
+    if ladder.unseen:
+        story = ladder.story(ladder.unseen[-1], WorldEnd.UNSEEN)[0]
+    elif ladder.noticed_from is not None:
+        story = ladder.story(ladder.noticed_from, WorldEnd.NOTICED)[0]
     else:
-        story = one.story(max(one.ends), WorldEnd.LIVED)[0]
+        story = ladder.story(max(ladder.ends), WorldEnd.LIVED)[0]
     # what a monitor read when its condition broke is of no use in a table
     return re.sub(r"(t=[\d.]+ s): time=.*", r"\1", story).replace("|", "\\|") or "nothing differs"
 

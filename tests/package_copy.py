@@ -48,4 +48,4 @@ def python(site: Path, *arguments: str) -> str:
 def mutants(site: Path, project: Path, *arguments: str) -> dict[str, Any]:
     """The mutants that the copy's command line tells, by id."""
     text = python(site, "-m", "mutabot", "-C", str(project), *arguments, "--json")
-    return {one["id"]: one for one in json.loads(text)["mutants"]}
+    return {mutant["id"]: mutant for mutant in json.loads(text)["mutants"]}

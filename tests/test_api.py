@@ -14,7 +14,7 @@ import mutabot.api
 
 SOURCE = Path(mutabot.api.__file__).parents[2]
 MODULES = [import_module(f"mutabot.api.{name}") for name in ("faults", "values", "reports", "processes")]
-PACKAGES = sorted(one.parent.name for one in SOURCE.glob("mutabot_*/__init__.py"))
+PACKAGES = sorted(path.parent.name for path in SOURCE.glob("mutabot_*/__init__.py"))
 
 
 def names(module: ModuleType) -> list[str]:

@@ -73,7 +73,7 @@ def test_imports_go_one_way() -> None:
 
 def test_packages_beside_the_core_import_the_core_and_none_of_each_other() -> None:
     """That the core imports none of them is a rule of the linter (``banned-api`` in pyproject.toml)."""
-    packages = [one.parent for one in SOURCE.parent.glob("mutabot_*/__init__.py")]
+    packages = [path.parent for path in SOURCE.parent.glob("mutabot_*/__init__.py")]
     assert len(packages) == 13
     wrong = [
         f"{file.relative_to(SOURCE.parent)} imports {name}"
@@ -183,7 +183,7 @@ def test_the_baseline_is_changed_by_its_own_room_alone() -> None:
                 changed = [node.target]
             elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
                 changed = [node.func.value] if node.func.attr in _CHANGES else []
-            assert not any(_is_of_baseline(one) for one in changed), f"{file}:{node.lineno}"
+            assert not any(_is_of_baseline(target) for target in changed), f"{file}:{node.lineno}"
 
 
 @pytest.mark.parametrize("text", ["baseline.x.add(1)", "a.baseline.x[1] = 2", "baseline.x += 1"])

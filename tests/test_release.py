@@ -125,9 +125,9 @@ def test_what_pinned_packages_need_is_pinned_as_well() -> None:
     text = (pages.ROOT / "requirements.lock").read_text(encoding="utf-8")
     names = {canonicalize_name(name) for name in re.findall(r"^([\w.-]+)==", text, re.MULTILINE)}
     needed = {
-        (name, canonicalize_name(one.name))
+        (name, canonicalize_name(requirement.name))
         for name in names
-        for one in map(Requirement, metadata.requires(name) or ())
-        if one.marker is None or one.marker.evaluate({"extra": ""})
+        for requirement in map(Requirement, metadata.requires(name) or ())
+        if requirement.marker is None or requirement.marker.evaluate({"extra": ""})
     }
     assert [pair for pair in sorted(needed) if pair[1] not in names] == []

@@ -47,7 +47,7 @@ def main() -> int:
     failed = False
     for name in given.names:
         vocabulary = load_vocabulary([name], Path())
-        packages = sorted({one.module.partition(".")[0] for one in vocabulary.operations})
+        packages = sorted({operation.module.partition(".")[0] for operation in vocabulary.operations})
         missing = [package for package in packages if not _imports(package)]
         if missing:
             print(f"{name}: left out, {', '.join(missing)} is not installed")
@@ -83,9 +83,15 @@ def compare_native(operation: Operation, original: Any) -> Iterator[str]:
     """What is wrong with the signature that a vocabulary gives to a callable which tells none."""
     assert operation.signature is not None
     signature = parse_signature(operation.signature)
-    names = [one.name for one in signature.parameters.values() if one.kind is one.POSITIONAL_OR_KEYWORD]
+    names = [
+        parameter.name
+        for parameter in signature.parameters.values()
+        if parameter.kind is parameter.POSITIONAL_OR_KEYWORD
+    ]
     own = signature_of(original)
-    if own is not None and not any(one.kind is one.VAR_KEYWORD for one in own.parameters.values()):
+    if own is not None and not any(
+        parameter.kind is parameter.VAR_KEYWORD for parameter in own.parameters.values()
+    ):
         real = [name for name in own.parameters if name != "self"]
         if real[: len(names)] != names:
             yield f"its arguments are {real}, not {names}"

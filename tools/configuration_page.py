@@ -102,7 +102,7 @@ def values_of(schema: Mapping[str, Any], whole: Mapping[str, Any]) -> str:
     if schema.get("title") == "Memory":
         return 'text such as `"512 MiB"`, or bytes'
     if "anyOf" in schema:
-        return next(values_of(one, whole) for one in schema["anyOf"] if one.get("type") != "null")
+        return next(values_of(part, whole) for part in schema["anyOf"] if part.get("type") != "null")
     if "enum" in schema:
         return " or ".join(f"`{json.dumps(value)}`" for value in schema["enum"])
     match schema.get("type"):

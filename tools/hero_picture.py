@@ -116,8 +116,8 @@ def main(picture: Path) -> None:
         first, *falling = _shots(MUTANT, (0.0, *_FALLING))
     last = falling.pop()
     image = _with_ghost(last, original)
-    for number, one in enumerate((first, *falling)):
-        image = _blended(image, one.pixels, one.shows(one.box), 0.35 + 0.12 * number)
+    for number, shot in enumerate((first, *falling)):
+        image = _blended(image, shot.pixels, shot.shows(shot.box), 0.35 + 0.12 * number)
     small = image.reshape(HEIGHT, _FINER, WIDTH, _FINER, 3).mean(axis=(1, 3))
     done = Image.fromarray(small.round().clip(0, 255).astype(np.uint8))
     _label(done)
@@ -136,7 +136,7 @@ def _shots(colour: tuple[int, int, int], after: tuple[float, ...]) -> list[Shot]
 
     def watched(gripper: kinova.Gripper, position: float) -> None:
         if cell.gripper.holding():
-            waiting.extend(cell.time + one for one in after)
+            waiting.extend(cell.time + seconds for seconds in after)
         command(gripper, position)
 
     def look() -> None:

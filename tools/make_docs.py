@@ -102,7 +102,7 @@ def page_of_middleware() -> str:
 
 def _operators(*, of_middleware: bool) -> list[Operator]:
     found = (operator(name) for name in names())
-    return [one for one in found if (one.family == MIDDLEWARE) is of_middleware]
+    return [rule for rule in found if (rule.family == MIDDLEWARE) is of_middleware]
 
 
 #: what the sentence on a class of bugs ends with: how many of them studies found
@@ -111,8 +111,11 @@ _STUDIED = re.compile(r": ([^:]+?) are (\d+) of the bugs .*$")
 
 def _studies(operators: list[Operator]) -> str:
     found = (_STUDIED.search(each.rationale) for each in operators)
-    numbers = {one[1]: int(one[2]) for one in found if one}
-    return ", ".join(f"{name} {number}" for name, number in sorted(numbers.items(), key=lambda one: -one[1]))
+    numbers = {match[1]: int(match[2]) for match in found if match}
+    return ", ".join(
+        f"{name} {number}"
+        for name, number in sorted(numbers.items(), key=lambda name_and_number: -name_and_number[1])
+    )
 
 
 def _section(each: Operator) -> Iterator[str]:

@@ -52,9 +52,9 @@ def take(folder: Path, project: Path) -> None:
     line = (campaign.source("mission.py") or "").split("\n").index(LINE) + 1
     wanted = (OPERATOR, line)
     shown = next(
-        one.mutant.number
-        for one in campaign.survivors
-        if (one.mutant.operator, one.mutant.site.span.line) == wanted
+        survivor.mutant.number
+        for survivor in campaign.survivors
+        if (survivor.mutant.operator, survivor.mutant.site.span.line) == wanted
     )
     page_file = (project / "report" / "index.html").as_uri()
     with sync_playwright() as playwright:

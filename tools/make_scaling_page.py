@@ -205,7 +205,7 @@ def page(data: Mapping[str, Any]) -> str:
 
 def row_of(found: Mapping[str, Any], engine: str, workers: int) -> Mapping[str, Any]:
     """What came of one number of workers."""
-    row: Mapping[str, Any] = next(one for one in found[engine] if one["workers"] == workers)
+    row: Mapping[str, Any] = next(known_row for known_row in found[engine] if known_row["workers"] == workers)
     return row
 
 
@@ -228,10 +228,10 @@ def _curve_table(found: Mapping[str, Any]) -> str:
 def _size_table(found: Mapping[str, Any]) -> str:
     rows = [
         (
-            one["name"], f"{one['units']:,}", f"{one['efficiency']:.2f}", percent(one["shares"]["originals"]),
-            percent(one["shares"]["idle"]),
+            row["name"], f"{row['units']:,}", f"{row['efficiency']:.2f}", percent(row["shares"]["originals"]),
+            percent(row["shares"]["idle"]),
         )
-        for one in found["sizes"]
+        for row in found["sizes"]
     ]  # fmt: skip
     heads = (
         "fork parent of a round",
@@ -244,7 +244,9 @@ def _size_table(found: Mapping[str, Any]) -> str:
 
 
 def _baselines(found: Mapping[str, Any]) -> str:
-    return ", ".join(f"{one['hours']:,.1f} h with {one['places']}" for one in found["baseline"])
+    return ", ".join(
+        f"{baseline['hours']:,.1f} h with {baseline['places']}" for baseline in found["baseline"]
+    )
 
 
 def _range(numbers: Sequence[float]) -> str:

@@ -49,8 +49,8 @@ def docstrings(tree: ast.Module) -> list[ast.Expr]:
 
 def import_lines(text: str) -> int:
     """Lines of statements that import."""
-    nodes = [one for one in ast.walk(ast.parse(text)) if isinstance(one, ast.Import | ast.ImportFrom)]
-    return sum(_end(one) - one.lineno + 1 for one in nodes)
+    nodes = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Import | ast.ImportFrom)]
+    return sum(_end(node) - node.lineno + 1 for node in nodes)
 
 
 def _end(node: ast.stmt) -> int:
@@ -125,5 +125,5 @@ def main(folders: list[Path]) -> None:
 if __name__ == "__main__":
     main(
         [Path(name) for name in sys.argv[1:]]
-        or sorted(one.parent for one in (ROOT / "src").glob("*/__init__.py"))
+        or sorted(path.parent for path in (ROOT / "src").glob("*/__init__.py"))
     )

@@ -36,7 +36,7 @@ class Block:
 
 def pages() -> list[str]:
     """The paths of all pages, below ROOT, with slashes."""
-    return sorted({path.relative_to(ROOT).as_posix() for one in PATTERNS for path in ROOT.glob(one)})
+    return sorted({path.relative_to(ROOT).as_posix() for pattern in PATTERNS for path in ROOT.glob(pattern)})
 
 
 def navigation() -> dict[str, list[tuple[str, str]]]:

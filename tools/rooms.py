@@ -83,7 +83,9 @@ def levels(graph: Graph) -> dict[str, int]:
         if room in path:
             raise ValueError(" -> ".join((*path[path.index(room) :], room)))
         if room not in found:
-            found[room] = 1 + max((level(one, (*path, room)) for one in graph[room]), default=-1)
+            found[room] = 1 + max(
+                (level(below_room, (*path, room)) for below_room in graph[room]), default=-1
+            )
         return found[room]
 
     for room in graph:
@@ -93,7 +95,11 @@ def levels(graph: Graph) -> dict[str, int]:
 
 def direct(graph: Graph, room: str) -> set[str]:
     """The rooms that a room imports, without those that stand below another of them."""
-    return {one for one in graph[room] if not any(one in below(graph, other) for other in graph[room])}
+    return {
+        neighbour
+        for neighbour in graph[room]
+        if not any(neighbour in below(graph, other) for other in graph[room])
+    }
 
 
 def below(graph: Graph, room: str) -> set[str]:
@@ -101,10 +107,10 @@ def below(graph: Graph, room: str) -> set[str]:
     found: set[str] = set()
     waiting: list[str] = [*graph[room]]
     while waiting:
-        one = waiting.pop()
-        if one not in found:
-            found.add(one)
-            waiting += graph[one]
+        lowest = waiting.pop()
+        if lowest not in found:
+            found.add(lowest)
+            waiting += graph[lowest]
     return found
 
 

@@ -42,8 +42,11 @@ def cells(mutants: Iterable[Mutant], strengths: Sequence[str]) -> list[list[floa
     None outside the score, and where that is not known.
     """
     return [
-        [_cell(end, noticed, strengths) for end, noticed in zip(one["ends"], one["noticed"], strict=True)]
-        for one in mutants
+        [
+            _cell(end, noticed, strengths)
+            for end, noticed in zip(mutant["ends"], mutant["noticed"], strict=True)
+        ]
+        for mutant in mutants
     ]
 
 
@@ -76,8 +79,8 @@ def is_ordered(mutants: Sequence[Mutant]) -> bool:
 def by_operator(mutants: Iterable[Mutant]) -> dict[str, list[Mutant]]:
     """The mutants of each operator."""
     found: dict[str, list[Mutant]] = defaultdict(list)
-    for one in mutants:
-        found[one["operator"]].append(one)
+    for mutant in mutants:
+        found[mutant["operator"]].append(mutant)
     return dict(found)
 
 
@@ -100,17 +103,17 @@ def mean_over_tasks(values: Sequence[float]) -> tuple[float, float, float] | Non
     return middle, middle - half, middle + half
 
 
-def rank_correlation(one: Sequence[float], other: Sequence[float]) -> tuple[float, Interval | None] | None:
+def rank_correlation(first: Sequence[float], second: Sequence[float]) -> tuple[float, Interval | None] | None:
     """Spearman's, ties with their mean rank, and its 95 % interval.
 
     None if either has no two different values. No interval with less than five pairs or where all agree.
     """
-    if len(one) < 2 or len({*one}) == 1 or len({*other}) == 1:
+    if len(first) < 2 or len({*first}) == 1 or len({*second}) == 1:
         return None
-    rho = correlation(_ranks(one), _ranks(other))
-    if len(one) < 5 or abs(rho) > 1 - 1e-9:
+    rho = correlation(_ranks(first), _ranks(second))
+    if len(first) < 5 or abs(rho) > 1 - 1e-9:
         return rho, None
-    half = _NORMAL * math.sqrt(_FIELLER / (len(one) - 3))
+    half = _NORMAL * math.sqrt(_FIELLER / (len(first) - 3))
     return rho, Interval(math.tanh(math.atanh(rho) - half), math.tanh(math.atanh(rho) + half))
 
 

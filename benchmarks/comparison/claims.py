@@ -79,19 +79,19 @@ def finding(claim: Claim, data: Data, name: str) -> Finding:
     return claim.judge(data, robot, other)
 
 
-def difference(one: Mapping[str, Any], other: Mapping[str, Any]) -> tuple[float, float, float] | None:
+def difference(left: Mapping[str, Any], right: Mapping[str, Any]) -> tuple[float, float, float] | None:
     """One share less another, with the ends of its interval; None where either has no interval."""
-    if one["interval"] is None or other["interval"] is None:
+    if left["interval"] is None or right["interval"] is None:
         return None
-    first, second = one["share"], other["share"]
-    below = math.hypot(first - one["interval"]["low"], other["interval"]["high"] - second)
-    above = math.hypot(one["interval"]["high"] - first, second - other["interval"]["low"])
+    first, second = left["share"], right["share"]
+    below = math.hypot(first - left["interval"]["low"], right["interval"]["high"] - second)
+    above = math.hypot(left["interval"]["high"] - first, second - right["interval"]["low"])
     return first - second, first - second - below, first - second + above
 
 
-def decide(one: Mapping[str, Any], other: Mapping[str, Any]) -> Stance:
+def decide(first: Mapping[str, Any], second: Mapping[str, Any]) -> Stance:
     """For if one share is clearly above the other, against if clearly below."""
-    found = difference(one, other)
+    found = difference(first, second)
     if found is None:
         return Stance.UNDECIDED
     _, low, high = found
@@ -100,9 +100,9 @@ def decide(one: Mapping[str, Any], other: Mapping[str, Any]) -> Stance:
     return Stance.AGAINST if high < 0 else Stance.UNDECIDED
 
 
-def difference_text(one: Mapping[str, Any], other: Mapping[str, Any]) -> str:
+def difference_text(first: Mapping[str, Any], second: Mapping[str, Any]) -> str:
     """``+17.0 (3.0 to 25.0)``, in percentage points."""
-    found = difference(one, other)
+    found = difference(first, second)
     if found is None:
         return "nothing tells how sure the difference is"
     middle, low, high = (f"{100 * number:.1f}".replace("-", "−") for number in found)
@@ -151,7 +151,7 @@ def _uninformative(data: Data, robot: Family, other: Family) -> Finding:
 
 def _beside(share: Mapping[str, Any], ours: Mapping[str, Any]) -> str:
     """Two shares and their difference in words."""
-    told = (f"{one['count']}/{one['of']}" for one in (share, ours))
+    told = (f"{mapping['count']}/{mapping['of']}" for mapping in (share, ours))
     return f"{', robot '.join(told)}: {difference_text(share, ours)}"
 
 

@@ -93,7 +93,7 @@ def _mutants(comparison: FamilyComparison) -> list[dict[str, Any]]:
             "family": result.mutant.family,
             "role": result.mutant.site.role.value,
             "operator": result.mutant.operator,
-            "ends": [end_of(one).value if one is not None else None for one in result.rounds],
+            "ends": [end_of(outcome).value if outcome is not None else None for outcome in result.rounds],
             "trivial": comparison.properties[result.mutant.id].trivial,
             "indistinguishable": comparison.properties[result.mutant.id].indistinguishable,
             "informative": comparison.properties[result.mutant.id].informative,

@@ -94,13 +94,14 @@ class Properties:
 
 def properties_of(rounds: Sequence[Outcome | None]) -> Properties:
     """The properties of one mutant from its outcomes, one per round; None where it has not been run."""
-    known = [one for one in rounds if one is not None]
-    judged = [one for one in known if one.verdict in _JUDGED]
+    known = [outcome for outcome in rounds if outcome is not None]
+    judged = [outcome for outcome in known if outcome.verdict in _JUDGED]
     return Properties(
-        valid=any(one.verdict.is_valid for one in known),
+        valid=any(outcome.verdict.is_valid for outcome in known),
         reached=bool(judged),
         trivial=_is_trivial(judged, everything_run=len(known) == len(rounds)),
-        indistinguishable=bool(judged) and all(end_of(one) is End.INDISTINGUISHABLE for one in judged),
+        indistinguishable=bool(judged)
+        and all(end_of(outcome) is End.INDISTINGUISHABLE for outcome in judged),
     )
 
 
@@ -113,7 +114,7 @@ def noticing_tests(outcome: Outcome) -> frozenset[str]:
 
 
 def _is_trivial(judged: Iterable[Outcome], *, everything_run: bool) -> bool | None:
-    found = [_noticed_by_all(one) for one in judged]
+    found = [_noticed_by_all(outcome) for outcome in judged]
     if False in found:
         return False
     if not everything_run or None in found:

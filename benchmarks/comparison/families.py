@@ -82,12 +82,12 @@ class Cost:
     @classmethod
     def of(cls, outcomes: Collection[Outcome]) -> Cost:
         """That of these outcomes."""
-        simulated = [one.simulated for one in outcomes if one.simulated is not None]
+        simulated = [outcome.simulated for outcome in outcomes if outcome.simulated is not None]
         return cls(
-            wall=math.fsum(one.wall for one in outcomes),
-            cpu=math.fsum(one.cpu for one in outcomes),
+            wall=math.fsum(outcome.wall for outcome in outcomes),
+            cpu=math.fsum(outcome.cpu for outcome in outcomes),
             simulated=math.fsum(simulated) if simulated else None,
-            shared=math.fsum(one.shared or 0.0 for one in outcomes),
+            shared=math.fsum(outcome.shared or 0.0 for outcome in outcomes),
         )
 
 
@@ -165,15 +165,19 @@ class FamilyComparison:
 
 def compare_families(results: Results, without_oracle: Results | None = None) -> FamilyComparison:
     """The comparison of all families in a campaign; ``without_oracle`` is another, of the same mutants."""
-    joint = Redundancy.of({one.mutant.id: one.outcomes for one in results.mutants})
-    homes = {one.mutant.id: _key(one) for one in results.mutants}
+    joint = Redundancy.of({result.mutant.id: result.outcomes for result in results.mutants})
+    homes = {result.mutant.id: _key(result) for result in results.mutants}
     classes = [{homes[mutant] for mutant in members} for members in joint.dominators]
-    properties = {one.mutant.id: properties_of(one.rounds) for one in results.mutants}
+    properties = {result.mutant.id: properties_of(result.rounds) for result in results.mutants}
     scores = {(group.family, group.role): group for group in results.groups}
-    others = {(one.family, one.role): one.scores for one in without_oracle.groups} if without_oracle else {}
+    others = (
+        {(group.family, group.role): group.scores for group in without_oracle.groups}
+        if without_oracle
+        else {}
+    )
 
     def family(key: FamilyRole) -> Family:
-        members = [one for one in results.mutants if _key(one) == key]
+        members = [result for result in results.mutants if _key(result) == key]
         group = scores.get(key)
         return _family(
             key,
@@ -183,7 +187,7 @@ def compare_families(results: Results, without_oracle: Results | None = None) ->
             scores=group.scores if group is not None else RoundScores.of([], results.rounds),
             population=group.population if group is not None else None,
             without_oracle=others.get(key),
-            homes=[one for one in classes if key in one],
+            homes=[members_of_class for members_of_class in classes if key in members_of_class],
         )
 
     return FamilyComparison(
@@ -200,9 +204,9 @@ def compare_families(results: Results, without_oracle: Results | None = None) ->
 
 def _keys(results: Results) -> list[FamilyRole]:
     """Families in the order in which they were asked for, those without mutants too; the program first."""
-    found = {_key(one) for one in results.mutants}
+    found = {_key(result) for result in results.mutants}
     asked = results.meta.get("families") or ()
-    names = dict.fromkeys([*asked, *(one.mutant.family for one in results.mutants)])
+    names = dict.fromkeys([*asked, *(result.mutant.family for result in results.mutants)])
     keys: list[FamilyRole] = []
     for name in names:
         roles = [role for role in Role if (name, role.value) in found]
@@ -225,14 +229,16 @@ def _family(
     without_oracle: RoundScores | None,
     homes: Sequence[set[FamilyRole]],
 ) -> Family:
-    outcomes = [outcome for one in members for outcome in one.outcomes]
-    ends = [[end_of(one) if one is not None else None for one in member.rounds] for member in members]
-    own = [properties[one.mutant.id] for one in members]
+    outcomes = [outcome for member in members for outcome in member.outcomes]
+    ends = [
+        [end_of(outcome) if outcome is not None else None for outcome in member.rounds] for member in members
+    ]
+    own = [properties[member.mutant.id] for member in members]
     return Family(
         name=key[0],
         role=key[1],
         mutants=len(members),
-        places=len({one.mutant.site for one in members}),
+        places=len({member.mutant.site for member in members}),
         planned=len(members) * rounds,
         done=len(outcomes),
         cost=Cost.of(outcomes),
@@ -241,19 +247,19 @@ def _family(
         scores=scores,
         without_oracle=without_oracle,
         population=population,
-        valid=_share_of_mutants(own, lambda one: one.valid),
-        reached=_share_of_mutants(own, lambda one: one.reached),
-        trivial=_share_of_mutants(own, lambda one: one.trivial),
-        indistinguishable=_share_of_mutants(own, lambda one: one.indistinguishable),
-        informative=_share_of_mutants(own, lambda one: one.informative),
-        redundancy=Redundancy.of({one.mutant.id: one.outcomes for one in members}),
+        valid=_share_of_mutants(own, lambda facts: facts.valid),
+        reached=_share_of_mutants(own, lambda facts: facts.reached),
+        trivial=_share_of_mutants(own, lambda facts: facts.trivial),
+        indistinguishable=_share_of_mutants(own, lambda facts: facts.indistinguishable),
+        informative=_share_of_mutants(own, lambda facts: facts.informative),
+        redundancy=Redundancy.of({member.mutant.id: member.outcomes for member in members}),
         joint=len(homes),
-        alone=sum(one == {key} for one in homes),
+        alone=sum(home == {key} for home in homes),
     )
 
 
 def _share_of_mutants(own: Iterable[Properties], answer: Callable[[Properties], bool | None]) -> Share:
-    return Share.of_mutants(answer(one) for one in own)
+    return Share.of_mutants(answer(facts) for facts in own)
 
 
 def _share_of_outcomes(ends: Sequence[Sequence[End | None]], those: Collection[End]) -> Share:

@@ -126,7 +126,7 @@ def _claims(comparisons: Mapping[str, Data]) -> Iterator[str]:
     for claim in CLAIMS:
         for family in CONVENTIONAL:
             found = (finding(claim, data, family) for data in comparisons.values())
-            yield _row(claim.name, family, *(_shown(one) for one in found))
+            yield _row(claim.name, family, *(_shown(judged) for judged in found))
     yield ""
 
 
@@ -186,11 +186,11 @@ def _seconds(seconds: float | None) -> str:
     return "–" if seconds is None else f"{seconds:.1f}"
 
 
-def _shown(one: Finding) -> str:
-    if one.stance is Stance.UNKNOWN:
-        return one.stance.value
-    word = one.stance.value if one.stance is Stance.UNDECIDED else f"**{one.stance}**"
-    return f"{word}: {one.sentence}"
+def _shown(judged: Finding) -> str:
+    if judged.stance is Stance.UNKNOWN:
+        return judged.stance.value
+    word = judged.stance.value if judged.stance is Stance.UNDECIDED else f"**{judged.stance}**"
+    return f"{word}: {judged.sentence}"
 
 
 def _row(*cells: str) -> str:

@@ -52,9 +52,12 @@ class Redundancy:
     @classmethod
     def of(cls, mutants: Mapping[str, Sequence[Outcome]]) -> Redundancy:
         """That of these mutants, given the outcomes of each."""
-        killed = {name: [one for one in those if one.verdict.is_killed] for name, those in mutants.items()}
+        killed = {
+            name: [outcome for outcome in those if outcome.verdict.is_killed]
+            for name, those in mutants.items()
+        }
         killed = {name: those for name, those in killed.items() if those}
-        known = {name: those for name, those in killed.items() if all(one.complete for one in those)}
+        known = {name: those for name, those in killed.items() if all(outcome.complete for outcome in those)}
         return cls(
             alike=tuple(group for group in _grouped_by_manner(known) if len(group) > 1),
             dominators=dominators({name: killers_of(those) for name, those in known.items()}),
@@ -65,7 +68,7 @@ class Redundancy:
 
 def killers_of(outcomes: Iterable[Outcome]) -> frozenset[Killer]:
     """The tests, each with its round, that kill a mutant."""
-    return frozenset((test, one.round) for one in outcomes for test in noticing_tests(one))
+    return frozenset((test, outcome.round) for outcome in outcomes for test in noticing_tests(outcome))
 
 
 def dominators(killers: Mapping[M, frozenset[Killer]]) -> tuple[tuple[M, ...], ...]:
@@ -91,8 +94,14 @@ def _grouped_by_manner(mutants: Mapping[str, Sequence[Outcome]]) -> list[tuple[s
 
 def _manner(outcomes: Iterable[Outcome]) -> Iterator[Hashable]:
     """How a mutant dies, test by test and round by round."""
-    for one in outcomes:
-        if one.test not in {kill.test for kill in one.kills}:  # a time-out
-            yield one.round, one.test, one.verdict, one.exception, without_accidents(one.message)
-        for kill in one.kills:
-            yield one.round, kill.test, kill.by, kill.exception, without_accidents(kill.message)
+    for outcome in outcomes:
+        if outcome.test not in {kill.test for kill in outcome.kills}:  # a time-out
+            yield (
+                outcome.round,
+                outcome.test,
+                outcome.verdict,
+                outcome.exception,
+                without_accidents(outcome.message),
+            )
+        for kill in outcome.kills:
+            yield outcome.round, kill.test, kill.by, kill.exception, without_accidents(kill.message)

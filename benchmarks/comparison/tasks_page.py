@@ -103,8 +103,8 @@ def page(tasks: Mapping[str, Task]) -> str:
 
 def mutants_of(task: Task, family: str | None = None) -> list[Mapping[str, Any]]:
     """The mutants of a task, of one family or of all."""
-    campaigns = [one for name, one in task["campaigns"].items() if family in (None, name)]
-    return [mutant for one in campaigns for mutant in one["mutants"]]
+    campaigns = [campaign for name, campaign in task["campaigns"].items() if family in (None, name)]
+    return [mutant for campaign in campaigns for mutant in campaign["mutants"]]
 
 
 def share_of(task: Task, family: str, key: str) -> Mapping[str, Any] | None:
@@ -128,19 +128,19 @@ def with_suites(tasks: Mapping[str, Task]) -> dict[str, Task]:
     return {
         name: task
         for name, task in tasks.items()
-        if any(noticed == "strong" for one in mutants_of(task) for noticed in one["noticed"])
+        if any(noticed == "strong" for mutant in mutants_of(task) for noticed in mutant["noticed"])
     }
 
 
 def _in_short(tasks: Mapping[str, Task]) -> Iterator[str]:
     yield "## In short\n"
     for key, name, _ in PARTS:
-        by_stance: dict[Stance, list[str]] = {one: [] for one in Stance}
+        by_stance: dict[Stance, list[str]] = {kind: [] for kind in Stance}
         for task_name, task in tasks.items():
             if (stance := _stance(task, key)) is not None:
                 by_stance[stance].append(task_name)
         more, less, open_ = (
-            ", ".join(by_stance[one]) or "no task" for one in (Stance.FOR, Stance.AGAINST, Stance.UNDECIDED)
+            ", ".join(by_stance[kind]) or "no task" for kind in (Stance.FOR, Stance.AGAINST, Stance.UNDECIDED)
         )
         yield (
             f"- Conventional mutants are *{name}* more often than robot ones in {more},\n"
@@ -173,7 +173,7 @@ def _campaigns(tasks: Mapping[str, Task]) -> Iterator[str]:
     for name, task in tasks.items():
         meta = next(iter(task["campaigns"].values()))["meta"]
         counts = [_drawn(task["campaigns"].get(family)) for family in (ROBOT, TEXT)]
-        cpu = sum(one["families"]["cost"]["cpu"] for one in task["campaigns"].values())
+        cpu = sum(campaign["families"]["cost"]["cpu"] for campaign in task["campaigns"].values())
         yield f"| {name} | {meta['rounds']}, {meta['seed']} | {' | '.join(counts)} | {cpu:.0f} s |"
     missing = [name for name in ORDER if name not in tasks]
     yield f"\nNot run: {', '.join(missing)}.\n" if missing else ""
@@ -252,7 +252,7 @@ def _operators(tasks: Mapping[str, Task]) -> Iterator[str]:
     yield OF_OPERATORS
     yield "| operator | mutants | weak | only medium | only strong | none | told apart |"
     yield "|---|---:|---:|---:|---:|---:|---:|"
-    every = [one for task in with_suites(tasks).values() for one in mutants_of(task)]
+    every = [mutant for task in with_suites(tasks).values() for mutant in mutants_of(task)]
     rows = []
     for operator, those in by_operator(every).items():
         parts = [_mean(those, [strength]) for strength in STRENGTHS]
@@ -295,10 +295,10 @@ def _correlations(tasks: Mapping[str, Task], family: str) -> list[tuple[str, int
     """Of each pair of tasks: its name, how many operators have a score in both, and the correlation."""
     own = {name: operator_scores(mutants_of(task, family), LEAST) for name, task in tasks.items()}
     found = []
-    for one, other in combinations(own, 2):
-        both = [name for name in own[one] if name in own[other]]
-        ranks = rank_correlation([own[one][name] for name in both], [own[other][name] for name in both])
-        found.append((f"{one}, {other}", len(both), ranks if len(both) > 2 else None))
+    for first, second in combinations(own, 2):
+        both = [name for name in own[first] if name in own[second]]
+        ranks = rank_correlation([own[first][name] for name in both], [own[second][name] for name in both])
+        found.append((f"{first}, {second}", len(both), ranks if len(both) > 2 else None))
     return found
 
 

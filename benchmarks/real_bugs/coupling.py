@@ -67,9 +67,11 @@ def main() -> int:
     if given.read is not None:
         programs = read(given.read)
     else:
-        names = given.names or sorted(one.name for one in PROGRAMS.iterdir() if (one / "program.py").exists())
+        names = given.names or sorted(
+            path.name for path in PROGRAMS.iterdir() if (path / "program.py").exists()
+        )
         with multiprocessing.get_context("fork").Pool(given.jobs, maxtasksperchild=1) as pool:
-            programs = pool.starmap(gather, [(one, given.sample) for one in names], chunksize=1)
+            programs = pool.starmap(gather, [(name, given.sample) for name in names], chunksize=1)
     if given.json is not None:
         write(given.json, programs)
     for part in (of_suites, of_parts, of_coupling, of_operators, of_minimal):
@@ -82,13 +84,13 @@ def of_suites(programs: Sequence[Found]) -> Iterable[str]:
     yield f"| suite | bugs | {' | '.join(FAMILIES)} |"
     yield "|---" * (2 + len(FAMILIES)) + "|"
     for number, name in enumerate(STRENGTHS):
-        suites = tuple(f"test_{one}.py" for one in STRENGTHS[: number + 1])
+        suites = tuple(f"test_{strength}.py" for strength in STRENGTHS[: number + 1])
         shares = []
         for family in (BUGS, *FAMILIES):
             caught = [
                 any(suite in test for test in kills for suite in suites)
-                for one in programs
-                for kills in one.kills((family,))
+                for program in programs
+                for kills in program.kills((family,))
             ]
             shares.append(f"{sum(caught)} of {len(caught)} = {100 * fmean(caught or [0]):.0f} %")
         yield f"| {name} | {' | '.join(shares)} |"
@@ -108,35 +110,35 @@ class Parts:
         draw = random.Random(SEED)
         size = max(2, round(share * len(found.tests)))
         tests = tuple(frozenset(draw.sample(found.tests, size)) for _ in range(PARTS))
-        return cls(found, tests, tuple(noticed(found.kills((BUGS,)), one) for one in tests))
+        return cls(found, tests, tuple(noticed(found.kills((BUGS,)), test) for test in tests))
 
     def correlation(self, score: Callable[[frozenset[str]], float]) -> float:
         """Return the rank correlation of a score of the parts with the bugs that they catch."""
-        return spearman([score(one) for one in self.tests], self.bugs)
+        return spearman([score(test) for test in self.tests], self.bugs)
 
 
 def of_parts(programs: Sequence[Found]) -> Iterable[str]:
     """Whether parts that kill more mutants, or cover more lines, catch more bugs."""
-    quarter, half = ([Parts.of(one, share) for one in programs] for share in (0.25, 0.5))
+    quarter, half = ([Parts.of(program, share) for program in programs] for share in (0.25, 0.5))
     by = {name: (_correlations(quarter, own), _correlations(half, own)) for name, own in GROUPS.items()}
     by[LINES] = (
-        [one.correlation(one.found.coverage) for one in quarter],
-        [one.correlation(one.found.coverage) for one in half],
+        [parts.correlation(parts.found.coverage) for parts in quarter],
+        [parts.correlation(parts.found.coverage) for parts in half],
     )
     yield "| score | a quarter of the tests | a half | programs with a positive correlation (half) |"
     yield "|---|---|---|---|"
     for name, (of_quarter, of_half) in by.items():
-        positive = sum(one > 0 for one in of_half)
+        positive = sum(value > 0 for value in of_half)
         yield f"| {name} | {_interval(of_quarter)} | {_interval(of_half)} | {positive} of {len(of_half)} |"
     yield from ("", "| difference | a quarter of the tests | a half |", "|---|---|---|")
-    for one, other in COMPARED:
-        pairs = zip(by[one], by[other], strict=True)
+    for first, second in COMPARED:
+        pairs = zip(by[first], by[second], strict=True)
         gaps = [[a - b for a, b in zip(*pair, strict=True)] for pair in pairs]
-        yield f"| {one} – {other} | {' | '.join(map(_interval, gaps))} |"
+        yield f"| {first} – {second} | {' | '.join(map(_interval, gaps))} |"
 
 
 def _correlations(parts: Iterable[Parts], families: tuple[str, ...]) -> list[float]:
-    return [_correlation(one, one.found.kills(families)) for one in parts]
+    return [_correlation(part, part.found.kills(families)) for part in parts]
 
 
 def _correlation(part: Parts, kills: Sequence[frozenset[str]]) -> float:
@@ -149,9 +151,10 @@ def of_coupling(programs: Sequence[Found]) -> Iterable[str]:
     yield "|---|---|"
     for name, families in GROUPS.items():
         by_program = [
-            [tests in one.kills(families) for tests in one.kills((BUGS,)) if tests] for one in programs
+            [tests in program.kills(families) for tests in program.kills((BUGS,)) if tests]
+            for program in programs
         ]
-        rows = [one for one in by_program if one]
+        rows = [row for row in by_program if row]
         low, high = interval(rows, _share)
         count, size = sum(map(sum, rows)), sum(map(len, rows))
         share = f"{count} of {size} = {100 * count / size:.0f} %"
@@ -166,9 +169,9 @@ def of_operators(programs: Sequence[Found]) -> Iterable[str]:
     """Which operators' kills go with bugs caught."""
     yield "| operator | mutants | rank correlation (half) | killed by exactly the tests that catch a bug |"
     yield "|---|---|---|---|"
-    half = [Parts.of(one, 0.5) for one in programs]
+    half = [Parts.of(program, 0.5) for program in programs]
     rows = []
-    names = {one.operator for found in programs for one in found.mutants if one.operator}
+    names = {mutant.operator for found in programs for mutant in found.mutants if mutant.operator}
     for name in sorted(names):
         having = [part for part in half if part.found.kills_of(name)]
         kills = [(part, tests) for part in having for tests in part.found.kills_of(name)]
@@ -186,7 +189,7 @@ def of_minimal(programs: Sequence[Found]) -> Iterable[str]:
     yield "| family | mutants | killed | dominators |"
     yield "|---|---|---|---|"
     for name, families in GROUPS.items():
-        kills = [one.kills(families) for one in programs]
+        kills = [program.kills(families) for program in programs]
         killed = sum(bool(tests) for row in kills for tests in row)
         left = sum(len(dominators(_with_rounds(row))) for row in kills)
         yield f"| {name} | {sum(map(len, kills))} | {killed} | {left} |"
@@ -198,7 +201,7 @@ def _with_rounds(kills: Sequence[frozenset[str]]) -> dict[int, frozenset[tuple[s
 
 def noticed(kills: Sequence[frozenset[str]], tests: frozenset[str]) -> float:
     """Return the share of bugs or mutants that these tests notice; 0 if there are none."""
-    return sum(not one.isdisjoint(tests) for one in kills) / len(kills) if kills else 0.0
+    return sum(not kill.isdisjoint(tests) for kill in kills) / len(kills) if kills else 0.0
 
 
 def interval(rows: Sequence[T], mean: Callable[[Sequence[T]], float]) -> tuple[float, float]:
@@ -213,10 +216,10 @@ def _interval(values: Sequence[float]) -> str:
     return f"{fmean(values):.2f} ({low:.2f} to {high:.2f})"
 
 
-def spearman(one: Sequence[float], other: Sequence[float]) -> float:
+def spearman(left: Sequence[float], right: Sequence[float]) -> float:
     """Return the rank correlation of two rows; 0 if all values of a row are equal."""
-    first, second = _ranks(one), _ranks(other)
-    middle = (len(one) + 1) / 2
+    first, second = _ranks(left), _ranks(right)
+    middle = (len(left) + 1) / 2
     spread = [sum((rank - middle) ** 2 for rank in ranks) ** 0.5 for ranks in (first, second)]
     product = sum((a - middle) * (b - middle) for a, b in zip(first, second, strict=True))
     return product / (spread[0] * spread[1]) if all(spread) else 0.0

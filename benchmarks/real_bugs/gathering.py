@@ -78,18 +78,22 @@ class Found:
     def coverage(self, tests: Kills) -> float:
         """Return the share of the lines that all tests reach that these do."""
         of_all = frozenset().union(*self.lines.values())
-        return len(frozenset().union(*(self.lines[one] for one in tests))) / len(of_all)
+        return len(frozenset().union(*(self.lines[test] for test in tests))) / len(of_all)
 
     def kills(self, families: tuple[str, ...]) -> tuple[Kills, ...]:
         """The tests that notice each bug or mutant of these families that counts."""
         if families not in self._kills:
-            counting = (one for one in self.mutants if one.family in families and one.end != REFUSED)
-            self._kills[families] = tuple(one.by for one in counting)
+            counting = (
+                mutant for mutant in self.mutants if mutant.family in families and mutant.end != REFUSED
+            )
+            self._kills[families] = tuple(noticed.by for noticed in counting)
         return self._kills[families]
 
     def kills_of(self, operator: str) -> tuple[Kills, ...]:
         """The tests that notice each mutant of an operator that counts."""
-        return tuple(one.by for one in self.mutants if one.operator == operator and one.end != REFUSED)
+        return tuple(
+            mutant.by for mutant in self.mutants if mutant.operator == operator and mutant.end != REFUSED
+        )
 
 
 def gather(name: str, sample: int | None = None) -> Found:
@@ -106,22 +110,24 @@ def of_text(name: str, sample: int | None = None) -> Found:
     lines = {test: frozenset(those) for test, those in suite.lines().items()}
     found = Found(name, [test for test, _ in suite.tests()], lines)
     variants = [*suite.variants(OF_TEXT)]
-    bugs, mutants = ([one for one in variants if (one.family == BUGS) is is_bug] for is_bug in (True, False))
+    bugs, mutants = (
+        [variant for variant in variants if (variant.family == BUGS) is is_bug] for is_bug in (True, False)
+    )
     if sample is not None:
         mutants = Random(name).sample(mutants, min(sample, len(mutants)))
-    found.mutants += [_noticed(suite, one) for one in (*bugs, *mutants)]
+    found.mutants += [_noticed(suite, bug) for bug in (*bugs, *mutants)]
     return found
 
 
-def _noticed(suite: Suite, one: Variant) -> Noticed:
-    failures = in_fork(lambda: suite.failures(one.text))
+def _noticed(suite: Suite, variant: Variant) -> Noticed:
+    failures = in_fork(lambda: suite.failures(variant.text))
     is_different = failures.pop(PROBE, None) is not None
     if failures:
-        is_senseless = one.family != BUGS and _SENSELESS.issuperset(failures.values())
+        is_senseless = variant.family != BUGS and _SENSELESS.issuperset(failures.values())
         end = STILLBORN if is_senseless else KILLED
     else:
         end = DIFFERS if is_different else SAME
-    return Noticed(one.family, one.operator, one.what, end, frozenset(failures))
+    return Noticed(variant.family, variant.operator, variant.what, end, frozenset(failures))
 
 
 def of_calls(name: str, sample: int | None = None) -> list[Noticed]:
@@ -140,30 +146,30 @@ def of_calls(name: str, sample: int | None = None) -> list[Noticed]:
 def judged(results: Results) -> list[Noticed]:
     """The mutants of calls of a campaign with every test that stand in the program."""
     found = []
-    for one in results.mutants:
-        (outcome,) = one.outcomes
+    for result in results.mutants:
+        (outcome,) = result.outcomes
         by = frozenset(kill.test for kill in outcome.kills)
         end = REFUSED if outcome.verdict is Verdict.INVALID else KILLED if by else SAME
         is_judged = outcome.verdict not in (Verdict.ERROR, Verdict.TIMEOUT) or by
-        if one.mutant.family in OF_CALLS and one.mutant.site.role is Role.PROGRAM and is_judged:
-            what = f"{one.mutant.site.span.line}: {one.mutant.description}"
-            found.append(Noticed(one.mutant.family, one.mutant.operator, what, end, by))
+        if result.mutant.family in OF_CALLS and result.mutant.site.role is Role.PROGRAM and is_judged:
+            what = f"{result.mutant.site.span.line}: {result.mutant.description}"
+            found.append(Noticed(result.mutant.family, result.mutant.operator, what, end, by))
     return found
 
 
 def write(file: Path, programs: Iterable[Found]) -> None:
     """Write who notices what: tests by their numbers, lines as they are."""
     lines = []
-    for one in programs:
-        numbers = {test: number for number, test in enumerate(one.tests)}
-        head = {"tests": one.tests, "lines": [sorted(one.lines[test]) for test in one.tests]}
+    for program in programs:
+        numbers = {test: number for number, test in enumerate(program.tests)}
+        head = {"tests": program.tests, "lines": [sorted(program.lines[test]) for test in program.tests]}
         rows = [
             [each.family, each.operator, each.what, each.end, sorted(numbers[test] for test in each.by)]
-            for each in one.mutants
+            for each in program.mutants
         ]
         shown = ",\n".join(json.dumps(row, ensure_ascii=False, separators=(",", ":")) for row in rows)
         text = json.dumps(head, ensure_ascii=False, separators=(",", ":"))
-        lines.append(f'{json.dumps(one.name)}: {text[:-1]},"mutants":[\n{shown}\n]}}')
+        lines.append(f'{json.dumps(program.name)}: {text[:-1]},"mutants":[\n{shown}\n]}}')
     file.write_text("{\n" + ",\n".join(lines) + "\n}\n", encoding="utf-8")
 
 

@@ -177,7 +177,7 @@ class Suite:
         seen = hook.sightings.seen()
         compiling.steps.remove(hook)
         original = Original(
-            text={0: TextSeen(sightings=seen, reached={"all": tuple(one.place for one in seen)})}
+            text={0: TextSeen(sightings=seen, reached={"all": tuple(sighting.place for sighting in seen)})}
         )
         return refine(texts, original, rules)[0]
 
@@ -188,10 +188,13 @@ class Suite:
             yield Variant("patch", "", f"{file.stem}: {patch.title}", patch.files[0].after.decode())
         for text in self.texts(families):
             for place in text.places:
-                for one in place.alternatives:
-                    what = f"{place.span.line}: {place.text} → {one.text}"
+                for alternative in place.alternatives:
+                    what = f"{place.span.line}: {place.text} → {alternative.text}"
                     yield Variant(
-                        one.family, one.operator, what, _spliced(self.source, place.extent, one.text)
+                        alternative.family,
+                        alternative.operator,
+                        what,
+                        _spliced(self.source, place.extent, alternative.text),
                     )
 
 
@@ -251,7 +254,7 @@ def _parameters(function: Any) -> list[dict[str, Any]]:
     for mark in getattr(function, "pytestmark", ()):
         if mark.name == "parametrize":
             given, rows = mark.args
-            keys = [one.strip() for one in given.split(",")] if isinstance(given, str) else list(given)
+            keys = [name.strip() for name in given.split(",")] if isinstance(given, str) else list(given)
             return [dict(zip(keys, row if len(keys) > 1 else (row,), strict=True)) for row in rows]
     return [{}]
 
@@ -281,7 +284,7 @@ def shown(value: object) -> str:
     if isinstance(value, list | tuple):
         return "[" + ", ".join(map(shown, value)) + "]"
     if isinstance(value, dict):
-        return "{" + ", ".join(f"{key}: {shown(one)}" for key, one in value.items()) + "}"
+        return "{" + ", ".join(f"{key}: {shown(part)}" for key, part in value.items()) + "}"
     return repr(value)
 
 

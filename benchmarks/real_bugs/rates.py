@@ -59,10 +59,10 @@ class Rate:
 def frequencies(bugs: Iterable[Bug]) -> Counter[str]:
     """Return how many bugs each operator makes, exactly or nearly; a bug counts for each that makes it."""
     found: Counter[str] = Counter()
-    for one in bugs:
-        by = set(one.get("robot_by", ())) if one["robot"] in "EM" else set[str]()
-        by |= {one["conventional_by"]} if one["conventional"] in "EM" else set()
-        by |= {one["now_by"]} if "now" in one else set()
+    for bug in bugs:
+        by = set(bug.get("robot_by", ())) if bug["robot"] in "EM" else set[str]()
+        by |= {bug["conventional_by"]} if bug["conventional"] in "EM" else set()
+        by |= {bug["now_by"]} if "now" in bug else set()
         found.update(by)
     return found
 
@@ -71,15 +71,17 @@ def rates(programs: Sequence[Found], bugs: Iterable[Bug]) -> list[Rate]:
     """Return the operators that have mutants in these programs, the most frequent first."""
     frequent = frequencies(bugs)
     found = []
-    for family, operator in {(one.family, one.operator) for each in programs for one in each.mutants}:
+    for family, operator in {
+        (mutant.family, mutant.operator) for each in programs for mutant in each.mutants
+    }:
         if family == BUGS:
             continue
-        own = [[one.end for one in each.mutants if one.operator == operator] for each in programs]
+        own = [[mutant.end for mutant in each.mutants if mutant.operator == operator] for each in programs]
         counts = Counter(end for ends in own for end in ends)
         ends = (counts[REFUSED], counts[STILLBORN], counts[SAME])
         is_in = sum(map(bool, own))
         found.append(Rate(family, operator, frequent[operator], counts.total(), is_in, ends))
-    return sorted(found, key=lambda one: (-one.bugs, one.operator))
+    return sorted(found, key=lambda rate: (-rate.bugs, rate.operator))
 
 
 def main() -> int:
@@ -87,11 +89,11 @@ def main() -> int:
     found = rates(read(DATA), silent())
     print("| operator | bugs | mutants (programs) | refused | stillborn | equivalent | useless | common |")
     print("|---|---|---|---|---|---|---|---|")
-    for one in found:
-        counts = f"{one.mutants} ({one.programs}) | {' | '.join(map(str, one.ends))}"
-        ending = f"{100 * one.useless:.0f} % | {'yes' if one.is_common else 'no'}"
-        print(f"| {one.operator} | {one.bugs} | {counts} | {ending} |")
-    print(f"\ncommon: {', '.join(sorted(one.operator for one in found if one.is_common))}")
+    for rate in found:
+        counts = f"{rate.mutants} ({rate.programs}) | {' | '.join(map(str, rate.ends))}"
+        ending = f"{100 * rate.useless:.0f} % | {'yes' if rate.is_common else 'no'}"
+        print(f"| {rate.operator} | {rate.bugs} | {counts} | {ending} |")
+    print(f"\ncommon: {', '.join(sorted(common.operator for common in found if common.is_common))}")
     return 0
 
 

@@ -22,7 +22,7 @@ Bug = dict[str, Any]
 
 def silent(file: Path = READING) -> list[Bug]:
     """Return the bugs that are no plain crash."""
-    return [one for one in tomllib.loads(file.read_text(encoding="utf-8"))["bug"] if one["class"] != _CRASH]
+    return [bug for bug in tomllib.loads(file.read_text(encoding="utf-8"))["bug"] if bug["class"] != _CRASH]
 
 
 def now(bug: Bug) -> str:
@@ -42,9 +42,9 @@ def share(hold: Sequence[bool]) -> str:
 def by_operator(bugs: Sequence[Bug]) -> dict[str, Counter[str]]:
     """Return how many bugs each operator of family bugs plants, by how well: E or M."""
     found: dict[str, Counter[str]] = {}
-    for one in bugs:
-        if "now" in one:
-            found.setdefault(one["now_by"], Counter())[one["now"]] += 1
+    for bug in bugs:
+        if "now" in bug:
+            found.setdefault(bug["now_by"], Counter())[bug["now"]] += 1
     return found
 
 
@@ -53,19 +53,21 @@ def main() -> int:
     bugs = silent()
     print(f"| {len(bugs)} silent bugs | exact | exact or near |\n|---|---|---|")
     letters = {
-        "robot operators": [str(one["robot"]) for one in bugs],
-        "robot operators and family `bugs`": [now(one) for one in bugs],
-        "conventional operators": [str(one["conventional"]) for one in bugs],
-        "all three": [min(now(one), str(one["conventional"])) for one in bugs],  # E is before M
+        "robot operators": [str(bug["robot"]) for bug in bugs],
+        "robot operators and family `bugs`": [now(bug) for bug in bugs],
+        "conventional operators": [str(bug["conventional"]) for bug in bugs],
+        "all three": [min(now(bug), str(bug["conventional"])) for bug in bugs],  # E is before M
     }
     for name, found in letters.items():
         print(
-            f"| {name} | {share([one == 'E' for one in found])} | {share([one in 'EM' for one in found])} |"
+            f"| {name} | {share([end == 'E' for end in found])} | {share([end in 'EM' for end in found])} |"
         )
     print("\n| operator | exact | near | exact, and by no conventional operator |\n|---|---|---|---|")
-    for name, counts in sorted(by_operator(bugs).items(), key=lambda one: -one[1]["E"]):
-        alone = [one for one in bugs if one.get("now_by") == name and one["now"] == "E"]
-        own = sum(one["conventional"] != "E" for one in alone)
+    for name, counts in sorted(
+        by_operator(bugs).items(), key=lambda operator_and_counts: -operator_and_counts[1]["E"]
+    ):
+        alone = [bug for bug in bugs if bug.get("now_by") == name and bug["now"] == "E"]
+        own = sum(bug["conventional"] != "E" for bug in alone)
         print(f"| {name} | {counts['E']} | {counts['M']} | {own} |")
     return 0
 

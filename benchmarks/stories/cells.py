@@ -61,9 +61,9 @@ class Watched:
         """The tools of the robots."""
         return [name for name in self.poses if name not in self.cell["edges"]]
 
-    def touches(self, one: str, other: str) -> Truth:
+    def touches(self, first: str, second: str) -> Truth:
         """Whether two touch, per tick."""
-        pair = tuple(sorted((one, other)))
+        pair = tuple(sorted((first, second)))
         return np.array([pair in now for now in self.cell["touching"]])
 
     @cached_property
@@ -73,7 +73,7 @@ class Watched:
 
     def partners(self, part: str) -> tuple[Truth, dict[str, Truth]]:
         """Whether a robot touches a part, per tick, and what else does, by its name."""
-        others = {next(one for one in pair if one != part) for pair in self.pairs if part in pair}
+        others = {next(member for member in pair if member != part) for pair in self.pairs if part in pair}
         held = np.zeros(len(self.times), dtype=bool)
         rest = {}
         for other in sorted(others):
@@ -141,9 +141,9 @@ class Watched:
         ways: Array = np.linalg.norm(points[2:] - points[:-2], axis=1)
         return ways / (self.times[2:] - self.times[:-2])
 
-    def first_touch(self, one: str, other: str) -> float | None:
+    def first_touch(self, first: str, second: str) -> float | None:
         """When two touch first, s."""
-        found = np.flatnonzero(self.touches(one, other))
+        found = np.flatnonzero(self.touches(first, second))
         return float(self.times[found[0]]) if len(found) else None
 
     def starts(self, name: str) -> Array:
@@ -171,9 +171,9 @@ def turned_aside(turns: Array, known: Array) -> float:
     return float(np.degrees(2.0 * np.arccos(min(1.0, float(nearest.min())))))
 
 
-def angle(one: Array, other: Array) -> float:
+def angle(first: Array, second: Array) -> float:
     """Between two orientations, deg."""
-    return float(np.degrees(2.0 * np.arccos(min(1.0, abs(float(one @ other))))))
+    return float(np.degrees(2.0 * np.arccos(min(1.0, abs(float(first @ second))))))
 
 
 def _bridged(found: Truth, times: Array, gap: float = FLICKER) -> Truth:

@@ -140,14 +140,14 @@ class Runs:
     def _delays(self) -> list[float]:
         delays = [float(self.mutant.times[-1] - self.original.times[-1])]
         for tool in self.original.tools:
-            one, other = self.original.starts(tool), self.mutant.starts(tool)
-            delays += (other - one).tolist() if len(one) == len(other) else []
+            before, after = self.original.starts(tool), self.mutant.starts(tool)
+            delays += (after - before).tolist() if len(before) == len(after) else []
         return delays
 
     def _same_world(self) -> Iterator[str]:
-        for name, one in self.original.poses.items():
+        for name, pose in self.original.poses.items():
             other = self.mutant.poses[name]
-            far = max(float(np.linalg.norm(one[-1, :3] - other[-1, :3])), aside(other[:, :3], one[:, :3]))
+            far = max(float(np.linalg.norm(pose[-1, :3] - other[-1, :3])), aside(other[:, :3], pose[:, :3]))
             if far > SAME:
                 yield f"{name} is {far:.4f} m away"
 
@@ -155,16 +155,16 @@ class Runs:
         """How far from its place or value it ended."""
         name, far = told["part"], told["end"]
         if name in self.original.poses:
-            one, other = self.original.poses[name][-1], self.mutant.poses[name][-1]
-            yield from off("distance", far, float(np.linalg.norm(one[:3] - other[:3])), 0.002, 0.05)
+            before, after = self.original.poses[name][-1], self.mutant.poses[name][-1]
+            yield from off("distance", far, float(np.linalg.norm(before[:3] - after[:3])), 0.002, 0.05)
         else:
             values = self.original.values[name][-1] - self.mutant.values[name][-1]
             yield from off("difference", far, abs(float(values)), 1e-3, 0.05)
 
     def ended_turned(self, told: Told) -> Iterator[str]:
         """By which angle it ended turned."""
-        one, other = (cell.poses[told["part"]][-1, 3:] for cell in (self.original, self.mutant))
-        yield from off("angle", told["far"], angle(one, other), 1.5, 0.06)
+        before, after = (cell.poses[told["part"]][-1, 3:] for cell in (self.original, self.mutant))
+        yield from off("angle", told["far"], angle(before, after), 1.5, 0.06)
 
     def left(self, told: Told) -> Iterator[str]:
         """How far it left its path, and where it ended."""
@@ -182,13 +182,15 @@ class Runs:
 
     def _path(self, name: str, far: str) -> Iterator[str]:
         true = aside(self.mutant.poses[name][:, :3], self.original.poses[name][:, :3])
-        falls = name in self.mutant.parts and any(one.fall > FALLS for one in self.mutant.releases(name))
+        falls = name in self.mutant.parts and any(
+            release.fall > FALLS for release in self.mutant.releases(name)
+        )
         yield from off(f"way of {name}", far, true, 0.005 if falls else 0.0015, 0.06)
 
     def turned(self, told: Told) -> Iterator[str]:
         """By which angle it was turned on its way."""
-        one, other = (cell.poses[told["part"]][:, 3:] for cell in (self.original, self.mutant))
-        yield from off("angle", told["far"], turned_aside(other, one), 1.5, 0.06)
+        before, after = (cell.poses[told["part"]][:, 3:] for cell in (self.original, self.mutant))
+        yield from off("angle", told["far"], turned_aside(after, before), 1.5, 0.06)
 
     def held_on(self, told: Told) -> Iterator[str]:
         """Never let go."""
@@ -211,7 +213,7 @@ def off(what: str, told: str, true: float, least: float, share: float) -> Iterat
 
 
 def _highest(cell: Watched, part: str) -> Release | None:
-    return max(cell.releases(part), key=lambda one: one.fall, default=None)
+    return max(cell.releases(part), key=lambda release: release.fall, default=None)
 
 
 def _touched(which: str, cell: Watched, told: Told) -> Iterator[str]:

@@ -73,14 +73,16 @@ class Watch:
         while body:
             body = int(self.model.body_parentid[body])
             above.append(body)
-        names = [self.model.body(one).name for one in above[:-1]]
+        names = [self.model.body(parent).name for parent in above[:-1]]
         for prefix, robot in self.simulation.robots.items():
             tool = robot.model.tool
             if tool is not None and prefix + tool.body in names:
                 is_cup = "Suction" in type(tool.effector).__name__
                 return f"{prefix}{'suction cup' if is_cup else 'gripper'}"
             joints = [self.model.joint(prefix + joint) for joint in robot.model.joints]
-            if self.model.body_rootid[above[0]] in {self.model.body_rootid[one.bodyid[0]] for one in joints}:
+            if self.model.body_rootid[above[0]] in {
+                self.model.body_rootid[joint.bodyid[0]] for joint in joints
+            }:
                 return f"{prefix}arm"
         return str(names[-1] if names else self.model.geom(geom).name or "world")
 

@@ -74,7 +74,7 @@ def build(
     )
     cell = new_cell(seed, robot=gen3().with_tool(suction_cup(CUP, length=CUP_LENGTH)), scene=scene)
     cell.wait(SETTLING)
-    return Station(cell, tuple(one.name for one in loose))
+    return Station(cell, tuple(item.name for item in loose))
 
 
 def part(draw: Random, number: int, shape: str) -> Part:

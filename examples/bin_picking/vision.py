@@ -85,7 +85,9 @@ def spreads() -> dict[tuple[float, float], tuple[str, float]]:
     edge, height = NUT
     drawn = {(long, wide): ("plate", thick), (long, thick): ("plate", wide), (wide, thick): ("plate", long)}
     drawn |= {(CUBE, CUBE): ("cube", CUBE), (height, edge): ("nut", edge * 3**0.5)}
-    found = {((one - EDGE) / 12**0.5, (other - EDGE) / 12**0.5): name for (one, other), name in drawn.items()}
+    found = {
+        ((item - EDGE) / 12**0.5, (other - EDGE) / 12**0.5): name for (item, other), name in drawn.items()
+    }
     return found | {((edge * 2.5**0.5 - EDGE) / 12**0.5,) * 2: ("nut", height)}
 
 

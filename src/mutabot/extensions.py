@@ -289,8 +289,10 @@ def references_for_processes(languages: Collection[str] = ()) -> dict[str, dict[
 def use(parts: Mapping[str, Mapping[str, str]]) -> None:
     """Use only these parts, which the controller has found, in a process of the tests."""
     _SentParts.parts = {
-        kind: {name: ExtensionPart(name, reference, _package(reference)) for name, reference in told.items()}
-        for kind, told in parts.items()
+        kind: {
+            name: ExtensionPart(name, reference, _package(reference)) for name, reference in declared.items()
+        }
+        for kind, declared in parts.items()
     }
 
 
@@ -323,7 +325,9 @@ def _declared() -> tuple[tuple[str, Extension], ...]:
     found = [(_owner(entry), entry) for entry in metadata.entry_points(group=GROUP)]
     return tuple(
         (owner, _read(owner, entry))
-        for owner, entry in sorted(found, key=lambda one: (one[0] != GROUP, one[0], one[1].name))
+        for owner, entry in sorted(
+            found, key=lambda found_entry: (found_entry[0] != GROUP, found_entry[0], found_entry[1].name)
+        )
         # each package of our own can be left out
         if owner != GROUP or find_spec(entry.module.partition(".")[0]) is not None
     )

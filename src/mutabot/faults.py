@@ -106,12 +106,12 @@ class PlannedMutant:
             description: one line that an engineer recognises.
             reason: why it is left out; None if it is planted.
         """
-        one = place.alternatives[index]
+        fault = place.alternatives[index]
         mutant = Mutant(
-            0, one.family, one.operator, place.site, "", None, None, one.variant, description,
+            0, fault.family, fault.operator, place.site, "", None, None, fault.variant, description,
             provider=provider,
         )  # fmt: skip
-        return cls(mutant, reason, does=to_data(one), active=Activation.of_text(place.number, index))
+        return cls(mutant, reason, does=to_data(fault), active=Activation.of_text(place.number, index))
 
     @property
     def as_left_out(self) -> LeftOut:
@@ -155,7 +155,7 @@ class Planned:
         for round, seen in sorted(original.text.items()) if places else ():
             for origin, found in (("", seen.reached), *seen.below.items()):
                 reaching: dict[int, list[str]] = {}  # the tests by place: a suite may have ten thousand
-                for test, number in ((test, one) for test, numbers in found.items() for one in numbers):
+                for test, number in ((test, count) for test, numbers in found.items() for count in numbers):
                     reaching.setdefault(number, []).append(test)
                 for number, tests in reaching.items():
                     if number in places:

@@ -116,13 +116,13 @@ def _init_later(kind: Any) -> Callable[..., None]:
 class _Later:
     """The fields of a class that has had no object yet."""
 
-    def __get__(self, one: object, kind: type[Any]) -> Any:
+    def __get__(self, instance: object, kind: type[Any]) -> Any:
         _compile(next(base for base in kind.__mro__ if vars(base).get(_FIELDS) is self))
         return getattr(kind, _FIELDS)
 
 
 def _values_of(names: list[str]) -> Callable[[Any], Any]:
-    return attrgetter(*names) if names else lambda one: ()
+    return attrgetter(*names) if names else lambda value: ()
 
 
 def _comparing(values: Callable[[Any], Any]) -> tuple[Callable[..., Any], ...]:

@@ -90,9 +90,9 @@ def idle_of(operation: Operation, pattern: Pattern | None, answers: RecordedAnsw
 
     What the vocabulary says goes first. Raises NoAnswerError.
     """
-    told = pattern.idle if pattern is not None and pattern.idle is not None else operation.idle
-    if told is not None:
-        return Idle((told,)).data()
+    idle = pattern.idle if pattern is not None and pattern.idle is not None else operation.idle
+    if idle is not None:
+        return Idle((idle,)).data()
     if not answers.first:
         raise NoAnswerError(f"no recorded call returned, so its answer is not known; {_HINT}")
     texts = {key: json.dumps(_kept(note)) for key, note in answers.first.items()}
@@ -153,19 +153,25 @@ class Original:
         All kinds of values, and the variables that each round saw.
         """
         merged: dict[int, Sighting] = {}
-        for seen in (one for _, text in sorted(self.text.items()) for one in text.sightings):
+        for seen in (sighting for _, text in sorted(self.text.items()) for sighting in text.sightings):
             before = merged.get(seen.place)
             merged[seen.place] = seen if before is None else before.with_others(seen)
         return merged
 
     def reached_places(self) -> set[int]:
         """Return the numbers of the places of the program text that tests, or processes below them, reach."""
-        found = (tests for one in self.text.values() for tests in (one.reached, *one.below.values()))
+        found = (
+            tests
+            for seen_text in self.text.values()
+            for tests in (seen_text.reached, *seen_text.below.values())
+        )
         return {number for tests in found for numbers in tests.values() for number in numbers}
 
     def refused_files(self) -> dict[str, str]:
         """Return the files of the program whose text could not be instrumented, with the reason."""
-        return {file: why for _, one in sorted(self.text.items()) for file, why in one.refused.items()}
+        return {
+            file: why for _, seen_text in sorted(self.text.items()) for file, why in seen_text.refused.items()
+        }
 
     def readers(self, round: int, file: str) -> list[str]:
         """Return the tests of a round that may use the text of a file otherwise than by importing it.

@@ -21,7 +21,7 @@ class GitError(Exception):
 
 def repository_of(folder: Path) -> Path | None:
     """Return the top of the repository that a folder lies in; None if it lies in none."""
-    return next((one for one in (folder, *folder.parents) if (one / ".git").exists()), None)
+    return next((path for path in (folder, *folder.parents) if (path / ".git").exists()), None)
 
 
 def tracked(folder: Path, *names: str) -> list[str]:
@@ -45,8 +45,8 @@ def unignored(folder: Path) -> list[str]:
 def _listed(folder: Path, *options: str) -> list[str]:
     done = git(folder, "ls-files", "-z", *options)
     if done.returncode:
-        said = os.fsdecode(done.stderr).strip().splitlines()
-        raise GitError(f"git says: {said[0] if said else f'exit code {done.returncode}'}")
+        messages = os.fsdecode(done.stderr).strip().splitlines()
+        raise GitError(f"git says: {messages[0] if messages else f'exit code {done.returncode}'}")
     return list(dict.fromkeys(os.fsdecode(name) for name in done.stdout.split(b"\0") if name))
 
 
@@ -54,8 +54,8 @@ def git(folder: Path, *command: str) -> subprocess.CompletedProcess[bytes]:
     """Run git in a folder without letting it write. Raises GitError if it cannot be started."""
     environment = {name: value for name, value in os.environ.items() if name not in _OF_A_REPOSITORY}
     environment |= {"GIT_OPTIONAL_LOCKS": "0", "LC_ALL": "C"}
-    words = ["git", "-C", os.fspath(folder), *command]
+    command_line = ["git", "-C", os.fspath(folder), *command]
     try:
-        return subprocess.run(words, capture_output=True, check=False, env=environment)
+        return subprocess.run(command_line, capture_output=True, check=False, env=environment)
     except OSError as error:
         raise GitError(f"git cannot be started: {error.strerror}") from error

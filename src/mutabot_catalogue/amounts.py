@@ -63,7 +63,7 @@ class _OtherUnit(ValueOperator):
 
 def _both_ways(units: Mapping[str, str]) -> dict[str, str]:
     """Return the units and their reverse."""
-    return {**units, **{other: one for one, other in units.items()}}
+    return {**units, **{counterpart: unit for unit, counterpart in units.items()}}
 
 
 class CentimetreForMetre(_OtherUnit):
@@ -223,7 +223,7 @@ class WeakGrip(_Factor):
     def fits(self, quantity: Quantity, whole: Subject) -> bool:
         motions = (Kind.TRANSLATION, Kind.ROTATION)
         return quantity.kind is Kind.FORCE and not any(
-            one.kind in motions or one.is_whole for one in whole.written
+            written.kind in motions or written.is_whole for written in whole.written
         )
 
 

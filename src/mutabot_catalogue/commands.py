@@ -74,10 +74,14 @@ class PreviousTarget(_Timing):
         if before is None:
             raise Unchanged("no call came before it")
         names = before.keys() & call.values.keys()
-        moved = [one for one in context.subject.written if _is_motion(one) and one.name in names]
-        if all(one.is_same(before[one.name], call.values[one.name]) for one in moved):
+        moved = [
+            quantity
+            for quantity in context.subject.written
+            if _is_motion(quantity) and quantity.name in names
+        ]
+        if all(quantity.is_same(before[quantity.name], call.values[quantity.name]) for quantity in moved):
             raise Unchanged("the one before it was the same")
-        values = {one.name: before[one.name] for one in moved}
+        values = {quantity.name: before[quantity.name] for quantity in moved}
         return await proceed(replace(call, values={**call.values, **values}))
 
 
@@ -121,7 +125,7 @@ class _Grip(_Timing):
     where = _GRIPPING
 
     def fits(self, whole: Subject) -> bool:
-        has_opening = any(one.kind is Kind.OPENING for one in whole.written)
+        has_opening = any(quantity.kind is Kind.OPENING for quantity in whole.written)
         return whole.is_command and (has_opening or (whole.opposite is not None and not whole.written))
 
 

@@ -63,10 +63,12 @@ class AxisSwap(Exchange):
     )
 
     def pairs(self, whole: Subject) -> Iterator[tuple[Quantity, Quantity]]:
-        for one, other in combinations(whole.written, 2):
-            is_motion = one.kind in (Kind.TRANSLATION, Kind.ROTATION) and {one.axis, other.axis} <= {*_AXES}
-            if is_motion and one.axis != other.axis and is_alike(one, other):
-                yield one, other
+        for first, second in combinations(whole.written, 2):
+            is_motion = first.kind in (Kind.TRANSLATION, Kind.ROTATION) and {first.axis, second.axis} <= {
+                *_AXES
+            }
+            if is_motion and first.axis != second.axis and is_alike(first, second):
+                yield first, second
 
 
 class JointOrder(Exchange):
@@ -88,10 +90,12 @@ class JointOrder(Exchange):
 
     def pairs(self, whole: Subject) -> Iterator[tuple[Quantity, Quantity]]:
         for side in (whole.written, whole.read):
-            for one in side:
-                is_first = one.axis == "j1" and one.kind in (Kind.ROTATION, Kind.ANGLE)
+            for quantity in side:
+                is_first = quantity.axis == "j1" and quantity.kind in (Kind.ROTATION, Kind.ANGLE)
                 yield from (
-                    (one, other) for other in side if is_first and other.axis == "j3" and is_alike(one, other)
+                    (quantity, other)
+                    for other in side
+                    if is_first and other.axis == "j3" and is_alike(quantity, other)
                 )
 
 
@@ -124,9 +128,9 @@ class LeftHanded(ValueOperator):
         quantity = context.quantity
         value = context.subject.given(values, quantity.name)
         found = {quantity.name: quantity.map_numbers(value, _negative)}
-        for one in context.subject.side:
-            if _turns(one) and one.name in values:
-                found[one.name] = _mirrored(one, values[one.name])
+        for side_quantity in context.subject.side:
+            if _turns(side_quantity) and side_quantity.name in values:
+                found[side_quantity.name] = _mirrored(side_quantity, values[side_quantity.name])
         return found
 
     def describe(self, subject: Subject, before: Any | None, after: Any | None) -> str:
@@ -148,7 +152,7 @@ def _negative(number: float) -> float:
 def _mirrored(quantity: Quantity, value: Any) -> Any | None:
     if not quantity.is_whole:
         return quantity.map_numbers(value, _negative)
-    return quantity.rotated(value, lambda one: one._replace(x=-one.x, z=-one.z))
+    return quantity.rotated(value, lambda quaternion: quaternion._replace(x=-quaternion.x, z=-quaternion.z))
 
 
 class BaseForTool(ValueOperator):
@@ -182,13 +186,15 @@ class BaseForTool(ValueOperator):
             yield replace(whole, quantity=moved[0])
 
     async def changes(self, values: Mapping[str, Any], context: Context) -> Mapping[str, Any]:
-        before: dict[str, Any] = {one.name: values.get(one.name) for one in _moved(context.subject)}
+        before: dict[str, Any] = {
+            quantity.name: values.get(quantity.name) for quantity in _moved(context.subject)
+        }
         if not all(map(context.quantity.is_scalar, before.values())):
             raise Unchanged(context.subject.why_missing)
         asked = (
             Quantity(f"theta_{axis}", Path(), Kind.ROTATION, axis, "deg", _BASE, Mode.TO) for axis in _AXES
         )
-        tool = _TOOL_TURNED.orientation([await context.call.current(one) for one in asked])
+        tool = _TOOL_TURNED.orientation([await context.call.current(quantity) for quantity in asked])
         if tool is None:
             raise Unchanged("the orientation of the tool is not known")
         turn = tool if context.quantity.frame == _BASE else tool.inverse
@@ -199,16 +205,16 @@ class BaseForTool(ValueOperator):
 
     def describe(self, subject: Subject, before: Any | None, after: Any | None) -> str:
         frame = subject.required_quantity.frame
-        names = ", ".join(one.label for one in _moved(subject))
+        names = ", ".join(quantity.label for quantity in _moved(subject))
         return f"{names} along the axes of the {_TOOL if frame == _BASE else _BASE}"
 
 
 def _moved(subject: Subject) -> list[Quantity]:
     """Return the relative translation along the three axes of one frame, in order."""
     found = {
-        (one.frame, one.axis): one
-        for one in subject.written
-        if one.kind is Kind.TRANSLATION and one.mode is Mode.BY
+        (quantity.frame, quantity.axis): quantity
+        for quantity in subject.written
+        if quantity.kind is Kind.TRANSLATION and quantity.mode is Mode.BY
     }
     for frame in (_BASE, _TOOL):
         moved = [found[frame, axis] for axis in _AXES if (frame, axis) in found]

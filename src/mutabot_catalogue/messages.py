@@ -121,11 +121,11 @@ class Stale(MessageOperator):
             return await proceed(self._old(call, context))
         return self._old(await proceed(call), context)
 
-    def _old(self, one: CallOrReply, context: Context) -> CallOrReply:
+    def _old(self, call_or_reply: CallOrReply, context: Context) -> CallOrReply:
         """Return the earlier message, or the present one with the reason why there is none."""
-        old = context.memory[0] if context.memory else one.as_is(_NONE_BEFORE)
+        old = context.memory[0] if context.memory else call_or_reply.as_is(_NONE_BEFORE)
         if not context.memory or context.subject.variant != _FIRST:
-            context.memory[:] = [one]
+            context.memory[:] = [call_or_reply]
         return old
 
 
@@ -218,7 +218,7 @@ class _ProcessDeath(_Mishap):
 
 
 def _dead(how: str) -> tuple[Example, ...]:
-    return tuple(Example(Subject(one), performed=({how: 0.0},)) for one in (GOAL, TICK))
+    return tuple(Example(Subject(operation), performed=({how: 0.0},)) for operation in (GOAL, TICK))
 
 
 class KillNode(_ProcessDeath):

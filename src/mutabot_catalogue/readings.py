@@ -233,7 +233,7 @@ class SwappedChannels(Exchange):
     def pairs(self, whole: Subject) -> Iterator[tuple[Quantity, Quantity]]:
         groups: list[list[Quantity]] = []
         for quantity in whole.read:
-            group = next((one for one in groups if is_alike(one[0], quantity)), None)
+            group = next((known_group for known_group in groups if is_alike(known_group[0], quantity)), None)
             groups.append([quantity]) if group is None else group.append(quantity)
         for group in groups:
             yield from pairwise(group)

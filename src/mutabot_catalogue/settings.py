@@ -25,8 +25,8 @@ class _FreeValueOperator(ValueOperator):
 
     def describe(self, subject: Subject, before: Any | None, after: Any | None) -> str:
         quantity = subject.required_quantity
-        one, other = quantity.texts(before, after)
-        return f"{quantity.name} {one or '“”'} → {other or '“”'}"
+        old, new = quantity.texts(before, after)
+        return f"{quantity.name} {old or '“”'} → {new or '“”'}"
 
 
 class WrongFrame(_FreeValueOperator):
@@ -200,15 +200,17 @@ class FlipLatch(_OtherOfTwo):
     )
 
 
-def _of_two(quantity: str, one: str, other: str, first: Operation, second: Operation) -> tuple[Example, ...]:
+def _of_two(
+    quantity: str, first_value: str, second_value: str, first: Operation, second: Operation
+) -> tuple[Example, ...]:
     """Return the examples of a policy that has two values besides the system's default."""
     return (
-        Example.changed(first, one, other, quantity=quantity),
-        Example.changed(second, other, one, quantity=quantity),
+        Example.changed(first, first_value, second_value, quantity=quantity),
+        Example.changed(second, second_value, first_value, quantity=quantity),
         Example.unchanged(
             calls.SUBSCRIBE,
             "system_default",
-            f"system_default is neither {one} nor {other}",
+            f"system_default is neither {first_value} nor {second_value}",
             quantity=quantity,
         ),
     )
@@ -298,5 +300,5 @@ class UseDefault(_FreeValueOperator):
         return await super().changes(values, context)
 
     def describe(self, subject: Subject, before: Any | None, after: Any | None) -> str:
-        one, other = subject.required_quantity.texts(before, after)
-        return f"the default {other} instead of {one}"
+        old, new = subject.required_quantity.texts(before, after)
+        return f"the default {new} instead of {old}"

@@ -24,29 +24,34 @@ class Exchange(ValueOperator):
         """Yield the pairs of a call whose values could be exchanged."""
 
     def subjects(self, whole: Subject) -> Iterator[Subject]:
-        for one, other in self.pairs(whole):
-            yield replace(whole, quantity=one, variant=other.name.lstrip("."))
+        for first, second in self.pairs(whole):
+            yield replace(whole, quantity=first, variant=second.name.lstrip("."))
 
     async def changes(self, values: Mapping[str, Any], context: Context) -> Mapping[str, Any]:
-        one, other = context.quantity.name, _other_of(context.subject).name
-        first, second = (context.subject.given(values, name) for name in (one, other))
-        return {one: second, other: first}
+        own, partner = context.quantity.name, _other_of(context.subject).name
+        first, second = (context.subject.given(values, name) for name in (own, partner))
+        return {own: second, partner: first}
 
     def describe(self, subject: Subject, before: Any | None, after: Any | None) -> str:
-        one, other = subject.required_quantity, _other_of(subject)
-        description = f"{one.label} {one.text(before)} and {other.label} {other.text(after)} exchanged"
+        own, partner = subject.required_quantity, _other_of(subject)
+        description = f"{own.label} {own.text(before)} and {partner.label} {partner.text(after)} exchanged"
         return description if subject.is_written else f"reads {description}"
 
 
 def _other_of(subject: Subject) -> Quantity:
     """Return the second quantity of a pair."""
     name = subject.variant.partition("+")[0]
-    return next(one for one in subject.side if one.name.lstrip(".") == name)
+    return next(quantity for quantity in subject.side if quantity.name.lstrip(".") == name)
 
 
-def is_alike(one: Quantity, other: Quantity) -> bool:
+def is_alike(first: Quantity, second: Quantity) -> bool:
     """Return whether two quantities have the same meaning, apart from their places."""
-    return (one.kind, one.unit, one.mode, one.frame) == (other.kind, other.unit, other.mode, other.frame)
+    return (first.kind, first.unit, first.mode, first.frame) == (
+        second.kind,
+        second.unit,
+        second.mode,
+        second.frame,
+    )
 
 
 def middle_of(quantity: Quantity, share: float) -> tuple[float, float]:

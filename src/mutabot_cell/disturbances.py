@@ -97,7 +97,7 @@ def friction_of_surfaces(cell: Cell, change: Changed, *, names: str, random: Ran
     """Change the friction of parts on fixtures, and on everything else that they may lie on."""
     _change_pairs(cell, change, names, is_in_grip=False)
     model = cell.simulation.model
-    for part in _named([one.name for one in cell.simulation.scene.parts], names, "part"):
+    for part in _named([scene_part.name for scene_part in cell.simulation.scene.parts], names, "part"):
         geom = model.geom(part).id
         model.geom_friction[geom, 0] = max(change(float(model.geom_friction[geom, 0])), 1e-5)
 
@@ -112,12 +112,14 @@ def grip_force(cell: Cell, change: Changed, *, names: str, random: Random) -> No
 def vacuum_leak(cell: Cell, change: Changed, *, names: str, random: Random) -> None:
     """Change the opening that a worn lip leaves in suction cups, m²."""
     found = [
-        one for name, one in cell.robots.items() if fnmatchcase(name, names) and one.vacuum() is not None
+        candidate
+        for name, candidate in cell.robots.items()
+        if fnmatchcase(name, names) and candidate.vacuum() is not None
     ]
     if not found:
         raise LookupError("no robot has a suction cup")
-    for one in found:
-        one.suction.leak = max(change(one.suction.leak), 0.0)
+    for robot in found:
+        robot.suction.leak = max(change(robot.suction.leak), 0.0)
 
 
 def fixture_position(cell: Cell, change: Changed, *, names: str, random: Random, axis: str) -> None:
@@ -173,7 +175,7 @@ def joint_friction(cell: Cell, change: Changed, *, names: str, random: Random) -
     """Change the dry friction of all joints, Nm."""
     for system in robots(cell, names):
         losses = cell.simulation.model.dof_frictionloss[system.robot.dofs]
-        losses[:] = [max(change(float(one)), 0.0) for one in losses]
+        losses[:] = [max(change(float(loss)), 0.0) for loss in losses]
     _settle(cell)
 
 
@@ -181,9 +183,9 @@ def servo_gain(cell: Cell, change: Changed, *, names: str, random: Random) -> No
     """Change the stiffness of all joints' servos, Nm/rad; the planner uses the nominal one."""
     model = cell.simulation.model
     for system in robots(cell, names):
-        gains = [change(float(one)) for one in model.actuator_gainprm[system.robot.servos, 0]]
+        gains = [change(float(gain)) for gain in model.actuator_gainprm[system.robot.servos, 0]]
         model.actuator_gainprm[system.robot.servos, 0] = gains
-        model.actuator_biasprm[system.robot.servos, 1] = [-one for one in gains]
+        model.actuator_biasprm[system.robot.servos, 1] = [-gain for gain in gains]
 
 
 def actuation_delay(cell: Cell, change: Changed, *, names: str, random: Random) -> None:
@@ -194,7 +196,7 @@ def actuation_delay(cell: Cell, change: Changed, *, names: str, random: Random) 
     simulation, ticks = cell.simulation, round(change(0.0) / TICK)
     systems = robots(cell, names)
     late = deque([simulation.setpoints.copy()] * ticks)
-    planned = {number: deque([one.arm.setpoint.copy()] * ticks) for number, one in enumerate(systems)}
+    planned = {number: deque([robot.arm.setpoint.copy()] * ticks) for number, robot in enumerate(systems)}
 
     def delay() -> None:
         late.append(simulation.setpoints.copy())
@@ -203,7 +205,7 @@ def actuation_delay(cell: Cell, change: Changed, *, names: str, random: Random) 
             planned[number].append(system.arm.setpoint.copy())
             compared[number] = planned[number].popleft()
 
-    compared = {number: one.arm.setpoint for number, one in enumerate(systems)}
+    compared = {number: robot.arm.setpoint for number, robot in enumerate(systems)}
     simulation.before_tick.append(delay)
     for number, system in enumerate(systems):
         system.arm.compare_with(partial(compared.__getitem__, number))
@@ -257,14 +259,14 @@ def _remake_parts(making: dict[str, Any], names: str, remade: Callable[[Part], P
 def _change_pairs(cell: Cell, change: Changed, names: str, *, is_in_grip: bool) -> None:
     """Change the friction of pairs of shapes, which overrides that of the shapes themselves."""
     model, scene = cell.simulation.model, cell.simulation.scene
-    parts = {int(model.geom(name).id) for name in _named([one.name for one in scene.parts], names, "part")}
+    parts = {int(model.geom(name).id) for name in _named([part.name for part in scene.parts], names, "part")}
     for pair in range(model.npair):
         others = {int(model.pair_geom1[pair]), int(model.pair_geom2[pair])} - parts
         # what takes hold of parts moves, what they lie on stands still
         moves = [bool(model.body_weldid[model.geom_bodyid[other]]) for other in others]
-        if len(others) < 2 and all(one == is_in_grip for one in moves):
+        if len(others) < 2 and all(is_moving == is_in_grip for is_moving in moves):
             model.pair_friction[pair, :2] = [
-                max(change(float(one)), 1e-5) for one in model.pair_friction[pair, :2]
+                max(change(float(coefficient)), 1e-5) for coefficient in model.pair_friction[pair, :2]
             ]
 
 
@@ -288,11 +290,15 @@ def _part_bodies(cell: Cell, names: str) -> list[int]:
 
 
 def _fixtures(cell: Cell, names: str) -> list[str]:
-    return _named([one.name for one in cell.simulation.scene.fixtures], names, "fixture")
+    return _named([fixture.name for fixture in cell.simulation.scene.fixtures], names, "fixture")
 
 
 def _belts(cell: Cell, names: str) -> list[str]:
-    return _named([one.name for one in cell.simulation.scene.fixtures if one.belt is not None], names, "belt")
+    return _named(
+        [fixture.name for fixture in cell.simulation.scene.fixtures if fixture.belt is not None],
+        names,
+        "belt",
+    )
 
 
 def robots(cell: Cell, names: str) -> list[RobotSystem]:

@@ -34,7 +34,7 @@ class CodeRecord:
         mentioned: set[str] = set()
         for module in _loaded(tuple(modules)):
             self._note(vars(module))
-            for kind in [one for one in vars(module).values() if _is_class_of(one, module)]:
+            for kind in [owner for owner in vars(module).values() if _is_class_of(owner, module)]:
                 self._note(vars(kind))
                 self._methods.update(name for name, value in vars(kind).items() if callable(value))
         for code in self._codes:
@@ -51,7 +51,7 @@ class CodeRecord:
                 self._is_of_library
                 and all(all(map(is_, get(names), values)) for names, get, values in self._names)
                 and all(map(is_, map(_code_of, self._functions), self._codes))
-                and all(vars(one).keys().isdisjoint(self._methods) for one in objects)
+                and all(vars(object_).keys().isdisjoint(self._methods) for object_ in objects)
             )
         except KeyError:  # something was taken away
             return False
@@ -92,7 +92,9 @@ def are_original(names: tuple[str, ...], *objects: object) -> bool:
 
 def _loaded(names: tuple[str, ...]) -> Iterator[ModuleType]:
     for name, module in sorted(sys.modules.items()):
-        is_named = any(name == one or (one.endswith(".") and f"{name}.".startswith(one)) for one in names)
+        is_named = any(
+            name == entry or (entry.endswith(".") and f"{name}.".startswith(entry)) for entry in names
+        )
         if is_named and isinstance(module, ModuleType):
             yield module
 

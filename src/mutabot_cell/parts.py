@@ -144,7 +144,7 @@ class Mesh(Part):
     def centred(self) -> tuple[Vector3, ...]:
         """Return the points relative to the centre of the bounding box, m."""
         low, high = self._bounds()
-        middle = [(one + other) / 2 for one, other in zip(low, high, strict=True)]
+        middle = [(first + second) / 2 for first, second in zip(low, high, strict=True)]
         return tuple((x - middle[0], y - middle[1], z - middle[2]) for x, y, z in self.vertices)
 
     def reach(self, direction: Vector3) -> float:
@@ -162,8 +162,8 @@ class Mesh(Part):
         return tuple(map(min, columns)), tuple(map(max, columns))
 
 
-def _along(one: Vector3, other: Vector3) -> float:
-    return one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
+def _along(first: Vector3, second: Vector3) -> float:
+    return first[0] * second[0] + first[1] * second[1] + first[2] * second[2]
 
 
 def _corners(edges: Vector3) -> tuple[Vector3, ...]:

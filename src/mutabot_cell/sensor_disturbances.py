@@ -73,7 +73,7 @@ def occlusion(
         part: the first one without.
         share: where it stands, from the camera (0) to the part (1).
     """
-    parts = [one.name for one in cell.simulation.scene.parts]
+    parts = [scene_part.name for scene_part in cell.simulation.scene.parts]
     if not parts:
         raise LookupError("there is no part")
     target = cell.simulation.data.xpos[cell.simulation.id_of("body", part or parts[0])]

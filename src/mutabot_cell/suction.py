@@ -120,8 +120,8 @@ class Suction:
         """Return the lip's points on each body that it (nearly) touches, and the opening that is left, m²."""
         contact, points, bodies = self._simulation.data.contact, self._points, self._bodies
         nearest: dict[int, tuple[float, int]] = {}
-        for (one, other), distance in zip(contact.geom.tolist(), contact.dist.tolist(), strict=True):
-            own, touched = (one, other) if one in points else (other, one)
+        for (first, second), distance in zip(contact.geom.tolist(), contact.dist.tolist(), strict=True):
+            own, touched = (first, second) if first in points else (second, first)
             if own in points and distance < nearest.get(own, _FAR)[0]:
                 nearest[own] = distance, bodies[touched]
         found: dict[int, list[int]] = {}

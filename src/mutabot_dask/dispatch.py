@@ -98,7 +98,7 @@ class Dispatch:
     def _assign(self) -> None:
         busy = {worker for worker, _ in self._running.values()}
         fit = self._connection.roster.fit
-        for worker in (one for one in fit if one not in busy):
+        for worker in (name for name in fit if name not in busy):
             trial = self._next_trial(worker, fit)
             if trial is None:
                 continue
@@ -113,7 +113,7 @@ class Dispatch:
         Losses come together, as where a cluster is taken away piece by piece: later tries are better later.
         What was lost at this worker waits for another, if there is one.
         """
-        trial = next((one for one in self._again if self._may_run(one, worker, fit)), None)
+        trial = next((task for task in self._again if self._may_run(task, worker, fit)), None)
         if trial is not None and (self._next is None or len(trial.faults) < 2):
             self._again.remove(trial)
             return trial
@@ -185,7 +185,7 @@ class Dispatch:
         self._connection.roster.record_failure(worker, trial.number, trial.avoided, why)
         if len(trial.faults) < TRIES:
             self._again.append(trial)
-            self._again = deque(sorted(self._again, key=lambda one: len(one.faults)))
+            self._again = deque(sorted(self._again, key=lambda task: len(task.faults)))
             return
         if trial.answer is not None:  # what ended it each time may be the mutant after all: the judge knows
             self._settled.append(trial.answer)
@@ -221,7 +221,7 @@ class Dispatch:
 
     def _rest(self) -> Iterator[Task]:
         """Yield tasks that have begun and have no answer, and the remaining ones."""
-        for trial in (*(one for _, one in self._running.values()), *self._again, self._next):
+        for trial in (*(task for _, task in self._running.values()), *self._again, self._next):
             if trial is not None:
                 yield trial.task
 

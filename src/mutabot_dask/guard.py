@@ -35,10 +35,10 @@ class Placeholder(Exception):  # noqa: N818  # it is a value
 
     def __init__(self, *given: Any, **_: Any) -> None:
         super().__init__()
-        flat = [part for one in given for part in (one if type(one) is tuple else (one,))]
-        self.said = ": ".join(one[:_SAID] for one in flat if type(one) is str)[:_SAID]
+        flat = [part for value in given for part in (value if type(value) is tuple else (value,))]
+        self.said = ": ".join(value[:_SAID] for value in flat if type(value) is str)[:_SAID]
         # an exception comes with what makes it, which comes first
-        kinds = (one.__name__ for one in given if isinstance(one, type))
+        kinds = (value.__name__ for value in given if isinstance(value, type))
         self.kind = next(kinds, type(self).__name__)
 
     def __setstate__(self, state: Any) -> None:
@@ -76,9 +76,9 @@ def install() -> None:
 
 def describe(error: object) -> str:
     """Return a description of an exception in one line; of other objects, what they are."""
-    said = str(error).strip().splitlines() if isinstance(error, Exception) else []
+    lines = str(error).strip().splitlines() if isinstance(error, Exception) else []
     kind = error.kind if isinstance(error, Placeholder) and error.kind else type(error).__name__
-    return f"{kind}: {said[0]}" if said else kind
+    return f"{kind}: {lines[0]}" if lines else kind
 
 
 def _loaded(data: Any, **given: Any) -> Any:

@@ -189,7 +189,7 @@ def _is_foreign(error: Exception) -> bool:
 
 def one_line(text: str) -> str:
     """Return a worker's message as one line without control characters."""
-    return "".join(one if one.isprintable() else "�" for one in text[:_WORDS])
+    return "".join(character if character.isprintable() else "�" for character in text[:_WORDS])
 
 
 def _client(settings: ClusterSettings, address: str) -> Any:

@@ -81,7 +81,7 @@ class Roster:
     @property
     def is_settled(self) -> bool:
         """Whether all connected workers have reported their versions."""
-        return not self._asked and all(one.is_known or one.refused for one in self._workers.values())
+        return not self._asked and all(worker.is_known or worker.refused for worker in self._workers.values())
 
     @property
     def is_idle(self) -> bool:
@@ -91,7 +91,9 @@ class Roster:
     @property
     def refusals(self) -> dict[str, str]:
         """The reasons why workers are not used, by their address."""
-        return {address: one.refused for address, one in self._workers.items() if one.refused is not None}
+        return {
+            address: worker.refused for address, worker in self._workers.items() if worker.refused is not None
+        }
 
     def update(self) -> set[str]:
         """Add new workers; return the workers that have gone."""
@@ -161,7 +163,11 @@ class Roster:
             tried: all workers at which it failed.
         """
         worker = self._workers.get(address)
-        proven = [one for one in tried if one in self._workers and self._workers[one].is_proven]
+        proven = [
+            tried_address
+            for tried_address in tried
+            if tried_address in self._workers and self._workers[tried_address].is_proven
+        ]
         if len(proven) > 1:
             self._clear_failures(unit)
         elif worker is not None:
@@ -190,14 +196,14 @@ class Roster:
         self._asked[number] = address
         self._workers[address].asked.add(number)
 
-    def _introduced(self, address: str, worker: _ClusterWorker, one: Introduction) -> None:
-        differing = differences(self.versions, one.versions)
+    def _introduced(self, address: str, worker: _ClusterWorker, introduction: Introduction) -> None:
+        differing = differences(self.versions, introduction.versions)
         if differing:
             more = f" and {len(differing) - _SHOWN} more" if len(differing) > _SHOWN else ""
             self.refuse(address, f"it runs with something else: {'; '.join(differing[:_SHOWN])}{more}")
             return
         worker.is_known = True
-        if one.has:
+        if introduction.has:
             worker.is_fit = True
         elif self.bundle is not None:
             chunks = self.bundle.chunks()

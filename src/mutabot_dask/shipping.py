@@ -105,11 +105,13 @@ def _files_of(root: Path, files: Collection[str], path: Path) -> Iterator[str]:
     if path.is_symlink() or not path.is_dir():
         yield name
         return
-    found = [one for one in files if _is_below(one, [name])]
-    for one in found or (one.relative_to(root).as_posix() for one in path.rglob("*") if not one.is_dir()):
-        inner = PurePosixPath(one).relative_to(name).as_posix()
+    found = [listed_file for listed_file in files if _is_below(listed_file, [name])]
+    for file in found or (
+        below.relative_to(root).as_posix() for below in path.rglob("*") if not below.is_dir()
+    ):
+        inner = PurePosixPath(file).relative_to(name).as_posix()
         if not _is_hidden(inner) and not may_be_secret(inner):
-            yield one
+            yield file
 
 
 def _is_usual(name: str) -> bool:

@@ -64,7 +64,7 @@ class WorkUnit:
         line, _, task = data.partition(b"\n")
         found = json.loads(line)
         ground: dict[str, Any] = found["ground"]
-        lists = {name: tuple(one) for name, one in ground.items() if isinstance(one, list)}
+        lists = {name: tuple(value) for name, value in ground.items() if isinstance(value, list)}
         return cls(SharedData(**ground | lists), Task.of_bytes(task), found["ticket"])
 
 

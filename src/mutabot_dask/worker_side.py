@@ -119,7 +119,7 @@ class WorkerSession:
 
     def _run(self, task: Task, look: Callable[[], None]) -> Answer:
         if self._workers is None:
-            arguments = (one.replace(self.ground.root, self.root) for one in self.ground.arguments)
+            arguments = (argument.replace(self.ground.root, self.root) for argument in self.ground.arguments)
             self._workers = Workers(Path(self.root), arguments, jobs=1)
         self._workers.look = look
         return Answer.by(self._workers, task)
@@ -131,7 +131,7 @@ class WorkerSession:
 
     def _fault(self, result: Result) -> str | None:
         """Return a failure of this machine rather than of the mutant; None if none is known."""
-        full = next((one.message for one in result.ends if one.message and _FULL.search(one.message)), None)
+        full = next((end.message for end in result.ends if end.message and _FULL.search(end.message)), None)
         if full is not None:
             return full.splitlines()[0]
         for folder in {self.root, tempfile.gettempdir()}:

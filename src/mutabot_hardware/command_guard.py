@@ -85,7 +85,7 @@ def unreadable(call: Call, unread: Mapping[str, str]) -> str | None:
     if call.pattern is not None or call.operation.arguments or call.payload is None:
         return None
     given = (*call.payload.args, *call.payload.kwargs.values())
-    texts = [_short(one) for one in given if one is not None and not isinstance(one, bool)]
+    texts = [_short(value) for value in given if value is not None and not isinstance(value, bool)]
     if not texts:
         return None
     return (

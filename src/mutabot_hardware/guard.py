@@ -15,23 +15,23 @@ from .targets import UnreadableTarget
 
 def rules_of(table: GuardTable) -> list[LimitRule | BoxRule]:
     """Return the limits and boxes of a table."""
-    return [*(LimitRule(one) for one in table.limit), *(BoxRule(one) for one in table.box)]
+    return [*(LimitRule(limit) for limit in table.limit), *(BoxRule(box) for box in table.box)]
 
 
 def idle_part(table: GuardTable, operations: Iterable[Operation]) -> str | None:
     """Return which part of a table concerns no operation, so that it never blocks a command; None if none."""
-    commands = [one for one in operations if one.command]
+    commands = [operation for operation in operations if operation.command]
     for rule in rules_of(table):
-        if not any(rule.concerns(one) for one in commands):
+        if not any(rule.concerns(command) for command in commands):
             kind = "limit" if isinstance(rule, LimitRule) else "box"
             rule_values = rule.table.model_dump(exclude_defaults=True, exclude_none=True)
             which = ", ".join(f"{key} = {value}" for key, value in rule_values.items())
             return f"guard.{kind} concerns no quantity that the vocabulary describes: {which}"
-    named = [*table.forbid, *(name for one in table.order for name in (*one.operations, *one.after))]
-    lost = next((name for name in named if not any(is_among(one, [name]) for one in commands)), None)
+    named = [*table.forbid, *(name for order in table.order for name in (*order.operations, *order.after))]
+    lost = next((name for name in named if not any(is_among(command, [name]) for command in commands)), None)
     if lost is not None:
         return f"guard: the vocabulary describes no command {lost}"
-    if table.tool is not None and not any(_sets_tool(one, table.tool) for one in commands):
+    if table.tool is not None and not any(_sets_tool(command, table.tool) for command in commands):
         return (
             f"guard.tool: the vocabulary describes no command with a quantity as in {table.tool!r}; "
             "it needs the target of an operation, a space, and the name of a quantity"
@@ -42,7 +42,7 @@ def idle_part(table: GuardTable, operations: Iterable[Operation]) -> str | None:
 def _sets_tool(operation: Operation, tool: str) -> bool:
     """Return whether an operation has a quantity that says which tool is mounted."""
     target, *names = tool.split()
-    return operation.target == target and any(one.name in names for one in described(operation))
+    return operation.target == target and any(quantity.name in names for quantity in described(operation))
 
 
 class TableGuard(CallGuard):
@@ -62,7 +62,7 @@ class TableGuard(CallGuard):
 
     def start_test(self) -> None:
         """Forget the commands of the test before; see ``CallGuard``."""
-        self._orders = [OrderRule(one) for one in self._tables]
+        self._orders = [OrderRule(table) for table in self._tables]
         self._tool: str | None = None
 
     def why_not(self, call: Call, unread: Mapping[str, str]) -> str | None:
@@ -85,7 +85,7 @@ class TableGuard(CallGuard):
         if unread and self._concerns(call):
             return "; ".join(unread.values())
         try:
-            return next((one.text for one in self.findings(call) if not one.is_within), None)
+            return next((finding.text for finding in self.findings(call) if not finding.is_within), None)
         except UnreadableTarget as error:
             return str(error)
 

@@ -53,7 +53,7 @@ class Rehearsal:
             results = Results.read(journal)
         except MutabotError as error:
             raise UsageError(f"hardware.rehearsal: {error}") from error
-        return cls({one.mutant.id: _of(one) for one in results.mutants})
+        return cls({result.mutant.id: _of(result) for result in results.mutants})
 
     def of(self, mutant: str) -> Rehearsed:
         """Return the results of the mutant with this id."""
@@ -61,16 +61,18 @@ class Rehearsal:
 
 
 def _of(result: MutantResult) -> Rehearsed:
-    outcomes = [one for one in result.rounds if one is not None]
+    outcomes = [outcome for outcome in result.rounds if outcome is not None]
     if not outcomes:
         return UNKNOWN
-    bad = [one for one in outcomes if one.verdict in _BAD]
+    bad = [outcome for outcome in outcomes if outcome.verdict in _BAD]
     if bad:
         return Rehearsed(inf, f"{bad[0].verdict} in simulation")
-    known = [one.deviation for one in outcomes]
-    if any(one is None for one in known):
+    known = [outcome.deviation for outcome in outcomes]
+    if any(deviation is None for deviation in known):
         return Rehearsed(inf, f"{outcomes[0].verdict} in simulation; how far it led is not known")
-    worst = max(one or 0.0 for one in known)
-    story = next((one.told.story for one in outcomes if one.told is not None and one.told.story), "")
+    worst = max(deviation or 0.0 for deviation in known)
+    story = next(
+        (outcome.told.story for outcome in outcomes if outcome.told is not None and outcome.told.story), ""
+    )
     text = story or f"{worst:.3g} times the original's own spread away"
     return Rehearsed(worst, f"{outcomes[0].verdict} in simulation: {text}")

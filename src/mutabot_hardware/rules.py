@@ -48,7 +48,7 @@ def fits(call: Call, operations: Iterable[str]) -> bool:
 
 def is_among(operation: Operation, operations: Iterable[str]) -> bool:
     """Return whether an operation is one of these."""
-    return any(fnmatchcase(operation.target, one) for one in operations)
+    return any(fnmatchcase(operation.target, pattern) for pattern in operations)
 
 
 def described(operation: Operation) -> Iterator[Quantity]:
@@ -97,7 +97,7 @@ class LimitRule:
         above = number - table.min - table.margin if table.min is not None else inf
         below = table.max - table.margin - number if table.max is not None else inf
         ends = (("at least", table.min), ("at most", table.max))
-        which = " and ".join(f"{words} {end:g} {unit}" for words, end in ends if end is not None)
+        which = " and ".join(f"{relation} {end:g} {unit}" for relation, end in ends if end is not None)
         if table.margin:
             which += f", with a margin of {table.margin:g} {unit}"
         return RuleFinding(
@@ -120,12 +120,17 @@ class BoxRule:
         table = self.table
         if not fits(call, table.operations) or not _applies(table.tool, tool):
             return
-        places = [one for one in (call.pattern or call.operation).arguments if self._is_place(one)]
-        moved = [one for one in places if one.name in call.values]
+        places = [
+            argument for argument in (call.pattern or call.operation).arguments if self._is_place(argument)
+        ]
+        moved = [place for place in places if place.name in call.values]
         if table.keep == "in":
-            yield from (self._inside(one, target_of(call, one, call.values[one.name])) for one in moved)
+            yield from (
+                self._inside(quantity, target_of(call, quantity, call.values[quantity.name]))
+                for quantity in moved
+            )
         elif moved:
-            yield self._outside({one.axis or "": self._target(call, one) for one in places})
+            yield self._outside({place.axis or "": self._target(call, place) for place in places})
 
     def _is_place(self, quantity: Quantity) -> bool:
         return quantity.kind in _PLACES and quantity.axis in self.table.sides and self._is_frame(quantity)

@@ -129,7 +129,7 @@ class GuardTable(Table):
 
     @model_validator(mode="after")
     def _knows_tools(self) -> Self:
-        tools = (*(one.tool for one in self.limit), *(one.tool for one in self.box))
+        tools = (*(table.tool for table in self.limit), *(table.tool for table in self.box))
         named = next((tool for tool in tools if tool is not None), None)
         if self.tool is None and named is not None:
             raise ValueError(f"a rule holds for the tool {named!r}, but tool does not say what mounts it")

@@ -257,13 +257,13 @@ def _about(name: str, doc: str) -> str:
     for index, line in enumerate(lines):
         if re.search(rf"(?<!\w){re.escape(name)}(?!\w)", line):
             found.append(line)
-            found += [one for one in lines[index + 1 : index + 2] if not _NEXT.match(one)]
+            found += [next_line for next_line in lines[index + 1 : index + 2] if not _NEXT.match(next_line)]
     return "\n".join(found)
 
 
 def _documented_range(text: str, setting: NameContext) -> list[float] | None:
     """Return the smallest and largest value that an argument's documentation gives; None without any."""
-    pairs = {(float(one), float(other)) for pattern in _RANGES for one, other in pattern.findall(text)}
+    pairs = {(float(low), float(high)) for pattern in _RANGES for low, high in pattern.findall(text)}
     seen = [value for value in setting.values if isinstance(value, int | float)]
     found = [[least, most] for least, most in pairs if least < most and least <= min(seen, default=least)]
     found = [pair for pair in found if max(seen, default=pair[0]) <= pair[1]]
@@ -272,12 +272,16 @@ def _documented_range(text: str, setting: NameContext) -> list[float] | None:
 
 def _unit_by_size(dimension: str, values: Sequence[Any]) -> str | None:
     """Return the unit that numbers of this size have: no arm reaches 10 m, and 1.57 is not in degrees."""
-    flat = [one for value in values for one in (value if isinstance(value, list) else [value])]
-    numbers = [abs(one) for one in flat if isinstance(one, int | float) and not isinstance(one, bool)]
+    flat = [element for value in values for element in (value if isinstance(value, list) else [value])]
+    numbers = [
+        abs(element) for element in flat if isinstance(element, int | float) and not isinstance(element, bool)
+    ]
     largest = max(numbers, default=0.0)
     is_whole = all(float(number).is_integer() for number in numbers)
     if dimension == "length":
-        least = 100 if any(isinstance(one, list) for one in values) else 1000  # a list is the pose of an arm
+        least = (
+            100 if any(isinstance(value, list) for value in values) else 1000
+        )  # a list is the pose of an arm
         return "m" if 0 < largest < 2 and not is_whole else "mm" if largest >= least else None
     if dimension == "angle":
         return "deg" if largest > 6.5 else "rad" if largest > 0 and not is_whole else None
@@ -386,7 +390,7 @@ def guess_elements(part: WatchedPart, name: str, setting: NameContext, *, writte
 
 def _is_no_pose(values: Sequence[Any]) -> bool:
     """Return whether seven numbers do not end in a quaternion, and so are joints."""
-    return any(len(one) == 7 and abs(sum(part * part for part in one[3:]) - 1) > 0.1 for one in values)
+    return any(len(value) == 7 and abs(sum(part * part for part in value[3:]) - 1) > 0.1 for value in values)
 
 
 def _element(kind: str, read: str, axis: str, name: str, setting: NameContext, written: bool) -> Guess:
@@ -427,7 +431,7 @@ def _without_unit(words: tuple[str, ...]) -> tuple[tuple[str, ...], str | None]:
 
 def _are_truth(setting: NameContext) -> bool:
     seen = list(setting.values)
-    return setting.annotation == "bool" or (bool(seen) and all(isinstance(one, bool) for one in seen))
+    return setting.annotation == "bool" or (bool(seen) and all(isinstance(value, bool) for value in seen))
 
 
 def _distinct(values: Sequence[Any]) -> list[Any]:

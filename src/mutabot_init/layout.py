@@ -82,7 +82,7 @@ def other_files(root: Path, given: Sequence[Path]) -> list[Path]:
 
 def refuse_mistakes(layout: Layout) -> None:
     """Raise UsageError if a file of the program, or a conftest, is not valid Python."""
-    for path in (*layout.program, *(one for one in layout.tests if one.name == "conftest.py")):
+    for path in (*layout.program, *(file for file in layout.tests if file.name == "conftest.py")):
         try:
             ast.parse(path.read_bytes())
         except SyntaxError as error:
@@ -100,7 +100,7 @@ def project_above(folder: Path) -> Path:
     """
     if any(_is_test_side(path.relative_to(folder)) for path in _python_files(folder)):
         return folder
-    above = (one for one in folder.parents if any((one / name).is_file() for name in _OF_PROJECTS))
+    above = (parent for parent in folder.parents if any((parent / name).is_file() for name in _OF_PROJECTS))
     return next(above, folder)
 
 
@@ -153,7 +153,7 @@ def _named(root: Path, given: Sequence[Path]) -> list[Path]:
 def _places(root: Path, given: Sequence[Path]) -> list[Path]:
     found: list[Path] = []
     for path in given:
-        place = next((one for one in (path, root / path) if one.exists()), None)
+        place = next((candidate for candidate in (path, root / path) if candidate.exists()), None)
         if place is None:
             raise UsageError(f"{path}: there is no such file or folder")
         if not place.resolve().is_relative_to(root):
@@ -193,7 +193,7 @@ def compared_with(layout: Layout) -> list[list[Any]]:
     for path in (*layout.program, *layout.tests):
         for node in ast.walk(parsed(path)):
             if isinstance(node, ast.Compare):
-                constants = [value for one in node.comparators for value in _constants(one)]
+                constants = [value for comparator in node.comparators for value in _constants(comparator)]
                 groups.setdefault(ast.unparse(node.left), []).extend(constants)
     return [list(dict.fromkeys(group)) for group in groups.values() if group]
 

@@ -121,7 +121,7 @@ def _type(use: Use) -> str:
     package, slash, name = kind.partition("/")
     if use.form is Form.TRANSFORM or not slash:
         return ""
-    ending = next((one for one in _ENDINGS.get(use.form, ()) if name.endswith(one)), "")
+    ending = next((suffix for suffix in _ENDINGS.get(use.form, ()) if name.endswith(suffix)), "")
     return f"{package}/{name.removesuffix(ending).partition('_')[0]}"
 
 
@@ -281,7 +281,9 @@ def by_name(part: WatchedPart, words: Sequence[str], *, is_written: bool) -> Mea
         found = guess_elements(part, name, setting, written=is_written)
         return {path: _by_convention(guess, values) for path, guess in found.items()}
     if all(isinstance(value, bool) for value in values):
-        kind = "opening" if any(one in word for word in words for one in GRIPPER) else "output"
+        kind = (
+            "opening" if any(gripper_word in word for word in words for gripper_word in GRIPPER) else "output"
+        )
         table: TomlTable = {"kind": kind, "values": [False, True]} if is_written else {"kind": "flag"}
         return {part.path: Guess(table)}
     few = _LEAST_VALUES <= len(values) <= _MOST_VALUES
@@ -304,8 +306,8 @@ def by_name(part: WatchedPart, words: Sequence[str], *, is_written: bool) -> Mea
 
 def _by_convention(guess: Guess, values: Sequence[Any]) -> Guess:
     """Assume radians, as is usual in ROS, for angles without a unit that are at most a turn."""
-    numbers = [one for value in values for one in (value if isinstance(value, list) else [value])]
-    is_small = all(abs(one) <= _FULL_TURN for one in numbers if isinstance(one, int | float))
+    numbers = [element for value in values for element in (value if isinstance(value, list) else [value])]
+    is_small = all(abs(number) <= _FULL_TURN for number in numbers if isinstance(number, int | float))
     if guess.table.get("unit") == "rad" and is_small:
-        guess.questions = [one for one in guess.questions if not one.startswith("the unit")]
+        guess.questions = [question for question in guess.questions if not question.startswith("the unit")]
     return guess

@@ -105,9 +105,9 @@ class Proposal:
 def proposals(calls: Sequence[WatchedCallable], groups: Sequence[Sequence[Any]] = ()) -> list[Proposal]:
     """Return the proposals for calls; ``groups``: constants that the program compares with the same thing."""
     found = [_proposal(call, groups) for call in calls if not (_is_housekeeping(call) or _computes(call))]
-    assigned = {one.target for one in found if one.call.is_set and one.is_operation}
-    found = [one for one in found if one.call.is_set or one.target not in assigned]
-    taken = {one.target: one for one in found if one.is_operation}
+    assigned = {candidate.target for candidate in found if candidate.call.is_set and candidate.is_operation}
+    found = [candidate for candidate in found if candidate.call.is_set or candidate.target not in assigned]
+    taken = {candidate.target: candidate for candidate in found if candidate.is_operation}
     for proposal in taken.values():
         proposal.is_taken = True
         _find_current(proposal, taken)
@@ -291,10 +291,14 @@ def _find_opposite(proposal: Proposal, found: dict[str, Proposal]) -> None:
 def _with_opposites(text: str) -> Iterator[str]:
     """Yield the text with each of its words that has an opposite replaced by that."""
     for pair in OPPOSITES:
-        for one, other in (pair, pair[::-1]):
-            for word, opposite in ((one, other), (one.title(), other.title()), (one.upper(), other.upper())):
+        for first, second in (pair, pair[::-1]):
+            for word, opposite in (
+                (first, second),
+                (first.title(), second.title()),
+                (first.upper(), second.upper()),
+            ):
                 # a capital begins a word also within one, as in GripperOpen
-                before = "[a-z]" if word == one else "[A-Z]"
+                before = "[a-z]" if word == first else "[A-Z]"
                 swapped = re.sub(
                     rf"(?<!{before}){word}(?![{'A-Z' if word.isupper() else 'a-z'}])", opposite, text
                 )
@@ -306,7 +310,7 @@ def _setting(call: WatchedCallable, part: WatchedPart, annotation: str) -> NameC
     module, _, qualname = call.target.partition(":")
     owner = [*words_of(module.rpartition(".")[2]), *words_of(qualname.rpartition(".")[0])]
     degrees = _truth_values("degrees", call) | {
-        not one for one in _truth_values("radians", call) | _truth_values("is_radian", call)
+        not value for value in _truth_values("radians", call) | _truth_values("is_radian", call)
     }
     return NameContext(
         words=words_of(call.name),
@@ -350,7 +354,9 @@ def patterns_of(texts: Sequence[str]) -> list[tuple[str, Guess]]:
         if len(_FIELD.findall(notation)) == 1:
             words = words_of(_FIELD.sub("", notation))
             guess = guess_argument("value", NameContext(words, values=numbers))
-        opposite = next((one for one in _with_opposites(notation) if one in notations), None)
+        opposite = next(
+            (candidate for candidate in _with_opposites(notation) if candidate in notations), None
+        )
         if opposite is not None:
             guess.table["opposite"] = opposite
         found.append((notation, guess))

@@ -57,18 +57,26 @@ class ShippedVocabulary:
         clock = self.vocabulary.clock
         if call.name in self.overridden and call.package in self.packages:
             return True
-        targets = [*(one.target for one in self.vocabulary.operations), *([clock.tick] if clock else [])]
+        targets = [
+            *(operation.target for operation in self.vocabulary.operations),
+            *([clock.tick] if clock else []),
+        ]
         return call.target in targets
 
     def knows_arguments(self, call: WatchedCallable) -> bool:
         """Return whether it says what the arguments of such a call mean."""
         return self.describes(call) and any(
-            one.arguments for one in self.vocabulary.operations if one.target.endswith(f".{call.name}")
+            operation.arguments
+            for operation in self.vocabulary.operations
+            if operation.target.endswith(f".{call.name}")
         )
 
     def reads(self, call: WatchedCallable) -> bool:
         """Return whether it describes this callable as a reading."""
-        return any(one.target == call.target and not one.command for one in self.vocabulary.operations)
+        return any(
+            operation.target == call.target and not operation.command
+            for operation in self.vocabulary.operations
+        )
 
 
 def known_vocabularies(layout: Layout, calls: Sequence[WatchedCallable]) -> list[ShippedVocabulary]:
@@ -78,9 +86,9 @@ def known_vocabularies(layout: Layout, calls: Sequence[WatchedCallable]) -> list
     every: dict[str, ShippedVocabulary] = {}
     for name in shipped_vocabularies():
         vocabulary = load_vocabulary([name], layout.root)
-        packages = frozenset(one.module.partition(".")[0] for one in vocabulary.operations)
+        packages = frozenset(operation.module.partition(".")[0] for operation in vocabulary.operations)
         overridden = frozenset(
-            one.target.rpartition(".")[2] for one in vocabulary.operations if one.overrides
+            operation.target.rpartition(".")[2] for operation in vocabulary.operations if operation.overrides
         )
         every[name] = ShippedVocabulary(name, vocabulary, overridden, packages)
     for name, wrapper in _BEHIND.items():
@@ -114,7 +122,7 @@ class _Findings:
         refuse_mistakes(self.layout)
         tell("running the tests once, to see what the program calls")
         self.run = watch(self.layout, limit)
-        mistake = next((one for one in self.run.problems if _MISTAKE.search(one)), None)
+        mistake = next((problem for problem in self.run.problems if _MISTAKE.search(problem)), None)
         if mistake is not None and not self.run.outcomes:
             collected, _, what = mistake.partition(": ")
             raise UsageError(f"{what} (while pytest collects {collected}); {NOTHING_WRITTEN}")
@@ -128,14 +136,22 @@ class _Findings:
         self.operations = proposals(self._new([call for call in mine if not call.own]), groups)
         if self.is_empty:  # program and robot share a file
             self.operations = proposals(mine, groups)
-        readings = [one for one in proposals(self._new(rest), groups) if one.is_taken and one.is_reading]
+        readings = [
+            proposal
+            for proposal in proposals(self._new(rest), groups)
+            if proposal.is_taken and proposal.is_reading
+        ]
         self.operations += readings
         if self.is_empty:  # what is called at all can be skipped and repeated
-            for one in self.operations:
-                one.is_plain = one.is_taken = not one.call.problem and not one.call.is_property
+            for operation in self.operations:
+                operation.is_plain = operation.is_taken = (
+                    not operation.call.problem and not operation.call.is_property
+                )
         self.oracle = self._files_that_read()
         self.beside = [
-            line for name, one in brought_proposers().items() for line in one.lines(self._seen_by(name))
+            line
+            for name, proposer in brought_proposers().items()
+            for line in proposer.lines(self._seen_by(name))
         ]
 
     @property
@@ -146,7 +162,7 @@ class _Findings:
     @property
     def taken(self) -> int:
         """The number of proposed operations."""
-        return sum(one.is_taken for one in self.drafts)
+        return sum(draft.is_taken for draft in self.drafts)
 
     @property
     def is_empty(self) -> bool:
@@ -156,7 +172,7 @@ class _Findings:
     @property
     def vocabulary(self) -> list[str]:
         """The vocabularies' names for the configuration."""
-        names = [one.name for one in self.known]
+        names = [vocabulary.name for vocabulary in self.known]
         return [*names, VOCABULARY] if self.taken or not names else names
 
     @property
@@ -169,8 +185,8 @@ class _Findings:
         text = vocabulary_text(self.drafts, self.program)
         if not self.taken or _loads(text):
             return text
-        for one in self.operations:
-            one.current = one.opposite = None
+        for operation in self.operations:
+            operation.current = operation.opposite = None
         for draft in self.drafts:
             draft.is_taken = draft.is_taken and _loads(vocabulary_text([draft], self.program))
         return vocabulary_text(self.drafts, self.program)
@@ -180,20 +196,22 @@ class _Findings:
         return [
             call
             for call in calls
-            if not any(one.describes(call) for one in self.known)
+            if not any(vocabulary.describes(call) for vocabulary in self.known)
             or _nodes_tell(call)
-            or (_has_limits(call) and not any(one.knows_arguments(call) for one in self.known))
+            or (_has_limits(call) and not any(vocabulary.knows_arguments(call) for vocabulary in self.known))
         ]
 
     def _seen_by(self, name: str) -> list[Any]:
-        return [one.beside[name] for one in self.run.seen if name in one.beside]
+        return [calls.beside[name] for calls in self.run.seen if name in calls.beside]
 
     def _files_that_read(self) -> list[str]:
-        targets = {one.target for one in self.operations if one.is_taken and one.is_reading}
+        targets = {
+            operation.target for operation in self.operations if operation.is_taken and operation.is_reading
+        }
         files = [
             where.rpartition(":")[0]
             for call in self.seen.calls
-            if call.target in targets or any(one.reads(call) for one in self.known)
+            if call.target in targets or any(vocabulary.reads(call) for vocabulary in self.known)
             for where in call.sites
         ]
         files += [file for entry in self.named if entry.of_tests for file in entry.files]
@@ -311,16 +329,18 @@ def _told(found: _Findings, questions: int) -> list[str]:
     lines.append(f"wrote {CONFIGURATION}")
     tables = (line for line in found.beside if re.match(r"\[\w", line))
     lines += [f"  {line.replace('  # ', ': ')}" for line in tables]
-    for one in found.known:
-        calls = counted(sum(map(one.describes, found.calls)), "call")
-        lines.append(f"vocabulary {one.name}: comes with mutabot, describes {calls}")
+    for vocabulary in found.known:
+        calls = counted(sum(map(vocabulary.describes, found.calls)), "call")
+        lines.append(f"vocabulary {vocabulary.name}: comes with mutabot, describes {calls}")
     if found.needs_vocabulary:
         asked = f" and {counted(questions, 'question')}" if questions else ""
         what = f"with {counted(found.taken, 'operation')}{asked}" if found.taken else "without an operation"
         left = len(found.drafts) - found.taken
         also = f"; {counted(left, 'more call')} as comments" if left else ""
         lines.append(f"wrote {VOCABULARY} {what}{also}")
-    mocked = [one.call for one in found.operations if one.is_taken and one.call.stands_in]
+    mocked = [
+        operation.call for operation in found.operations if operation.is_taken and operation.call.stands_in
+    ]
     names = [call.name if call.target.startswith(ANY) else call.target for call in mocked]
     if names:
         how = "as what they stand for, or by name for any object that has it"

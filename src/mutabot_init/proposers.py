@@ -38,7 +38,7 @@ def brought_proposers() -> dict[str, Proposer]:
 def started(root: Path, files: Sequence[Path]) -> tuple[dict[str, str], list[str]] | None:
     """Return the project of the first package that knows these files' language, as ``Starter`` makes it."""
     starters: dict[str, Starter] = _brought("STARTER") if files else {}
-    return next((made for one in starters.values() if (made := one(root, files)) is not None), None)
+    return next((made for starter in starters.values() if (made := starter(root, files)) is not None), None)
 
 
 def _brought(kind: str) -> dict[str, Any]:

@@ -31,11 +31,12 @@ def vocabulary_text(drafts: Sequence[Proposal | MessageEntry], program: Sequence
         "# values that were seen. To answer a question, correct the line and take its number sign away."
     )
     texts = [
-        (entry_text(one) if isinstance(one, MessageEntry) else operation_text(one), one) for one in drafts
+        (entry_text(draft) if isinstance(draft, MessageEntry) else operation_text(draft), draft)
+        for draft in drafts
     ]
-    clocks = [_clock_line(one.target) for one in drafts if _is_clock(one)]
-    blocks = [head, *clocks, *(text for text, one in texts if one.is_taken)]
-    others = [_commented(text) for text, one in texts if not (one.is_taken or _is_clock(one))]
+    clocks = [_clock_line(draft.target) for draft in drafts if _is_clock(draft)]
+    blocks = [head, *clocks, *(text for text, draft in texts if draft.is_taken)]
+    others = [_commented(text) for text, draft in texts if not (draft.is_taken or _is_clock(draft))]
     if others:
         blocks.append(
             "# Also seen, but nothing shows what it means to the robot. For an operation, take the number\n"
@@ -192,7 +193,9 @@ def _examples(part: WatchedPart, path: str = "") -> str:
     values = part.values[:_EXAMPLES]
     if step is not None and path != part.path:
         first = int(step[1])
-        values = [one[first : int(step[2])] if step[2] else one[first] for one in values if len(one) > first]
+        values = [
+            value[first : int(step[2])] if step[2] else value[first] for value in values if len(value) > first
+        ]
     texts = [short(value) for value in values[: 1 if part.length is not None else _EXAMPLES]]
     return ", ".join(texts) + (", …" if len(part.values) > len(texts) else "")
 

@@ -24,7 +24,7 @@ class Edit:
 
 def applied(text: str, edits: Iterable[Edit]) -> str:
     """The text with the edits, which do not overlap."""
-    for edit in sorted(edits, key=lambda one: one.start, reverse=True):
+    for edit in sorted(edits, key=lambda change: change.start, reverse=True):
         text = text[: edit.start] + edit.text + text[edit.end :]
     return text
 

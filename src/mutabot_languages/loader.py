@@ -22,7 +22,7 @@ from .registry import LANGUAGES, language_for
 
 _MAIN = "main"
 #: pytest shows the test and what stopped the program, and no function of this package between them
-for _module in [one for name, one in sys.modules.items() if name.startswith(f"{__package__}.")]:
+for _module in [module for name, module in sys.modules.items() if name.startswith(f"{__package__}.")]:
     _module.__dict__["__tracebackhide__"] = True
 
 
@@ -92,9 +92,9 @@ class RobotProgram:
         for steps in (self.language.prepare(machine, task), self.language.main(machine, task, routine)):
             machine.start(_MAIN, steps)
             schedule.run(_MAIN)
-        names = {name: one.value for name, one in machine.globals.items()}
+        names = {name: variable.value for name, variable in machine.globals.items()}
         for unit in units:
-            names |= {name: one.value for name, one in unit.names.items()}
+            names |= {name: variable.value for name, variable in unit.names.items()}
         return ProgramRun(names, dict(station.outputs), tuple(station.notes), station.time - began)
 
     def _unit(self, file: Path) -> ProgramUnit:
@@ -104,12 +104,12 @@ class RobotProgram:
             raise LanguageError(f"{file}: the program cannot be read: {error.strerror}") from None
         text, _ = decode(content)
         note_read(file.resolve())
-        found = [one for one in active() if one.concern(file.resolve(), content)]
+        found = [edits for edits in active() if edits.concern(file.resolve(), content)]
         assigned = _assigned(self.language.read(file.name, text).tree) if found else frozenset()
-        text = applied(text, [edit for one in found for edit in one.edits])
+        text = applied(text, [edit for edits in found for edit in edits.edits])
         parsed = self.language.read(file.name, text)
         name = str(file.absolute())
-        numbers = {one.start: number for number, one in enumerate(routines(parsed.tree), 1)}
+        numbers = {routine.start: number for number, routine in enumerate(routines(parsed.tree), 1)}
         sys.audit("mutabot.executed", name, MODULE)
         unit = ProgramUnit(
             str(file.resolve()),
@@ -118,7 +118,7 @@ class RobotProgram:
             assigned=assigned,
             began=lambda start: sys.audit("mutabot.executed", name, numbers[start]),
         )
-        unit.watched = {start: one.reached for one in found for start in _watched(parsed.tree, one)}
+        unit.watched = {start: edits.reached for edits in found for start in _watched(parsed.tree, edits)}
         return unit
 
 
@@ -137,10 +137,10 @@ def load(
     Raises LanguageError for a file that is not there or of no known language, and for a wrong cell map.
     """
     files = [Path(path), *map(Path, more)]
-    languages = [language_for(one.name) for one in files]
+    languages = [language_for(program.name) for program in files]
     for file, language in zip(files, languages, strict=True):
         if language is None or language is not languages[0]:
-            known = ", ".join(suffix for one in LANGUAGES for suffix in one.suffixes)
+            known = ", ".join(suffix for known_language in LANGUAGES for suffix in known_language.suffixes)
             raise LanguageError(
                 f"{file}: the files of a program have one language, and end with one of {known}"
             )
@@ -149,7 +149,7 @@ def load(
     found = languages[0]
     assert found is not None
     for file in tuple(files):
-        files += [one for one in found.beside(file) if one not in files]
+        files += [addition for addition in found.beside(file) if addition not in files]
     beside = files[0].parent / "cell_map.toml"
     chosen = Path(cell_map) if cell_map is not None else beside if beside.is_file() else None
     return RobotProgram(tuple(files), found, CellMap.read(chosen) if chosen is not None else CellMap())
@@ -158,13 +158,13 @@ def load(
 def _assigned(tree: ProgramNode) -> frozenset[str]:
     """The variables that a program gives a value."""
     targets = (node.parts[0] for node in tree.walk() if node.kind == "assign")
-    return frozenset(one.name for one in targets if one.kind == "name")
+    return frozenset(target.name for target in targets if target.kind == "name")
 
 
 def _watched(tree: ProgramNode, edits: ActiveEdits) -> list[int]:
     """Where the statements begin that are different."""
     shift, found = 0, list[int]()
-    for edit in sorted(edits.edits, key=lambda one: one.start):
+    for edit in sorted(edits.edits, key=lambda watched_edit: watched_edit.start):
         start, end = edit.start + shift, edit.start + shift + len(edit.text)
         inside = [
             node

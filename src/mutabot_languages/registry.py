@@ -18,7 +18,7 @@ LANGUAGES: tuple[RobotLanguage, ...] = (URSCRIPT, RAPID, KRL)
 def language_for(file: str) -> RobotLanguage | None:
     """The language of a file by its suffix; None if it is none of these."""
     name = file.lower()
-    return next((one for one in LANGUAGES if name.endswith(one.suffixes)), None)
+    return next((language for language in LANGUAGES if name.endswith(language.suffixes)), None)
 
 
 def rewriter_of(language: RobotLanguage) -> type[Rewriter]:

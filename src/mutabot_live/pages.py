@@ -93,7 +93,7 @@ def _script(data: bytes) -> Page:
 def _assets() -> Iterator[tuple[str, Page]]:
     found = ReportPages.assets()
     own = files("mutabot_live").joinpath("assets").iterdir()
-    for name, data in (*found.items(), *((one.name, one.read_bytes()) for one in own)):
+    for name, data in (*found.items(), *((entry.name, entry.read_bytes()) for entry in own)):
         kind = _KINDS.get(Path(name).suffix)
         if kind is not None and name != "index.html":
             yield f"assets/{name}", Page(kind, data)

@@ -120,7 +120,7 @@ class LiveFeed:
 
     def _since(self, number: int) -> list[LiveEvent]:
         last = [self._state] if self._state is not None else []
-        return sorted((one for one in [*self._notes, *last] if one.number > number), key=_number)
+        return sorted((note for note in [*self._notes, *last] if note.number > number), key=_number)
 
 
 def _number(event: LiveEvent) -> int:

@@ -58,11 +58,14 @@ def choose(
     """
     mutant = result.mutant
     where = round if round is not None else _clearest_round(result)
-    outcome = next((one for one in result.outcomes if one.round == where), None)
+    outcome = next((candidate for candidate in result.outcomes if candidate.round == where), None)
     named: list[str] = []
     if outcome is not None:
         noticed = *(kill.test for kill in outcome.kills), outcome.test
-        named = [*(one.test for one in outcome.diverged), *(one for one in noticed if one is not None)]
+        named = [
+            *(divergence.test for divergence in outcome.diverged),
+            *(test_name for test_name in noticed if test_name is not None),
+        ]
     with closing(context.recordings()) as recordings:
         kept = recordings.tests(mutant.id, where)
         tests = list(dict.fromkeys([*named, *kept, *_reached_by(results, result)]))
@@ -70,7 +73,11 @@ def choose(
             raise UsageError(f"no test reaches mutant {mutant.number} ({mutant.id}): there is nothing to see")
         name = tests[0] if test is None else _matching_test(tests, test)
         original, mutated = recordings.pair(mutant.id, where, name)
-    diverged = next((one for one in outcome.diverged if one.test == name), None) if outcome else None
+    diverged = (
+        next((divergence for divergence in outcome.diverged if divergence.test == name), None)
+        if outcome
+        else None
+    )
     return MotionView(
         mutant.number,
         mutant.id,
@@ -103,17 +110,17 @@ def missing_in(view: MotionView) -> list[str]:
 def _clearest_round(result: MutantResult) -> int:
     """Return the round that shows the mutant's effect best, from 0; of equal ones the first."""
     ranks = []
-    for one in result.outcomes:
-        difference = one.told
-        deviation = one.deviation or 0.0 if difference is not None else 0.0
+    for outcome in result.outcomes:
+        difference = outcome.told
+        deviation = outcome.deviation or 0.0 if difference is not None else 0.0
         is_clear = difference is not None and not difference.scatters
-        ranks.append((bool(one.acted), is_clear, deviation, -one.round))
+        ranks.append((bool(outcome.acted), is_clear, deviation, -outcome.round))
     return -max(ranks)[-1] if ranks else 0
 
 
 def _reached_by(results: Results, result: MutantResult) -> tuple[str, ...]:
     if not results.reaching.tests:  # an older journal does not say it
-        return tuple(dict.fromkeys(one.test.test for one in results.baseline))
+        return tuple(dict.fromkeys(baseline_test.test.test for baseline_test in results.baseline))
     return results.reached_by(result.mutant)
 
 

@@ -136,7 +136,7 @@ def _filmed_test(result: Result, test: str) -> FilmedTest:
     pictures = result.task.job.pictures
     assert pictures is not None
     shot = Film(Path(pictures.file))
-    end = next((one for one in result.ends if one.test == test), None)
+    end = next((candidate for candidate in result.ends if candidate.test == test), None)
     if end is None:
         return FilmedTest(shot, None, result.death(), (result.death(),))
     recorded = RecordedPaths.from_text(end.recording) if end.recording is not None else None

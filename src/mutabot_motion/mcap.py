@@ -45,7 +45,7 @@ class _FileTopics:
 
     def _scene(self) -> Iterator[tuple[float, Any, Any]]:
         """Yield the surroundings and the paths, which exist from the start."""
-        yield self._shapes("/blocks", [_block(one) for one in self._view.blocks])
+        yield self._shapes("/blocks", [_block(block) for block in self._view.blocks])
         for side, recorded in self._view.sides:
             paths = [_path(recorded, name, _colour(side)) for name in things_in(recorded)]
             yield self._shapes(f"/{side}/paths", paths)
@@ -98,12 +98,12 @@ class _FileTopics:
             Weight.FAULT: messages.LogLevel.Warning,
         }
         channel = channels.LogChannel(f"/{side}/log", context=self._context)
-        for one in events(self._view, recorded):
+        for event in events(self._view, recorded):
             line = messages.Log(
-                timestamp=messages.Timestamp.from_epoch_secs(one.time), level=levels[one.weight],
-                message=one.text, name=side, file=one.file, line=one.line,
+                timestamp=messages.Timestamp.from_epoch_secs(event.time), level=levels[event.weight],
+                message=event.text, name=side, file=event.file, line=event.line,
             )  # fmt: skip
-            yield one.time, channel, line
+            yield event.time, channel, line
 
 
 def _topic(*parts: str) -> str:

@@ -107,10 +107,10 @@ class _Side:
         levels = {Weight.READING: "DEBUG", Weight.COMMAND: "INFO", Weight.FAULT: "WARN"}
         found = events(self._view, self._recorded)
         if found:
-            where = [f" ({one.file}:{one.line})" if one.file else "" for one in found]
-            texts = [f"{one.text}{place}" for one, place in zip(found, where, strict=True)]
-            lines = rerun.TextLog.columns(text=texts, level=[levels[one.weight] for one in found])
-            self._stream.send_columns(self._path("log"), [self._times(one.time for one in found)], lines)
+            where = [f" ({event.file}:{event.line})" if event.file else "" for event in found]
+            texts = [f"{event.text}{place}" for event, place in zip(found, where, strict=True)]
+            lines = rerun.TextLog.columns(text=texts, level=[levels[event.weight] for event in found])
+            self._stream.send_columns(self._path("log"), [self._times(event.time for event in found)], lines)
 
     def _times(self, times: Iterable[float]) -> rerun.TimeColumn:
         return rerun.TimeColumn(self._view.clock, duration=list(times))

@@ -100,8 +100,8 @@ class MotionView:
 def end_of(recorded: RecordedPaths) -> float:
     """Return the last time in a recording, s."""
     recording = recorded.recording
-    calls = (one.ended for one in recording.calls if one.ended is not None)
-    moments = (one.time for one in recording.moments)
+    calls = (call.ended for call in recording.calls if call.ended is not None)
+    moments = (moment.time for moment in recording.moments)
     return max((*recording.times[-1:], *calls, *moments), default=0.0)
 
 
@@ -159,7 +159,7 @@ def events(view: MotionView, recorded: RecordedPaths) -> list[ViewEvent]:
         found.append(ViewEvent(moment.time, text))
     if recording.fault is not None:
         found.append(ViewEvent(recording.fault, f"FAULT: {view.what}", Weight.FAULT))
-    return sorted(found, key=lambda one: one.time)
+    return sorted(found, key=lambda event: event.time)
 
 
 def _call_text(name: str, written: Mapping[str, Any], read: Mapping[str, Any]) -> str:

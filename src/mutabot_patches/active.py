@@ -58,9 +58,9 @@ def _update_functions(path: str, content: bytes, functions: list[list[Any]]) -> 
 
 def _functions_of(path: str) -> Iterator[FunctionType]:
     gc.unfreeze()  # what the program has frozen is in no list; to freeze more than it did would keep garbage
-    for one in gc.get_objects():
-        if type(one) is FunctionType and one.__code__.co_filename.endswith(path):
-            yield one
+    for object_ in gc.get_objects():
+        if type(object_) is FunctionType and object_.__code__.co_filename.endswith(path):
+            yield object_
 
 
 def _codes_in(file: str, content: bytes) -> Mapping[tuple[str, int], CodeType]:

@@ -70,7 +70,7 @@ class _PatchedLines:
             places = iter((last,))
         else:
             places = _around(min(expected, max(last, 0)), last)
-        return next((one for one in places if self._fits(hunk, one)), None)
+        return next((place for place in places if self._fits(hunk, place)), None)
 
     def _fits(self, hunk: Hunk, at: int) -> bool:
         there = self._now[at : at + len(hunk.before)]
@@ -112,7 +112,11 @@ class _PatchedLines:
 def _around(start: int, last: int) -> Iterator[int]:
     """Yield places from 0 to the last, the nearest first; of two equally near, the one below first."""
     for distance in range(max(start, last - start, 0) + 1):
-        yield from (one for one in dict.fromkeys((start + distance, start - distance)) if 0 <= one <= last)
+        yield from (
+            position
+            for position in dict.fromkeys((start + distance, start - distance))
+            if 0 <= position <= last
+        )
 
 
 def _shown(line: bytes) -> str:

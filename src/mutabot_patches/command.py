@@ -40,28 +40,33 @@ def patches(
     """
     root = context.journal.parent.parent
     found = list(reverted(root, from_git, match, paths or []))
-    states = {one.commit: _write(root, to, one) for one in found}
+    states = {reversal.commit: _write(root, to, reversal) for reversal in found}
     if json:
-        data = [{"commit": one.commit, "subject": one.subject, **states[one.commit]} for one in found]
+        data = [
+            {"commit": reversal.commit, "subject": reversal.subject, **states[reversal.commit]}
+            for reversal in found
+        ]
         context.print_json({"commits": data})
         return
-    for one in found:
-        file, why = states[one.commit]["file"], states[one.commit]["why_not"]
-        context.print(f"{file or 'no patch'}  {one.commit[:10]} {one.subject}{f': {why}' if why else ''}")
-    written = sum(bool(one["file"]) for one in states.values())
+    for commit in found:
+        file, why = states[commit.commit]["file"], states[commit.commit]["why_not"]
+        context.print(
+            f"{file or 'no patch'}  {commit.commit[:10]} {commit.subject}{f': {why}' if why else ''}"
+        )
+    written = sum(bool(state["file"]) for state in states.values())
     context.tell([f"{written} of {len(found)} fixes can be taken back: mutabot run --family {FAMILY}"])
 
 
-def _write(root: Path, to: str, one: Reverted) -> dict[str, str | None]:
+def _write(root: Path, to: str, commit: Reverted) -> dict[str, str | None]:
     """Write a patch; return its file in the project, or why there is none. Raises UsageError."""
-    if one.why_not:
-        return {"file": None, "why_not": one.why_not}
-    path = root / to / one.name
+    if commit.why_not:
+        return {"file": None, "why_not": commit.why_not}
+    path = root / to / commit.name
     if not path.resolve().is_relative_to(root.resolve()):
         raise UsageError(f"--to {to}: a folder in that of the project")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(one.content)
+        path.write_bytes(commit.content)
     except OSError as error:
         raise UsageError(f"--to {to}: {error.strerror or error}") from None
     return {"file": path.relative_to(root).as_posix(), "why_not": None}

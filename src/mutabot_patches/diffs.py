@@ -139,7 +139,7 @@ class _Reader:
             yield self._hunk(found)
 
     def _hunk(self, found: re.Match[bytes]) -> Hunk:
-        old, had, new, has = (int(one) if one is not None else 1 for one in found.groups())
+        old, had, new, has = (int(group) if group is not None else 1 for group in found.groups())
         before, after, signs = list[bytes](), list[bytes](), list[bytes]()
         while len(before) < had or len(after) < has or self._is_end_of_file():
             line = self._lines[self._at] if self._at < len(self._lines) else b""
@@ -176,19 +176,19 @@ def _without_lines(git: tuple[str, str] | None, other: str) -> Iterator[FileDiff
 
 def _named(line: bytes) -> tuple[str, str]:
     """Return the two paths of a line ``diff --git a/x b/x``."""
-    words = line.split(b" ", 2)[2]
-    middle = words.find(b" b/") if words.startswith(b"a/") else (len(words) - 1) // 2
-    return _path(words[:middle]) or "", _path(words[middle + 1 :]) or ""
+    names = line.split(b" ", 2)[2]
+    middle = names.find(b" b/") if names.startswith(b"a/") else (len(names) - 1) // 2
+    return _path(names[:middle]) or "", _path(names[middle + 1 :]) or ""
 
 
-def _path(words: bytes) -> str | None:
+def _path(text: bytes) -> str | None:
     """Return a path as a patch writes it: quoted if it has special characters; a time may follow."""
-    if words.startswith(b'"'):
-        quoted = words[1 : words.rfind(b'"')]
-        words = _OCTAL.sub(lambda one: _unescaped(one[1]), quoted)
+    if text.startswith(b'"'):
+        quoted = text[1 : text.rfind(b'"')]
+        text = _OCTAL.sub(lambda match: _unescaped(match[1]), quoted)
     else:
-        words = words.split(b"\t")[0].rstrip(b" ")
-    return None if words == b"/dev/null" else words.decode("utf-8", errors="surrogateescape")
+        text = text.split(b"\t")[0].rstrip(b" ")
+    return None if text == b"/dev/null" else text.decode("utf-8", errors="surrogateescape")
 
 
 def _unescaped(sign: bytes) -> bytes:

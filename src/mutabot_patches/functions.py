@@ -45,16 +45,16 @@ def changed_functions(before: bytes, after: bytes, path: str) -> tuple[ChangedFu
 def codes_of(code: CodeType) -> Iterator[CodeType]:
     """Yield a code object and all within it."""
     yield code
-    for one in code.co_consts:
-        if isinstance(one, CodeType):
-            yield from codes_of(one)
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            yield from codes_of(constant)
 
 
 def first_statement(tree: ast.Module, function: ChangedFunction) -> ast.stmt | None:
     """Return the first statement that a function executes; None if it cannot be determined."""
     for node in ast.walk(tree):
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
-            first = min([node.lineno, *(one.lineno for one in node.decorator_list)])
+            first = min([node.lineno, *(decorator.lineno for decorator in node.decorator_list)])
             if first == function.old and node.name == function.name.rpartition(".")[2]:
                 has_text = ast.get_docstring(node, clean=False) is not None
                 return next(iter(node.body[has_text:]), None)
@@ -107,9 +107,11 @@ def _has_same_code(old: CodeType, new: CodeType) -> bool:
 
 
 def _content(code: CodeType) -> tuple[object, ...]:
-    constants = tuple("code" if isinstance(one, CodeType) else _typed(one) for one in code.co_consts)
+    constants = tuple(
+        "code" if isinstance(constant, CodeType) else _typed(constant) for constant in code.co_consts
+    )
     names = code.co_names, code.co_varnames, code.co_freevars, code.co_cellvars
-    inner = tuple(one.co_name for one in _within(code))
+    inner = tuple(inner_code.co_name for inner_code in _within(code))
     counts = code.co_argcount, code.co_posonlyargcount, code.co_kwonlyargcount, code.co_flags
     return code.co_name, code.co_code, code.co_exceptiontable, constants, names, inner, counts
 
@@ -119,9 +121,9 @@ def _typed(constant: object) -> tuple[str, str]:
     if isinstance(constant, frozenset):
         return "frozenset", repr(sorted(map(_typed, constant)))
     if isinstance(constant, tuple):
-        return "tuple", repr([_typed(one) for one in constant])
+        return "tuple", repr([_typed(element) for element in constant])
     return type(constant).__name__, repr(constant)
 
 
 def _within(code: CodeType) -> list[CodeType]:
-    return [one for one in code.co_consts if isinstance(one, CodeType)]
+    return [constant for constant in code.co_consts if isinstance(constant, CodeType)]

@@ -85,10 +85,12 @@ def _reverted(root: Path, commit: str, subject: str, paths: Sequence[str]) -> Re
     sides = commit, parents[0].decode()
     named = git(root, *_DIFF, "--name-only", "-z", *sides, "--", *paths)
     names = [os.fsdecode(name) for name in named.split(b"\0") if name]
-    files = [one for one in names if PurePosixPath(one).suffix in _OF_PROGRAM and not looks_like_tests(one)]
+    files = [
+        name for name in names if PurePosixPath(name).suffix in _OF_PROGRAM and not looks_like_tests(name)
+    ]
     if not files:
         return Reverted(commit, subject, why_not="it changes no file of the program")
-    diff = git(root, *_DIFF, *sides, "--", *(f":(literal){one}" for one in files))
+    diff = git(root, *_DIFF, *sides, "--", *(f":(literal){file}" for file in files))
     try:
         read_patch(diff, root, looks_like_tests)
     except PatchError as error:
@@ -100,9 +102,9 @@ def git(folder: Path, *command: str) -> bytes:
     """Return git's output for the repository of a folder. Raises UsageError if it fails."""
     environment = {name: value for name, value in os.environ.items() if not name.startswith("GIT_")}
     environment |= {"GIT_OPTIONAL_LOCKS": "0", "LC_ALL": "C"}
-    words = ["git", "-C", os.fspath(folder), "-c", "core.quotePath=true", *command]
+    command_line = ["git", "-C", os.fspath(folder), "-c", "core.quotePath=true", *command]
     try:
-        done = subprocess.run(words, capture_output=True, check=False, env=environment)
+        done = subprocess.run(command_line, capture_output=True, check=False, env=environment)
     except OSError as error:
         raise UsageError(f"git cannot be started: {error.strerror}") from None
     if done.returncode:

@@ -73,11 +73,11 @@ class _PatchToPlan:
         found = list[tuple[str, HunkExtent, str]]()
         for file in patch.files if functions else ():
             tree = ast.parse(file.before or b"")
-            for one in functions[file.path]:
-                node = first_statement(tree, one)
+            for function in functions[file.path]:
+                node = first_statement(tree, function)
                 if node is None:
                     return cls(name, patch, {}, ())
-                found.append((file.path, extent_of(node), one.name))
+                found.append((file.path, extent_of(node), function.name))
         return cls(name, patch, functions, tuple(found))
 
 
@@ -96,7 +96,7 @@ class PatchFaults(FaultProvider):
         """Return the places where changed functions begin, to find out which tests call them."""
         if not set(project.families) <= _BESIDE:
             return ()
-        patches = [one for _, one in _read_all(project, ()) if isinstance(one, _PatchToPlan)]
+        patches = [patch for _, patch in _read_all(project, ()) if isinstance(patch, _PatchToPlan)]
         return _places(patches, project.root, first)
 
     def plan(self, project: Project, original: Original) -> Planned:
@@ -106,35 +106,35 @@ class PatchFaults(FaultProvider):
         found = list(_read_all(project, tests))
         looked_at = original.texts.get(self.name, ())
         known = {(text.file, place.extent): place.number for text in looked_at for place in text.places}
-        for file, one in found:
-            if isinstance(one, _PatchToPlan):
-                self._plan_one(planned, one, original, known)
+        for file, patch in found:
+            if isinstance(patch, _PatchToPlan):
+                self._plan_one(planned, patch, original, known)
             else:
                 site = Site.of_parameter(file, "patch")
-                planned.mutants.append(PlannedMutant(self.mutant(ApplyPatch(), site, file), str(one)))
+                planned.mutants.append(PlannedMutant(self.mutant(ApplyPatch(), site, file), str(patch)))
         return planned
 
     def _plan_one(
         self,
         planned: Planned,
-        one: _PatchToPlan,
+        patch: _PatchToPlan,
         original: Original,
         known: Mapping[tuple[str, HunkExtent], int],
     ) -> None:
-        files = one.patch.files
+        files = patch.patch.files
         hunks = [(file.path, extent) for file in files for extent in file.extents]
-        site = Site.of_patch(one.name, hunks)
+        site = Site.of_patch(patch.name, hunks)
         contents = {file.path: file.after.decode("latin-1") for file in files}
-        reaching = _reaching(one, original, known)
+        reaching = _reaching(patch, original, known)
         functions = {
             path: [[each.name, each.old, each.new] for each in found]
-            for path, found in one.functions.items()
+            for path, found in patch.functions.items()
             if reaching is not None
         }
         keys = (Activation.EACH_TEST,) if reaching is not None else ()
         data = {"files": contents, "functions": functions}
         active = Activation(ACTIVE, data, keys, Activation.AT_ONCE)
-        mutant = self.mutant(ApplyPatch(), site, _description(one))
+        mutant = self.mutant(ApplyPatch(), site, _description(patch))
         does = {path: sha256(text.encode()).hexdigest() for path, text in contents.items()}
         planned.mutants.append(PlannedMutant(mutant, does=does, active=active))
         for round, tests in enumerate(original.tests):
@@ -170,9 +170,9 @@ def files_of(table: PatchesTable, root: Path) -> list[Path]:
         if Path(pattern).is_absolute() or ".." in Path(pattern).parts:
             raise UsageError(f"[tool.mutabot.{TABLE}] files: {pattern!r} is not in the project's folder")
         if (root / pattern).is_dir():
-            fitting = [one for one in (root / pattern).rglob("*") if one.suffix in _SUFFIXES]
+            fitting = [path for path in (root / pattern).rglob("*") if path.suffix in _SUFFIXES]
         else:
-            fitting = [one for one in root.glob(pattern) if one.is_file()]
+            fitting = [path for path in root.glob(pattern) if path.is_file()]
         if not fitting:
             raise UsageError(
                 f"[tool.mutabot.{TABLE}] files: {pattern!r} fits no patch of the project; it is a file, a "
@@ -199,14 +199,14 @@ def _functions(patch: Patch) -> dict[str, tuple[ChangedFunction, ...]]:
 def _places(patches: Sequence[_PatchToPlan], root: Path, first: int) -> list[ProgramText]:
     """Return the texts with a place where each function begins."""
     found = dict[str, dict[HunkExtent, str]]()
-    for one in patches:
-        for file, extent, name in one.beginnings:
+    for patch in patches:
+        for file, extent, name in patch.beginnings:
             found.setdefault(file, {}).setdefault(extent, name)
     texts, number = list[ProgramText](), first
     for file, names in found.items():
         content = (root / file).read_bytes()
-        statements = (one for one in ast.walk(ast.parse(content)) if isinstance(one, ast.stmt))
-        kinds = {extent_of(one): type(one).__name__ for one in statements}
+        statements = (node for node in ast.walk(ast.parse(content)) if isinstance(node, ast.stmt))
+        kinds = {extent_of(statement): type(statement).__name__ for statement in statements}
         places = [
             TextPlace(
                 n, Site.in_program(file, extent, name, name).span, name, 1, kinds[extent], statement=True
@@ -219,16 +219,16 @@ def _places(patches: Sequence[_PatchToPlan], root: Path, first: int) -> list[Pro
 
 
 def _reaching(
-    one: _PatchToPlan, original: Original, known: Mapping[tuple[str, HunkExtent], int]
+    patch: _PatchToPlan, original: Original, known: Mapping[tuple[str, HunkExtent], int]
 ) -> list[list[str]] | None:
     """Return the tests of each round that call what a patch changes, also in processes below the tests.
 
     None if a process that runs cannot become the mutant, or if who calls it is not known: tests that read a
     file as text need not call what stands in it.
     """
-    numbers = {known.get((file, extent)) for file, extent, _ in one.beginnings}
+    numbers = {known.get((file, extent)) for file, extent, _ in patch.beginnings}
     is_unknown = not numbers or None in numbers or len(original.text) < len(original.tests)
-    files = {file.path for file in one.patch.files}
+    files = {file.path for file in patch.patch.files}
     if is_unknown or files & {*original.refused_files()} or any(map(original.is_read, files)):
         return None
     found = list[list[str]]()
@@ -242,7 +242,7 @@ def _reaching(
     return found
 
 
-def _description(one: _PatchToPlan) -> str:
-    title = f": {one.patch.title}" if one.patch.title else ""
-    notes = f" ({', '.join(one.patch.notes)})" if one.patch.notes else ""
-    return f"{one.name}{title}{notes}"
+def _description(patch: _PatchToPlan) -> str:
+    title = f": {patch.patch.title}" if patch.patch.title else ""
+    notes = f" ({', '.join(patch.patch.notes)})" if patch.patch.notes else ""
+    return f"{patch.name}{title}{notes}"

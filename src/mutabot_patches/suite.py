@@ -42,5 +42,5 @@ def looks_like_tests(file: str) -> bool:
     """Return whether a file belongs to the tests by its name and folder alone."""
     path = PurePosixPath(file)
     is_named = path.suffix == ".py" and (path.stem.startswith("test_") or path.stem.endswith("_test"))
-    in_tests = {"test", "tests", "testing"} & {one.lower() for one in path.parts[:-1]}
+    in_tests = {"test", "tests", "testing"} & {part.lower() for part in path.parts[:-1]}
     return is_named or bool(in_tests) or path.name in _CONFIGURATION or file in _OF_PROJECT

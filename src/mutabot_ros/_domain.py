@@ -97,6 +97,6 @@ def _running() -> Iterator[str]:
     for name in os.listdir("/proc") if os.path.isdir("/proc") else ():
         if name.isdigit():
             with suppress(OSError), open(f"/proc/{name}/environ", "rb") as stream:
-                for one in stream.read().split(b"\0"):
-                    if one.startswith(mark):
-                        yield one.removeprefix(mark).decode(errors="replace")
+                for variable in stream.read().split(b"\0"):
+                    if variable.startswith(mark):
+                        yield variable.removeprefix(mark).decode(errors="replace")

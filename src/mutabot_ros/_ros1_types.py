@@ -42,7 +42,7 @@ class Ros1Types(Types):
         return getattr(module, name + part, None)
 
     def names_in(self, module: ModuleType, part: str) -> Iterator[str]:
-        return (one.removesuffix(part) for one in vars(module) if one.endswith(part) and one[0].isupper())
+        return (name.removesuffix(part) for name in vars(module) if name.endswith(part) and name[0].isupper())
 
     def fields_of(self, message: Any) -> Mapping[str, str]:
         return dict(zip(message.__slots__, message._slot_types, strict=True))

@@ -131,8 +131,8 @@ class Types(ABC):
                     message = self._class_of(kind, *self.read[Form.RECEIVE])
                 except LookupError:  # the program has it all the same
                     continue
-                for one in self._check_path(message, refused.parsed, "refused.path"):
-                    yield replace(one, text=f"{name}: {one.text}")
+                for finding in self._check_path(message, refused.parsed, "refused.path"):
+                    yield replace(finding, text=f"{name}: {finding.text}")
 
     def _class_of(self, kind: str, module: str, part: str) -> Any:
         """Return the class of a type. Raises LookupError with a message, the wrong name and known names."""

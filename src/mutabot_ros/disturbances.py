@@ -44,9 +44,13 @@ def frame_position(
     """Shift frames along an axis of their parents, m, in messages with transforms to them."""
 
     def moved(message: Any) -> bool:
-        found = [one.transform for one in _stamped_transforms(message) if _is_to(one, names)]
-        for one in found:
-            setattr(one.translation, axis, float(change(getattr(one.translation, axis))))
+        found = [
+            stamped_transform.transform
+            for stamped_transform in _stamped_transforms(message)
+            if _is_to(stamped_transform, names)
+        ]
+        for transform in found:
+            setattr(transform.translation, axis, float(change(getattr(transform.translation, axis))))
         return bool(found)
 
     _intercept(subscription, "*", _changing(moved, acts))
@@ -57,9 +61,13 @@ def frame_angle(subscription: Any, change: Changed, *, names: str, random: Rando
     half = change(0.0) / 2
 
     def turned(message: Any) -> bool:
-        found = [one.transform for one in _stamped_transforms(message) if _is_to(one, names)]
-        for one in found:
-            q, cos, sin = one.rotation, math.cos(half), math.sin(half)
+        found = [
+            stamped_transform.transform
+            for stamped_transform in _stamped_transforms(message)
+            if _is_to(stamped_transform, names)
+        ]
+        for transform in found:
+            q, cos, sin = transform.rotation, math.cos(half), math.sin(half)
             q.w, q.x, q.y, q.z = (
                 cos * q.w - sin * q.z, cos * q.x - sin * q.y, cos * q.y + sin * q.x, cos * q.z + sin * q.w,
             )  # fmt: skip
@@ -101,7 +109,9 @@ def distance(subscription: Any, change: Changed, *, names: str, random: Random, 
         if hasattr(message, "range"):
             message.range = float(change(message.range))
         elif hasattr(message, "ranges"):
-            message.ranges = [float(change(one)) if math.isfinite(one) else one for one in message.ranges]
+            message.ranges = [
+                float(change(reading)) if math.isfinite(reading) else reading for reading in message.ranges
+            ]
         return hasattr(message, "range") or hasattr(message, "ranges")
 
     _intercept(subscription, names, _changing(read, acts))
@@ -191,8 +201,8 @@ def _positions(message: Any) -> Iterator[Any]:
     for name in ("pose", "position", "point", "transform", "translation"):
         if (part := getattr(message, name, None)) is not None:
             yield from _positions(part)
-    for one in getattr(message, "transforms", ()):
-        yield from _positions(one)
+    for transform in getattr(message, "transforms", ()):
+        yield from _positions(transform)
     if all(isinstance(getattr(message, axis, None), float) for axis in "xyz") and not hasattr(message, "w"):
         yield message
 
@@ -200,7 +210,11 @@ def _positions(message: Any) -> Iterator[Any]:
 def _stamped_transforms(message: Any) -> list[Any]:
     """Return the stamped transforms that a message contains or is."""
     found = getattr(message, "transforms", (message,))
-    return [one for one in found if hasattr(one, "transform") and hasattr(one, "child_frame_id")]
+    return [
+        transform
+        for transform in found
+        if hasattr(transform, "transform") and hasattr(transform, "child_frame_id")
+    ]
 
 
 def _is_to(transform: Any, names: str) -> bool:
@@ -209,8 +223,8 @@ def _is_to(transform: Any, names: str) -> bool:
 
 def _split_message(message: Any, names: str) -> tuple[Any, Any]:
     """Split a message: transforms to frames of these names, and the others; None for an empty part."""
-    meant = [one for one in _stamped_transforms(message) if _is_to(one, names)]
-    others = [one for one in _stamped_transforms(message) if not _is_to(one, names)]
+    meant = [transform for transform in _stamped_transforms(message) if _is_to(transform, names)]
+    others = [transform for transform in _stamped_transforms(message) if not _is_to(transform, names)]
     if not meant or not others:
         return (message, None) if meant else (None, message)
     parts = [with_sender(copy.copy(message), message) for _ in range(2)]

@@ -25,7 +25,10 @@ def intercept(subscription: Any, deliver: Callable[[Any, Callable[[Any], Any]], 
     """Intercept the callbacks of a subscription."""
 
     def invoked(message: Any, callback: Any, more: Any) -> None:
-        deliver(message, lambda one: type(subscription)._invoke_callback(subscription, one, callback, more))
+        deliver(
+            message,
+            lambda received: type(subscription)._invoke_callback(subscription, received, callback, more),
+        )
 
     subscription._invoke_callback = invoked
 

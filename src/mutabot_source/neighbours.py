@@ -33,7 +33,7 @@ class Neighbours:
                     self._places[value] = place
                     self._values.setdefault(place, []).append(value)
         for found in self._values.values():
-            found.sort(key=lambda one: (one.lineno, one.col_offset))
+            found.sort(key=lambda expression: (expression.lineno, expression.col_offset))
 
     def next_of(self, node: ast.AST) -> ast.expr | None:
         """Return the next different value at this place in the text, cyclically; None if there is none."""
@@ -59,7 +59,9 @@ def _passed_values(node: ast.AST) -> Iterator[tuple[str, ast.expr]]:
         for number, value in enumerate(node.args):
             is_row = isinstance(value, ast.Starred)
             yield f"{name} {'*' * is_row}{number}", value.value if isinstance(value, ast.Starred) else value
-        yield from ((f"{name} {one.arg}", one.value) for one in node.keywords if one.arg is not None)
+        yield from (
+            (f"{name} {keyword.arg}", keyword.value) for keyword in node.keywords if keyword.arg is not None
+        )
 
 
 def _is_fixed(node: ast.expr) -> bool:
@@ -72,7 +74,7 @@ def _is_fixed(node: ast.expr) -> bool:
         case ast.UnaryOp(op=ast.USub()):
             return isinstance(node.operand, ast.Constant) and _is_fixed(node.operand)
         case ast.Tuple() | ast.List():
-            return bool(node.elts) and all(_is_fixed(one) for one in node.elts)
+            return bool(node.elts) and all(_is_fixed(element) for element in node.elts)
         case ast.Name(id=name):
             return name.isupper()
         case ast.Attribute(attr=name):

@@ -135,10 +135,10 @@ def to_source(parts: TextParts, text_of: Callable[[ast.expr], str]) -> str:
     return _joined(parts, lambda node: text_of(node) if isinstance(node, _ATOMS) else f"({text_of(node)})")
 
 
-def same_program(one: str, other: str) -> bool:
+def same_program(first: str, second: str) -> bool:
     """Return whether two texts parse to the same program."""
     try:
-        return ast.dump(ast.parse(one)) == ast.dump(ast.parse(other))
+        return ast.dump(ast.parse(first)) == ast.dump(ast.parse(second))
     except SyntaxError:
         return False
 

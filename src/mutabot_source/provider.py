@@ -79,7 +79,11 @@ class SourceFaults(FaultProvider):
             changing(project.root, text) if original.is_read(text.file) else plan_mutants([text])
             for text in texts
         )
-        mutants = [replace(one, order=(OF_TEXT.index(one.mutant.family),)) for each in found for one in each]
+        mutants = [
+            replace(planned_fault, order=(OF_TEXT.index(planned_fault.mutant.family),))
+            for each in found
+            for planned_fault in each
+        ]
         planned = Planned([*mutants, *left_out], texts)
         reach_readers(planned, original, texts)
         return planned

@@ -75,7 +75,11 @@ def _variables(
     if not place.variable:
         return []
     names = [name for name in around if name not in declared]
-    return [replace(one, family=rule.family) for rule in asking for one in rule.with_variables(names)]
+    return [
+        replace(alternative, family=rule.family)
+        for rule in asking
+        for alternative in rule.with_variables(names)
+    ]
 
 
 def _read_in_functions(text: ProgramText) -> dict[str, list[str]]:

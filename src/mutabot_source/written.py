@@ -46,7 +46,7 @@ class TextWriter:
         self._lines = [line.encode() for line in text.split("\n")]
         tree = ast.parse(text)
         self._statements = tree.body
-        self._firsts = [_first_line(one) for one in self._statements]
+        self._firsts = [_first_line(statement) for statement in self._statements]
         formatted = (extent_of(node) for node in ast.walk(tree) if isinstance(node, ast.JoinedStr))
         self._formatted = {line for first, _, last, _ in formatted for line in range(first, last + 1)}
 
@@ -93,5 +93,7 @@ class TextWriter:
 
 
 def _first_line(statement: ast.stmt) -> int:
-    first: int = min([statement.lineno, *(one.lineno for one in getattr(statement, "decorator_list", ()))])
+    first: int = min(
+        [statement.lineno, *(decorator.lineno for decorator in getattr(statement, "decorator_list", ()))]
+    )
     return first

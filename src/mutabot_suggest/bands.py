@@ -62,7 +62,7 @@ def readable(band: Band, nearest: float, stated: float = 0.0) -> tuple[float, fl
 
 def _round_up(size: float) -> float:
     step = 10.0 ** math.floor(math.log10(size))
-    factor = next(one for one in (1, 2, 5, 10) if one * step >= size * (1 - 1e-9))
+    factor = next(step_factor for step_factor in (1, 2, 5, 10) if step_factor * step >= size * (1 - 1e-9))
     return float(f"{factor * step:.1g}")
 
 

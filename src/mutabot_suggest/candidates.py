@@ -55,12 +55,15 @@ def candidates(
         found += _of_suite(measured.reusable_checks.get(place, []), place, runs, mutants)
         texts = [text for text in runs[0] if is_reading(text) and all(text in read for read in runs)]
         readings = [reading_of(measured, place, text) for text in texts]
-        given = [one for one in readings if _is_input(one.text, originals, mutants)]
+        given = [candidate for candidate in readings if _is_input(candidate.text, originals, mutants)]
         module = project.module(place.file)
         compared, stated = stated_in(module)
         beside, own = stated_in(function_of(module, place))
         usual = max(own.values()) if len(set(own.values())) == 1 else 0.0
-        readings = [replace(one, way=ORACLE) if one.text in compared else one for one in readings]
+        readings = [
+            replace(candidate, way=ORACLE) if candidate.text in compared else candidate
+            for candidate in readings
+        ]
         limits = StatedTolerances(suite, stated, runs, mutants, everywhere)
         seen = _EndReadings(place, runs, mutants, given, limits, usual, suite)
         for reading in readings:
@@ -69,7 +72,7 @@ def candidates(
             why = _why_not(check, seen.limit(check.reading.text).tolerance)
             if why is None:
                 starts = accumulate(check.reading.text)
-                common = (any(one.startswith(start) for one in beside) for start in starts)
+                common = (any(name.startswith(start) for name in beside) for start in starts)
                 found.append(replace(check, alike=sum(common)))
             else:
                 for mutant, _ in check.trials:  # a clock is the reason only where there is no other
@@ -87,26 +90,26 @@ def _of_suite(
 ) -> Iterator[CheckOfSuite]:
     """Yield other tests' checks that hold in every run of the original; checks of the same thing together."""
     groups: dict[str, list[tuple[ReusableCheck, str]]] = {}
-    for one in reusable_checks:
-        if not all(read.get(one.key) is True for read in runs):
+    for check in reusable_checks:
+        if not all(read.get(check.key) is True for read in runs):
             continue
         tolerance = None
-        if one.lacks_tolerance and one.near is not None:
-            sizes = {read.get(f"{one.near.key}.tolerance") for read in runs}
+        if check.lacks_tolerance and check.near is not None:
+            sizes = {read.get(f"{check.near.key}.tolerance") for read in runs}
             tolerance = max(sizes) if all(map(is_number, sizes)) else None  # type: ignore[type-var]
             if tolerance is None:
                 continue
-        statement = one.written(tolerance)
-        name = _LAST_NAMES.sub("", statement) if one.near is not None else statement
-        groups.setdefault(name, []).append((one, statement))
+        statement = check.written(tolerance)
+        name = _LAST_NAMES.sub("", statement) if check.near is not None else statement
+        groups.setdefault(name, []).append((check, statement))
     for group in groups.values():
         trials = frozenset(
             (mutant, round)
             for mutant, reads in mutants.items()
             for (round, _), read in reads.items()
-            if any(read.get(one.key) is False for one, _ in group)
+            if any(read.get(reusable.key) is False for reusable, _ in group)
         )
-        needs = tuple(dict.fromkeys(line for one, _ in group for line in one.needs))
+        needs = tuple(dict.fromkeys(line for reusable, _ in group for line in reusable.needs))
         texts = tuple(statement for _, statement in group)
         if trials:
             yield CheckOfSuite(place=place, trials=trials, runs=len(runs), needs=needs, statements=texts)
@@ -156,10 +159,12 @@ class _EndReadings:
         """Yield the checks of a reading: that it equals an input of the test, or a value."""
         text = reading.text
         is_fact = isinstance(self.runs[0][text], bool)  # that two facts agree says nothing
-        partners = [one for one in self.given if not is_fact and _are_related(one, reading, self.runs[0])]
+        partners = [
+            partner for partner in self.given if not is_fact and _are_related(partner, reading, self.runs[0])
+        ]
         for other in [*partners[:_PARTNERS], None]:
             texts = [text] if other is None else [text, other.text]
-            values = [read[one] for read in self.runs for one in texts]
+            values = [read[text_read] for read in self.runs for text_read in texts]
             are_counts = all(isinstance(value, int) for value in values) and len(set(values)) == 1
             is_near = all(is_number(value) for value in values)
             is_near &= not are_counts or self.limit(text).tolerance > 0.0
@@ -217,7 +222,11 @@ class _EndReadings:
 
         # let through what only many digits would notice, or less than the tests allow, if there are others
         fitting = (
-            one for one in written if not is_exact(*one[1:]) and one[2] >= stated and not is_fine(one[0])
+            stated_tolerance
+            for stated_tolerance in written
+            if not is_exact(*stated_tolerance[1:])
+            and stated_tolerance[2] >= stated
+            and not is_fine(stated_tolerance[0])
         )
         nearest, value, wide = next(fitting, written[0])
         if other is not None and abs(band.middle) > wide - band.tolerance:
@@ -271,7 +280,7 @@ class _EndReadings:
         for check in self.suite.checks:
             for number, _, expected, _ in check.parts_in(self.runs[0]):
                 text = check.names(number)[1]
-                if name in {last_name(one) for one in check.names(number)}:
+                if name in {last_name(compared_name) for compared_name in check.names(number)}:
                     yield text, expected, check.file
         item = _ITEM.search(reading)
         for text, value in self.suite.constants(self.place.file):
@@ -327,15 +336,15 @@ def _why_not(check: CheckAtEnd, own: float) -> str | None:
 ONLY_TIME = "only times differ: add a deadline if the task has one"
 
 
-def _are_related(one: ReadExpression, other: ReadExpression, read: ValuesRead) -> bool:
+def _are_related(first_reading: ReadExpression, second_reading: ReadExpression, read: ValuesRead) -> bool:
     """Return whether two readings are the same part of two things: by name, or of lists with equal values."""
-    if _LAST.findall(one.text) != _LAST.findall(other.text):
+    if _LAST.findall(first_reading.text) != _LAST.findall(second_reading.text):
         return False
-    first, second = _NAME.findall(one.text), _NAME.findall(other.text)
+    first, second = _NAME.findall(first_reading.text), _NAME.findall(second_reading.text)
     if first[-1] == second[-1]:
         return first != second
-    names = [each.text.rpartition("[")[0] for each in (one, other)]
+    names = [each.text.rpartition("[")[0] for each in (first_reading, second_reading)]
     mine, others = ([read[text] for text in read if text.startswith(f"{name}[")] for name in names)
-    wide = max(one.tolerance, other.tolerance)
+    wide = max(first_reading.tolerance, second_reading.tolerance)
     near = (is_number(a) and is_number(b) and abs(a - b) <= wide for a, b in zip(mine, others, strict=False))
     return len(set(mine)) > 1 and len(mine) == len(others) and all(near)  # lists of zeros say nothing

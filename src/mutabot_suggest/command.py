@@ -62,10 +62,10 @@ def _chosen(results: Results, only: Sequence[str], skip: Sequence[str]) -> list[
         raise NothingToSuggestError("no mutant has been run yet: continue with `mutabot run`")
     selected = results.selected(only, skip)
     # where no test comes, no check helps
-    survivors = [one for one in results.survivors if one.status is not Verdict.NOT_COVERED]
+    survivors = [survivor for survivor in results.survivors if survivor.status is not Verdict.NOT_COVERED]
     if not survivors:
         raise NothingToSuggestError("no mutant survived: there is no check to suggest")
-    chosen = [one for one in selected if one in survivors]
+    chosen = [result for result in selected if result in survivors]
     if not chosen:
         raise NothingToSuggestError("none of the mutants that were asked for survived")
     return chosen

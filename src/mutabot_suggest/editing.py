@@ -68,8 +68,8 @@ def edited(
     already instead of their own.
     """
     by_file: dict[str, list[Addition]] = {}
-    for one in additions:
-        by_file.setdefault(one.place.file, []).append(one)
+    for addition in additions:
+        by_file.setdefault(addition.place.file, []).append(addition)
     found = dict(texts or {})
     for file, added in by_file.items():
         text = found.get(file) or project.text(file)
@@ -78,13 +78,15 @@ def edited(
 
 
 def _edited(project: SuiteFiles, file: str, text: str, additions: Sequence[Addition]) -> str:
-    imports = [line for one in additions for line in one.imports]
-    written = [one for one in additions if one.place.style != OTHER]
-    made = dict.fromkeys(one.place for one in additions if one.place.style == OTHER)
+    imports = [line for addition in additions for line in addition.imports]
+    written = [addition for addition in additions if addition.place.style != OTHER]
+    made = dict.fromkeys(addition.place for addition in additions if addition.place.style == OTHER)
     lines = [_AROUND] if made else []
     for number, place in enumerate(made):
         early = project.classes_of(file)
-        lines += _around(place, [one for one in additions if one.place == place], number, early)
+        lines += _around(
+            place, [addition for addition in additions if addition.place == place], number, early
+        )
     module = cst.parse_module(text)
     changed = module.with_changes(body=_with_ends(module.body, written))
     code, newline = with_imports(changed.code, imports, project.own_modules), changed.default_newline
@@ -99,25 +101,25 @@ def _around(
 ) -> list[str]:
     """Return the statements for a test without a function of its own in the file."""
     (test,) = place.path
-    first = [one for one in additions if one.after]
-    watched = {name: early[name] for one in first for name in one.uses if name in early}
+    first = [addition for addition in additions if addition.after]
+    watched = {name: early[name] for addition in first for name in addition.uses if name in early}
     begin, end = f"_mutabot_begin_{number}", f"_mutabot_end_{number}"
     return [
         *_function(begin, first),
-        *_function(end, [one for one in additions if not one.after]),
+        *_function(end, [addition for addition in additions if not addition.after]),
         "",
         f"{test} = _mutabot_around({test}, {begin}, {end}, {watched!r})",
     ]
 
 
 def _function(name: str, additions: Sequence[Addition]) -> list[str]:
-    uses = dict.fromkeys(use for one in additions for use in one.uses)
+    uses = dict.fromkeys(use for addition in additions for use in addition.uses)
     return [
         "",
         f"def {name}(value_of):",
         "    pass",
         *(f"    {use} = value_of({use!r})" for use in uses),
-        *(f"    {line}" for one in additions for text in one.lines for line in text.splitlines()),
+        *(f"    {line}" for addition in additions for text in addition.lines for line in text.splitlines()),
     ]
 
 
@@ -126,14 +128,14 @@ def _with_ends(
 ) -> list[cst.CSTNode]:
     """Return the statements of a module or class, with additions at the ends of its functions."""
     found: list[cst.CSTNode] = []
-    for one in body:
-        changed = one
-        if isinstance(one, cst.ClassDef):
-            inner = _with_ends(one.body.body, additions, (*path, one.name.value))
-            changed = one.with_changes(body=one.body.with_changes(body=inner))
-        elif isinstance(one, cst.FunctionDef):
-            here = [each for each in additions if each.place.path == (*path, one.name.value)]
-            changed = _with_end(one, here) if here else one
+    for statement in body:
+        changed = statement
+        if isinstance(statement, cst.ClassDef):
+            inner = _with_ends(statement.body.body, additions, (*path, statement.name.value))
+            changed = statement.with_changes(body=statement.body.with_changes(body=inner))
+        elif isinstance(statement, cst.FunctionDef):
+            here = [each for each in additions if each.place.path == (*path, statement.name.value)]
+            changed = _with_end(statement, here) if here else statement
         found.append(changed)
     return found
 
@@ -143,21 +145,21 @@ def _with_end(function: cst.FunctionDef, additions: Sequence[Addition]) -> cst.F
     last = body[-1]
     returns = isinstance(last, cst.SimpleStatementLine) and isinstance(last.body[-1], cst.Return)
     end = len(body) - 1 if returns else len(body)
-    body[end:end] = _statements(one for one in additions if not one.after)
-    for name in dict.fromkeys(one.after for one in additions if one.after):
+    body[end:end] = _statements(addition for addition in additions if not addition.after)
+    for name in dict.fromkeys(addition.after for addition in additions if addition.after):
         at = _bound_at(body, name)
-        body[at:at] = _statements(one for one in additions if one.after == name)
+        body[at:at] = _statements(addition for addition in additions if addition.after == name)
     return function.with_changes(body=function.body.with_changes(body=body))
 
 
 def _statements(additions: Iterable[Addition]) -> Sequence[cst.CSTNode]:
-    return cst.parse_module("".join(f"{line}\n" for one in additions for line in one.lines)).body
+    return cst.parse_module("".join(f"{line}\n" for addition in additions for line in addition.lines)).body
 
 
 def _bound_at(body: Sequence[cst.CSTNode], name: str) -> int:
     """Return the index of the statement after the one that binds a name; 0 for an argument."""
-    for number, one in enumerate(body):
-        match one:
+    for number, statement in enumerate(body):
+        match statement:
             case cst.SimpleStatementLine(body=[cst.Assign(targets=[cst.AssignTarget(cst.Name(value))])]) if (
                 value == name
             ):

@@ -112,7 +112,9 @@ class _FormMaker(ast.NodeTransformer):
         parts: dict[str, Any] = {}
         for key, value in ast.iter_fields(node):
             if isinstance(value, list):
-                parts[key] = [self.visit(one) if isinstance(one, ast.AST) else one for one in value]
+                parts[key] = [
+                    self.visit(element) if isinstance(element, ast.AST) else element for element in value
+                ]
             else:
                 parts[key] = self.visit(value) if isinstance(value, ast.AST) else value
         return type(node)(**parts)
@@ -120,7 +122,7 @@ class _FormMaker(ast.NodeTransformer):
 
 def _parts_of(node: ast.expr) -> tuple[str, ...]:
     if isinstance(node, ast.Tuple | ast.List) and node.elts:
-        return tuple(text_of(one) for one in node.elts)
+        return tuple(text_of(element) for element in node.elts)
     return (text_of(node),)
 
 
@@ -141,8 +143,12 @@ def near_of(node: ast.stmt) -> tuple[ast.expr, ast.expr, ast.expr] | None:
         ):
             return _ordered(actual, expected, tolerance)
         case ast.Call(args=[*args], keywords=keywords):
-            named = [one.value for one in keywords if one.arg and _is_tolerance(one.arg)]
-            if len(args) == 2 and len(named) == 1 and not any(isinstance(one, ast.Starred) for one in args):
+            named = [keyword.value for keyword in keywords if keyword.arg and _is_tolerance(keyword.arg)]
+            if (
+                len(args) == 2
+                and len(named) == 1
+                and not any(isinstance(argument, ast.Starred) for argument in args)
+            ):
                 return _ordered(args[0], args[1], named[0])
             if len(args) == 3 and not keywords and isinstance(node, ast.Assert) and _says_tolerance(args[2]):
                 return _ordered(args[0], args[1], args[2])
@@ -154,20 +160,20 @@ def _is_approx(call: ast.Call) -> bool:
 
 
 def _with_keyword(call: ast.Call, actual: ast.expr) -> tuple[ast.expr, ast.expr, ast.expr] | None:
-    sizes = [one.value for one in call.keywords if one.arg == "abs"]
+    sizes = [keyword.value for keyword in call.keywords if keyword.arg == "abs"]
     return (actual, call.args[0], sizes[0]) if sizes and call.args else None
 
 
-def _ordered(one: ast.expr, other: ast.expr, tolerance: ast.expr) -> tuple[ast.expr, ast.expr, ast.expr]:
+def _ordered(first: ast.expr, second: ast.expr, tolerance: ast.expr) -> tuple[ast.expr, ast.expr, ast.expr]:
     """Return the operands as value checked and expected value: the one that reads something comes first."""
-    return (other, one, tolerance) if _reads(other) > _reads(one) else (one, other, tolerance)
+    return (second, first, tolerance) if _reads(second) > _reads(first) else (first, second, tolerance)
 
 
 def _reads(node: ast.expr) -> int:
     """Return 2 for an expression with calls, 1 for one with names other than constants, 0 for constants."""
-    if any(isinstance(one, ast.Call) for one in ast.walk(node)):
+    if any(isinstance(inner, ast.Call) for inner in ast.walk(node)):
         return 2
-    names = [one.id for one in ast.walk(node) if isinstance(one, ast.Name)]
+    names = [inner.id for inner in ast.walk(node) if isinstance(inner, ast.Name)]
     return int(not all(name.isupper() for name in names))
 
 

@@ -29,28 +29,33 @@ def _with_import(text: str, line: str, own: Collection[str]) -> str:
     wanted = ast.parse(line).body[0]
     assert isinstance(wanted, ImportNode)
     tree = ast.parse(text)
-    there = [one for one in tree.body if isinstance(one, ImportNode)]
-    if any(_has(one, wanted) for one in there):
+    there = [statement for statement in tree.body if isinstance(statement, ImportNode)]
+    if any(_has(present, wanted) for present in there):
         return text
     lines = text.split("\n")
     if isinstance(wanted, ast.ImportFrom):
-        for one in there:
-            same = isinstance(one, ast.ImportFrom) and (one.module, one.level) == (wanted.module, 0)
-            source = "\n".join(lines[one.lineno - 1 : one.end_lineno])
+        for known_import in there:
+            same = isinstance(known_import, ast.ImportFrom) and (known_import.module, known_import.level) == (
+                wanted.module,
+                0,
+            )
+            source = "\n".join(lines[known_import.lineno - 1 : known_import.end_lineno])
             if same and "#" not in source and ";" not in source and "*" not in source:
-                assert isinstance(one, ast.ImportFrom)
-                lines[one.lineno - 1 : one.end_lineno] = _extended(one, wanted.names[0].name, lines)
+                assert isinstance(known_import, ast.ImportFrom)
+                lines[known_import.lineno - 1 : known_import.end_lineno] = _extended(
+                    known_import, wanted.names[0].name, lines
+                )
                 return "\n".join(lines)
     _insert(lines, tree, _leading(tree), wanted, line, own)
     return "\n".join(lines)
 
 
-def _has(one: ImportNode, wanted: ImportNode) -> bool:
-    return ast.unparse(one) == ast.unparse(wanted) or (
-        isinstance(one, ast.ImportFrom)
+def _has(known_import: ImportNode, wanted: ImportNode) -> bool:
+    return ast.unparse(known_import) == ast.unparse(wanted) or (
+        isinstance(known_import, ast.ImportFrom)
         and isinstance(wanted, ast.ImportFrom)
-        and (one.module, one.level) == (wanted.module, 0)
-        and any((alias.name, alias.asname) == (wanted.names[0].name, None) for alias in one.names)
+        and (known_import.module, known_import.level) == (wanted.module, 0)
+        and any((alias.name, alias.asname) == (wanted.names[0].name, None) for alias in known_import.names)
     )
 
 
@@ -58,7 +63,7 @@ def _extended(node: ast.ImportFrom, name: str, lines: Sequence[str]) -> list[str
     """Return the lines of an import with a name added."""
     texts = [ast.unparse(alias) for alias in node.names]
     for key in (_by_type, str.casefold, str):
-        if _is_sorted([key(one) for one in texts]):
+        if _is_sorted([key(text) for text in texts]):
             texts = sorted([*texts, name], key=key)
             break
     else:
@@ -68,7 +73,7 @@ def _extended(node: ast.ImportFrom, name: str, lines: Sequence[str]) -> list[str
     was_one = node.lineno == node.end_lineno
     if was_one and len(line) <= max(_WIDTH, *map(len, lines)):
         return [line]
-    return [f"{start} (", *(f"    {one}," for one in texts), ")"]
+    return [f"{start} (", *(f"    {text}," for text in texts), ")"]
 
 
 def _by_type(name: str) -> tuple[int, str]:
@@ -78,7 +83,7 @@ def _by_type(name: str) -> tuple[int, str]:
 
 
 def _is_sorted(keys: Sequence[Any]) -> bool:
-    return all(one <= other for one, other in pairwise(keys))
+    return all(first <= second for first, second in pairwise(keys))
 
 
 def _leading(tree: ast.Module) -> list[ImportNode]:
@@ -103,13 +108,15 @@ def _insert(
     """Insert a new import into the block of its kind, in order, or into a new block."""
     blocks = _blocks(there)
     kind = _kind(wanted, own)
-    fitting = [block for block in blocks if any(_root(one) == _root(wanted) for one in block)]
-    fitting = fitting or [block for block in blocks if any(_kind(one, own) == kind for one in block)]
+    fitting = [block for block in blocks if any(_root(import_node) == _root(wanted) for import_node in block)]
+    fitting = fitting or [
+        block for block in blocks if any(_kind(import_node, own) == kind for import_node in block)
+    ]
     if fitting:
-        block = max(fitting, key=lambda one: sum(_kind(node, own) == kind for node in one))
+        block = max(fitting, key=lambda candidate: sum(_kind(node, own) == kind for node in candidate))
         keys: tuple[Callable[[ImportNode], Any], ...] = (_import_first, _module)
-        key = next((key for key in keys if _is_sorted([key(one) for one in block])), None)
-        before = [one for one in block if key is None or key(one) <= key(wanted)]
+        key = next((key for key in keys if _is_sorted([key(import_node) for import_node in block])), None)
+        before = [import_node for import_node in block if key is None or key(import_node) <= key(wanted)]
         at = (before[-1].end_lineno or 0) if before else block[0].lineno - 1
         lines.insert(at, line)
         return

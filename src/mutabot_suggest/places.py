@@ -23,27 +23,27 @@ def chosen_places(project: SuiteFiles, survivors: Sequence[MutantResult]) -> lis
     """
     variants: dict[PlaceInTest, set[str]] = {}
     wanted: list[set[PlaceInTest]] = []
-    for one in survivors:
-        acted = [looked.test for out in one.survived for looked in out.looked if looked.acted]
+    for survivor in survivors:
+        acted = [looked.test for out in survivor.survived for looked in out.looked if looked.acted]
         for test in acted:
             place = place_of(project, test)
             if place is not None:
                 variants.setdefault(place, set()).add(test)
-        for weights in _weights(one):
+        for weights in _weights(survivor):
             known = {place: weight for test, weight in weights.items() if (place := place_of(project, test))}
             most = max(known.values(), default=0.0)
             if known:
                 wanted.append({place for place, weight in known.items() if weight >= _ALSO * most})
-        if not any(out.diverged for out in one.survived):
+        if not any(out.diverged for out in survivor.survived):
             wanted += [{place} for test in acted if (place := place_of(project, test))][:_MOST]
     chosen: list[PlaceInTest] = []
     left = wanted
     while left:
-        there = sorted({place for one in left for place in one}, key=lambda place: place.node)
-        counts = {place: sum(place in one for one in left) for place in there}
+        there = sorted({place for group in left for place in group}, key=lambda place: place.node)
+        counts = {place: sum(place in places_of_test for places_of_test in left) for place in there}
         best = max(counts, key=lambda place: (counts[place], -len(variants.get(place, ()))))
         chosen.append(best)
-        left = [one for one in left if best not in one]
+        left = [group for group in left if best not in group]
     return chosen
 
 
@@ -59,12 +59,12 @@ def other_places(
     has bounds that it has not where the program does all.
     """
     acting: Counter[PlaceInTest] = Counter()
-    for one in survivors:
-        acted = {looked.test for out in one.survived for looked in out.looked if looked.acted}
+    for survivor in survivors:
+        acted = {looked.test for out in survivor.survived for looked in out.looked if looked.acted}
         acting.update({place for test in acted if (place := place_of(project, test))})
-    files, chosen = {one.file for one in places}, dict[PlaceInTest, None]()
-    for one in unnoticed:
-        tests = (test for test, weight in _weights(one)[-1].items() if weight > 1.0)
+    files, chosen = {known_place.file for known_place in places}, dict[PlaceInTest, None]()
+    for survivor in unnoticed:
+        tests = (test for test, weight in _weights(survivor)[-1].items() if weight > 1.0)
         known = [place for test in tests if (place := place_of(project, test)) and place.file in files]
         others = [place for place in known if place not in places]
         if others:
@@ -74,10 +74,12 @@ def other_places(
 
 def _weights(survivor: MutantResult) -> list[Mapping[str, float]]:
     """Return how far a survivor is from the original in each test: at the end, and on the way."""
-    found = [one for out in survivor.survived for one in out.diverged]
-    stable = [one for one in found if not one.scatters] or found
-    ends = {one.test: max((part.of_end for part in one.apart), default=0.0) for one in stable}
+    found = [divergence for out in survivor.survived for divergence in out.diverged]
+    stable = [divergence for divergence in found if not divergence.scatters] or found
+    ends = {
+        divergence.test: max((part.of_end for part in divergence.apart), default=0.0) for divergence in stable
+    }
     return [
         {test: weight for test, weight in ends.items() if weight > 1.0},
-        {one.test: one.deviation for one in stable},
+        {divergence.test: divergence.deviation for divergence in stable},
     ]

@@ -75,8 +75,8 @@ class SuiteFiles:
         for name in folders:
             path = self.root / name
             files = sorted(path.rglob("*.py")) if path.is_dir() else [path]
-            files = [one for one in files if one.suffix == ".py" and one.exists()]
-            found += [str(one.relative_to(self.root)) for one in files]
+            files = [file for file in files if file.suffix == ".py" and file.exists()]
+            found += [str(file.relative_to(self.root)) for file in files]
         return found
 
     @property
@@ -105,17 +105,17 @@ class SuiteFiles:
         """Yield a test file and the ``conftest.py`` files that apply to it, nearest first."""
         folders = [folder for folder in (self.root / file).parents if folder.is_relative_to(self.root)]
         conftests = [str((folder / "conftest.py").relative_to(self.root)) for folder in folders]
-        return (module for one in (file, *conftests) if (module := self.module(one)) is not None)
+        return (module for path in (file, *conftests) if (module := self.module(path)) is not None)
 
     def classes_of(self, file: str) -> dict[str, str]:
         """Return the annotated classes of the arguments of steps and fixtures, by argument name."""
         return {
-            one.arg: ast.unparse(one.annotation)
+            parameter.arg: ast.unparse(parameter.annotation)
             for module in self.beside(file)
             for node in module.body
             if isinstance(node, TestFunctionNode)
-            for one in (*node.args.args, *node.args.kwonlyargs)
-            if isinstance(one.annotation, ast.Name)
+            for parameter in (*node.args.args, *node.args.kwonlyargs)
+            if isinstance(parameter.annotation, ast.Name)
         }
 
     def diff(self, texts: Mapping[str, str]) -> str:
@@ -124,7 +124,7 @@ class SuiteFiles:
         for file, text in sorted(texts.items()):
             before, after = self.text(file).splitlines(keepends=True), text.splitlines(keepends=True)
             parts += difflib.unified_diff(before, after, f"a/{file}", f"b/{file}")
-        return "".join(one if one.endswith("\n") else f"{one}\n{_NO_END}" for one in parts)
+        return "".join(part if part.endswith("\n") else f"{part}\n{_NO_END}" for part in parts)
 
 
 def name_in(
@@ -159,7 +159,7 @@ def top_names(module: ast.Module) -> set[str]:
         elif isinstance(node, Definition):
             found.add(node.name)
         else:
-            found |= {one.id for one in ast.walk(node) if isinstance(one, ast.Name)}
+            found |= {inner.id for inner in ast.walk(node) if isinstance(inner, ast.Name)}
     return found
 
 
@@ -220,8 +220,8 @@ def function_of(module: ast.Module | None, place: PlaceInTest) -> TestFunctionNo
 
 def _is_scenario(function: TestFunctionNode) -> bool:
     """Return whether a function only stands for a scenario of pytest-bdd."""
-    called = (ast.unparse(one).partition("(")[0] for one in function.decorator_list)
-    return any(one.rpartition(".")[2] == "scenario" for one in called)
+    called = (ast.unparse(decorator).partition("(")[0] for decorator in function.decorator_list)
+    return any(name.rpartition(".")[2] == "scenario" for name in called)
 
 
 def _available_fixtures(project: SuiteFiles, file: str) -> tuple[str, ...]:
@@ -232,7 +232,7 @@ def _available_fixtures(project: SuiteFiles, file: str) -> tuple[str, ...]:
         for node in module.body
         if isinstance(node, TestFunctionNode) and node.decorator_list
     ]
-    return tuple(dict.fromkeys(name for one in functions for name in arguments_of(one)))
+    return tuple(dict.fromkeys(name for function in functions for name in arguments_of(function)))
 
 
 def _can_append(function: TestFunctionNode) -> bool:
@@ -243,10 +243,10 @@ def _can_append(function: TestFunctionNode) -> bool:
 def _names(function: TestFunctionNode) -> tuple[str, ...]:
     """Return the arguments of a function, and the names that it assigns."""
     assigned = [
-        one.id
+        node.id
         for statement in function.body
-        for one in ast.walk(statement)
-        if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)
+        for node in ast.walk(statement)
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
     ]
     return tuple(dict.fromkeys((*arguments_of(function), *assigned)))
 
@@ -255,17 +255,17 @@ def bound_names(function: TestFunctionNode) -> tuple[str, ...]:
     """Return a function's arguments, and the names that statements directly in its body assign."""
     targets = [
         target
-        for one in function.body
-        if isinstance(one, ast.Assign | ast.AnnAssign)
-        for target in (one.targets if isinstance(one, ast.Assign) else [one.target])
+        for statement in function.body
+        if isinstance(statement, ast.Assign | ast.AnnAssign)
+        for target in (statement.targets if isinstance(statement, ast.Assign) else [statement.target])
     ]
-    names = [one.id for one in targets if isinstance(one, ast.Name)]
+    names = [target.id for target in targets if isinstance(target, ast.Name)]
     return tuple(dict.fromkeys((*arguments_of(function), *names)))
 
 
 def _is_test_case(module: ast.Module, name: str, depth: int = 5) -> bool:
     owner = _defined(module, name)
-    bases = [ast.unparse(one) for one in owner.bases] if isinstance(owner, ast.ClassDef) else []
+    bases = [ast.unparse(base) for base in owner.bases] if isinstance(owner, ast.ClassDef) else []
     return any(
         base.endswith("TestCase") or (depth > 0 and _is_test_case(module, base, depth - 1)) for base in bases
     )
@@ -274,14 +274,19 @@ def _is_test_case(module: ast.Module, name: str, depth: int = 5) -> bool:
 def _defined(owner: ast.Module | Definition, name: str) -> Definition | None:
     """Return the class or function with this name in a module or class; None if there is none."""
     return next(
-        (one for one in reversed(owner.body) if isinstance(one, Definition) and one.name == name), None
+        (
+            statement
+            for statement in reversed(owner.body)
+            if isinstance(statement, Definition) and statement.name == name
+        ),
+        None,
     )
 
 
 def arguments_of(function: TestFunctionNode) -> tuple[str, ...]:
     """Return the names of a function's arguments."""
     given = function.args
-    return tuple(one.arg for one in (*given.posonlyargs, *given.args, *given.kwonlyargs))
+    return tuple(parameter.arg for parameter in (*given.posonlyargs, *given.args, *given.kwonlyargs))
 
 
 #: folders that no test needs and that may be large

@@ -37,13 +37,13 @@ class Proof:
 
     def on_original(self, checks: Sequence[CheckProposal], rounds: Sequence[int]) -> list[CheckProposal]:
         """Return the checks with which the original passes in all of these rounds."""
-        left = [one for one in checks if one not in self.failed]
+        left = [check for check in checks if check not in self.failed]
         while left:
             alarms = self._alarms(left, rounds)
             if not alarms:
                 return left
             self.failed.update(alarms)
-            left = [one for one in left if one not in alarms]
+            left = [proposal for proposal in left if proposal not in alarms]
         return []
 
     def _alarms(self, checks: Sequence[CheckProposal], rounds: Sequence[int]) -> dict[CheckProposal, str]:
@@ -70,8 +70,8 @@ class Proof:
                             text = f"fails in {where}: {shorten(why, _MOST, placeholder=' …')}"
                             place, message = end.place or "", end.message or ""
                             own = failing(checks, place, message, texts)
-                            for one in own or in_test(checks, end.test):
-                                found.setdefault(one, text if own else f"its test {text}")
+                            for item in own or in_test(checks, end.test):
+                                found.setdefault(item, text if own else f"its test {text}")
         return found
 
     def on_survivors(self, checks: Sequence[CheckProposal]) -> None:
@@ -79,14 +79,14 @@ class Proof:
 
         A check of which the others leave nothing is run once more without them.
         """
-        new = [one for one in checks if one not in self.kills and one not in self.failed]
+        new = [check for check in checks if check not in self.kills and check not in self.failed]
         if new:
             self._try(new)
-        for one in new:
-            if not self.kills.get(one) and len(new) > 1:
-                self._try([one])
-            if not self.kills.get(one):
-                self.failed.setdefault(one, "kills no survivor when it is run")
+        for proposal in new:
+            if not self.kills.get(proposal) and len(new) > 1:
+                self._try([proposal])
+            if not self.kills.get(proposal):
+                self.failed.setdefault(proposal, "kills no survivor when it is run")
 
     def _try(self, checks: Sequence[CheckProposal]) -> None:
         """Run these checks together and keep what each kills."""
@@ -96,16 +96,16 @@ class Proof:
             if len(checks) == 1:
                 self.failed[checks[0]] = f"a campaign with it ends: {str(error).splitlines()[0]}"
             return
-        self.kills.update({one: trials for one, trials in found.items() if trials})
+        self.kills.update({proposal: trials for proposal, trials in found.items() if trials})
 
     def _run(self, checks: Sequence[CheckProposal]) -> dict[CheckProposal, Trials]:
         """Return what each of these checks kills if all of them are added."""
-        only = tuple(dict.fromkeys(mutant for one in checks for mutant, _ in sorted(one.trials)))
+        only = tuple(dict.fromkeys(mutant for check in checks for mutant, _ in sorted(check.trials)))
         texts = texts_with(self.project, checks)
         with copy_of(self.request, texts) as copied:
             these = replace(_only(copied, checks), only=only, every_test=True, repeats=False, evidence=False)
             outcomes = Results.read(CampaignRun.to_end(these, self.progress)).outcomes
-        found: dict[CheckProposal, set[tuple[str, int]]] = {one: set() for one in checks}
+        found: dict[CheckProposal, set[tuple[str, int]]] = {check: set() for check in checks}
         for outcome in outcomes:
             for kill in outcome.kills if outcome.verdict is Verdict.KILLED else ():
                 place = outcome.place if kill.test == outcome.test else None
@@ -113,16 +113,16 @@ class Proof:
                 blamed = blamed or in_test(checks, kill.test)
                 if kill.by == "check" and len(blamed) == 1:
                     found[blamed[0]].add((outcome.mutant, outcome.round))
-        return {one: frozenset(trials) for one, trials in found.items()}
+        return {proposal: frozenset(trials) for proposal, trials in found.items()}
 
 
 def texts_with(project: SuiteFiles, checks: Sequence[CheckProposal]) -> dict[str, str]:
     """Return the changed texts of files to which checks are added, by path."""
-    return edited(project, (one.addition() for one in checks))
+    return edited(project, (check.addition() for check in checks))
 
 
 def _only(request: Request, checks: Sequence[CheckProposal]) -> Request:
-    tests = tuple(dict.fromkeys(one.place.node for one in checks))
+    tests = tuple(dict.fromkeys(check.place.node for check in checks))
     return request.changed(tests=tests)
 
 
@@ -130,17 +130,17 @@ def failing(
     checks: Sequence[CheckProposal], place: str, message: str, texts: Mapping[str, str]
 ) -> list[CheckProposal]:
     """Return the checks that failed: by a monitor's name, or at the place ``file:line``."""
-    named = [one for one in checks if isinstance(one, Monitor) and one.name in message]
+    named = [check for check in checks if isinstance(check, Monitor) and check.name in message]
     if named:
-        return [max(named, key=lambda one: len(one.name))]  # a short one may be part of a longer one
+        return [max(named, key=lambda value: len(value.name))]  # a short one may be part of a longer one
     file, _, line = place.rpartition(":")
     lines = texts.get(file, "").splitlines()
     if line.isdigit() and 0 < int(line) <= len(lines):
-        return [one for one in checks if lines[int(line) - 1].strip() in one.lines]
+        return [check for check in checks if lines[int(line) - 1].strip() in check.lines]
     return []
 
 
 def in_test(checks: Sequence[CheckProposal], test: str) -> list[CheckProposal]:
     """Return the checks in a test, or else all."""
     node = test.partition("[")[0]
-    return [one for one in checks if one.place.node == node] or list(checks)
+    return [check for check in checks if check.place.node == node] or list(checks)

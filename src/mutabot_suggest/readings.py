@@ -63,15 +63,17 @@ def readings_at(project: SuiteFiles, place: PlaceInTest) -> list[ReadExpression]
     found = [*_by_oracle(project, place, module, coarse)]
     found += [ReadExpression(text, ORACLE, coarse) for text in _by_tests(place, module)]
     calls = [
-        (one.target, ["()", ""], one.tolerance) for one in vocabulary.probes if not _is_of_objects(one.target)
+        (probe.target, ["()", ""], probe.tolerance)
+        for probe in vocabulary.probes
+        if not _is_of_objects(probe.target)
     ]
-    calls += [(one.target, list(_calls(one)), coarse) for one in vocabulary.operations]
+    calls += [(operation.target, list(_calls(operation)), coarse) for operation in vocabulary.operations]
     for target, endings, tolerance in calls:
         where, _, attribute = target.partition(":")
         if attribute and endings:
             name, needs = name_in(module, where, attribute, place.names)
             found += [ReadExpression(name + ending, PROBE, tolerance, needs) for ending in endings]
-    return list({one.text: one for one in reversed(found)}.values())[::-1]
+    return list({reading.text: reading for reading in reversed(found)}.values())[::-1]
 
 
 def _is_of_objects(target: str) -> bool:
@@ -84,9 +86,9 @@ def object_readings(project: SuiteFiles) -> list[tuple[str, float]]:
     vocabulary = project.request.vocabulary
     coarse = max((probe.tolerance for probe in vocabulary.probes), default=1e-6)
     found = {probe.target: probe.tolerance for probe in vocabulary.probes if _is_of_objects(probe.target)}
-    for one in vocabulary.operations:
-        if _only_reads(one) and not one.patterns and "." in one.qualname:
-            found.setdefault(one.target, coarse)
+    for operation in vocabulary.operations:
+        if _only_reads(operation) and not operation.patterns and "." in operation.qualname:
+            found.setdefault(operation.target, coarse)
     return list(found.items())
 
 
@@ -100,7 +102,7 @@ def _by_oracle(
             if not isinstance(node, ast.FunctionDef) or node.name.startswith(("_", "test")):
                 continue
             given = node.args
-            needed = [one.arg for one in (*given.posonlyargs, *given.args)]
+            needed = [parameter.arg for parameter in (*given.posonlyargs, *given.args)]
             needed = needed[: len(needed) - len(given.defaults)]
             strict = any(default is None for default in given.kw_defaults)
             if strict or not set(needed) <= set(place.names) or node.decorator_list:
@@ -114,13 +116,13 @@ def _by_tests(place: PlaceInTest, module: ast.Module) -> Iterator[str]:
     at_hand = {*place.names, *top_names(module)}
     for compared in (node for node in ast.walk(module) if isinstance(node, ast.Compare)):
         called = [node.func for node in ast.walk(compared) if isinstance(node, ast.Call)]
-        for one in ast.walk(compared):
-            parts = [*ast.walk(one)]
+        for inner in ast.walk(compared):
+            parts = [*ast.walk(inner)]
             names = {part.id for part in parts if isinstance(part, ast.Name)} - {"len"}
             calls = {ast.unparse(part.func) for part in parts if isinstance(part, ast.Call)}
-            is_plain = one not in called and calls <= {"len"} and ast.Slice not in map(type, parts)
-            if isinstance(one, ast.Attribute | ast.Subscript | ast.Call) and names <= at_hand and is_plain:
-                yield text_of(one)
+            is_plain = inner not in called and calls <= {"len"} and ast.Slice not in map(type, parts)
+            if isinstance(inner, ast.Attribute | ast.Subscript | ast.Call) and names <= at_hand and is_plain:
+                yield text_of(inner)
 
 
 def _only_reads(operation: Operation) -> bool:
@@ -179,16 +181,16 @@ class Measured:
     lost: dict[str, str] = field(default_factory=dict)
 
 
-def merged(one: Measured, other: Measured) -> Measured:
+def merged(first: Measured, second: Measured) -> Measured:
     """Return what was measured in two different sets of places."""
     return Measured(
-        originals={**one.originals, **other.originals},
-        mutants={**one.mutants, **other.mutants},
-        readings={**one.readings, **other.readings},
-        objects=one.objects,
-        reusable_checks={**one.reusable_checks, **other.reusable_checks},
-        watched={**one.watched, **other.watched},
-        lost={**one.lost, **other.lost},
+        originals={**first.originals, **second.originals},
+        mutants={**first.mutants, **second.mutants},
+        readings={**first.readings, **second.readings},
+        objects=first.objects,
+        reusable_checks={**first.reusable_checks, **second.reusable_checks},
+        watched={**first.watched, **second.watched},
+        lost={**first.lost, **second.lost},
     )
 
 
@@ -244,11 +246,11 @@ def _run_survivors(
 ) -> None:
     baseline, progress = campaign.baseline, campaign.progress
     now = []
-    for one, rounds in survivors.values():
+    for survivor, rounds in survivors.values():
         try:
-            now.append((campaign.current(one.mutant), rounds))
+            now.append((campaign.current(survivor.mutant), rounds))
         except MutabotError as error:
-            measured.lost[one.mutant.id] = str(error)
+            measured.lost[survivor.mutant.id] = str(error)
     campaign.prove(mutant for mutant, _ in now)
     trials = [(mutant, round) for mutant, rounds in now for round in rounds]
     progress.stage("survivors", len(trials))
@@ -268,7 +270,7 @@ def _run_survivors(
 
 def _read_in(result: Result, places: Sequence[PlaceInTest]) -> Iterator[tuple[PlaceInTest, str, ValuesRead]]:
     """Yield what passed tests read, each with its place and node id."""
-    prefix, by_node = f"{_PROBE}.", {one.node: one for one in places}
+    prefix, by_node = f"{_PROBE}.", {test.node: test for test in places}
     for end in result.ends:
         values = end.probes.items()
         read = {name.removeprefix(prefix): value for name, value in values if name.startswith(prefix)}
@@ -285,24 +287,24 @@ def _recording_lines(
 ) -> Addition:
     """Return the lines that record readings; they are plain statements, and never fail."""
     # what the oracle does when it reads must not be seen by what only looks
-    ordered = sorted(readings, key=lambda one: one.way == ORACLE)
-    pairs = ", ".join(f"({one.text!r}, lambda: {one.text})" for one in ordered)
+    ordered = sorted(readings, key=lambda reading: reading.way == ORACLE)
+    pairs = ", ".join(f"({reading.text!r}, lambda: {reading.text})" for reading in ordered)
     classes = [target for target, _ in objects]
-    checks = ", ".join(f"({one.key!r}, lambda: {_holds_expression(one)})" for one in reusable_checks)
+    checks = ", ".join(f"({check.key!r}, lambda: {_holds_expression(check)})" for check in reusable_checks)
     lines = (
         f"from {_RECORDER} import note as _mutabot_note, tolerance_of as _mutabot_tolerance_of",
         f"_mutabot_note(locals(), [{pairs}], {classes!r}, [{checks}])",
     )
-    every = [*(one.needs for one in readings), *(one.needs for one in reusable_checks)]
-    needs = dict.fromkeys(line for one in every for line in one)
+    every = [*(reading.needs for reading in readings), *(check.needs for check in reusable_checks)]
+    needs = dict.fromkeys(line for needed in every for line in needed)
     return Addition(place, lines, tuple(place.names), tuple(needs))
 
 
-def _holds_expression(one: ReusableCheck) -> str:
+def _holds_expression(check: ReusableCheck) -> str:
     """Return the expression that tells whether a check of another test holds."""
-    statement = one.statement
-    if one.near is not None and one.lacks_tolerance:
-        statement = rename(statement, one.near.tolerance, f"_mutabot_tolerance_of({one.near.key!r})")
+    statement = check.statement
+    if check.near is not None and check.lacks_tolerance:
+        statement = rename(statement, check.near.tolerance, f"_mutabot_tolerance_of({check.near.key!r})")
     return statement.removeprefix("assert ")
 
 
@@ -329,15 +331,15 @@ def _monitoring_additions(
 def reading_of(measured: Measured, place: PlaceInTest, text: str) -> ReadExpression:
     """Return the reading of a part; a discrete one may be a step off values that it never had."""
     of = [
-        one
-        for one in measured.readings[place]
-        if text == one.text or text.startswith((f"{one.text}.", f"{one.text}["))
+        reading
+        for reading in measured.readings[place]
+        if text == reading.text or text.startswith((f"{reading.text}.", f"{reading.text}["))
     ]
     if of:
-        found = replace(max(of, key=lambda one: len(one.text)), text=text)
+        found = replace(max(of, key=lambda reading: len(reading.text)), text=text)
     else:
         objects = [size for target, size in measured.objects if f".{target.rpartition('.')[2]}" in text]
-        coarse = max((one.tolerance for one in measured.readings[place]), default=1e-6)
+        coarse = max((reading.tolerance for reading in measured.readings[place]), default=1e-6)
         found = ReadExpression(text, *((PROBE, objects[0]) if objects else (HAND, coarse)))
     runs = measured.originals.get(place, {}).values()
     values = {read[text] for read in runs if is_number(read.get(text))}

@@ -40,7 +40,7 @@ def why_unsolved(
     recorded = _of_recordings(survivor, measured, suite)
     if recorded.startswith(_SO_LITTLE) or recorded == ONLY_TIME:
         return Unsolved(mutant, recorded)
-    tried = [one for one in found if one in failed and mutant in dict(one.trials)]
+    tried = [proposal for proposal in found if proposal in failed and mutant in dict(proposal.trials)]
     if tried:
         return Unsolved(mutant, _why_failed(tried[0], failed[tried[0]]))
     if mutant in measured.lost:
@@ -66,16 +66,19 @@ def _of_recordings(survivor: MutantResult, measured: Measured, suite: SuiteCheck
     stories = [found for out in survivor.survived if (found := out.told) is not None and found.apart]
     if not stories:
         return ""
-    found = max(stories, key=lambda one: one.rank)
-    own = [one for one in found.apart if not one.is_delay and one.deviation > 1.0]
+    found = max(stories, key=lambda divergence: divergence.rank)
+    own = [deviation for deviation in found.apart if not deviation.is_delay and deviation.deviation > 1.0]
     if found.story.startswith("the same movements") or not (own or found.story):
         return ONLY_TIME
-    turned = max((one.aside or 0.0 for one in own if one.unit == "deg" and not one.is_value), default=0.0)
+    turned = max(
+        (deviation.aside or 0.0 for deviation in own if deviation.unit == "deg" and not deviation.is_value),
+        default=0.0,
+    )
     for unit, names in (("m", _LENGTHS), ("deg", _ANGLES)):
-        apart = [one for one in own if one.unit == unit and not one.is_value]
+        apart = [deviation for deviation in own if deviation.unit == unit and not deviation.is_value]
         limit = _tolerance(measured, suite, names)
-        ends = max((one.final for one in apart), default=0.0)
-        way = max((one.aside or 0.0 for one in apart), default=0.0)
+        ends = max((deviation.final for deviation in apart), default=0.0)
+        way = max((deviation.aside or 0.0 for deviation in apart), default=0.0)
         if not apart or ends > limit or limit == 0.0:
             continue
         far, allowed = _amount(max(ends, way), unit), _amount(limit, unit)
@@ -87,7 +90,11 @@ def _of_recordings(survivor: MutantResult, measured: Measured, suite: SuiteCheck
         elif unit == "m" and way < _NEAR:
             why = "on the way it is too near to the original for a bound"
         return f"{found.story}: at the end within your tolerance of {allowed}; {why}"
-    moved = [one.value or 0.0 for one in found.measurements if one.name in _IN_GRIP and one.deviation > 1.0]
+    moved = [
+        measurement.value or 0.0
+        for measurement in found.measurements
+        if measurement.name in _IN_GRIP and measurement.deviation > 1.0
+    ]
     limit = _tolerance(measured, suite, _LENGTHS)
     if moved and max(moved) <= limit:
         return f"{found.story}: within your tolerance of {_amount(limit, 'm')}"
@@ -102,7 +109,7 @@ def _tolerance(measured: Measured, suite: SuiteChecks, names: set[str]) -> float
         for read in reads.values()
         for check in suite.checks
         for number, _, _, tolerance in check.parts_in(read)
-        if names & {last_name(one) for one in check.names(number)}
+        if names & {last_name(name) for name in check.names(number)}
     ]
     return min(sizes, default=0.0)
 
@@ -117,7 +124,7 @@ def _differences(mutant: str, measured: Measured) -> Iterator[tuple[float, str]]
                 numbers = is_reading(text) and is_number(value) and is_number(before)
                 if not numbers or value == before:
                     continue
-                values = [one[text] for one in originals.values() if is_number(one.get(text))]
+                values = [original[text] for original in originals.values() if is_number(original.get(text))]
                 spread, tolerance = max(values) - min(values), reading_of(measured, place, text).tolerance
                 apart = abs(value - before)
                 own = f"the original itself spreads {_short(spread)}"
@@ -125,8 +132,10 @@ def _differences(mutant: str, measured: Measured) -> Iterator[tuple[float, str]]
                     own = "for which a check would need more digits than the suite has"
                 elif tolerance >= spread:
                     own = f"its tolerance is {_short(tolerance)}"
-                words = f"{text} differs by {_short(apart)}, {own}"
-                yield (0.0, ONLY_TIME) if is_clock(text) else (apart / max(spread, tolerance), words)
+                text_and_reason = f"{text} differs by {_short(apart)}, {own}"
+                yield (
+                    (0.0, ONLY_TIME) if is_clock(text) else (apart / max(spread, tolerance), text_and_reason)
+                )
 
 
 def _short(value: float) -> str:

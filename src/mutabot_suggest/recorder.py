@@ -71,7 +71,7 @@ def _held(key: str, holds: Callable[[], Any]) -> dict[str, bool]:
 def compared(key: str, role: str, value: Any) -> Any:
     """Record a value that a check of the suite compares, and return it; ``role`` is its part in ``key``."""
     try:
-        parts = [(f"{key}.{role}{text}", one) for text, one in _parts("", value, 1)]
+        parts = [(f"{key}.{role}{text}", part) for text, part in _parts("", value, 1)]
     except Exception:  # only plain values can be compared with readings
         parts = []
     test = _test()
@@ -132,7 +132,7 @@ def _test() -> str:
 def _at_hand(names: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
     for name, value in names.items():
         if name == "self":
-            yield from ((f"self.{one}", held) for one, held in _attributes(value))
+            yield from ((f"self.{attribute}", held) for attribute, held in _attributes(value))
         elif not name.startswith(("_", "@")) and not isinstance(value, ModuleType | type):
             yield name, value
 
@@ -143,12 +143,15 @@ def _attributes(value: Any) -> Iterator[tuple[str, Any]]:
         held = dict(vars(value))
     except TypeError:
         return
-    yield from ((name, one) for name, one in held.items() if not name.startswith("_"))
+    yield from ((name, attribute) for name, attribute in held.items() if not name.startswith("_"))
 
 
 def _of_object(text: str, value: Any, targets: Sequence[str]) -> Iterator[tuple[str, Callable[[], Any]]]:
     """Yield readings that the vocabulary names, of an available object or of one that it holds."""
-    for where, held in ((text, value), *((f"{text}.{name}", one) for name, one in _attributes(value))):
+    for where, held in (
+        (text, value),
+        *((f"{text}.{name}", attribute) for name, attribute in _attributes(value)),
+    ):
         for target in targets:
             module, _, qualname = target.partition(":")
             owner, _, name = qualname.rpartition(".")
@@ -202,7 +205,7 @@ def _items(value: Any) -> Iterator[tuple[str, Any]]:
     if hasattr(type(value), "_fields"):
         yield from ((f".{name}", getattr(value, name)) for name in value._fields)
     elif is_dataclass(value) and not isinstance(value, type):
-        yield from ((f".{one.name}", getattr(value, one.name)) for one in fields(value))
+        yield from ((f".{field.name}", getattr(value, field.name)) for field in fields(value))
     elif isinstance(value, Mapping):
         yield from ((f"[{_quoted(key)}]", item) for key, item in value.items() if isinstance(key, str | int))
     elif isinstance(value, list | tuple) and len(value) <= _LENGTH:

@@ -37,20 +37,26 @@ def _constants(project: SuiteFiles) -> Iterator[tuple[str, float]]:
     """Yield the numbers that files of the suite name at their top level."""
     for file in project.suite_files:
         module = project.module(file)
-        found = (one for one in module.body if isinstance(one, ast.Assign)) if module is not None else ()
-        for name, value in (pair for one in found for pair in assigned(one.targets[0], one.value)):
+        found = (
+            (statement for statement in module.body if isinstance(statement, ast.Assign))
+            if module is not None
+            else ()
+        )
+        for name, value in (
+            pair for assignment in found for pair in assigned(assignment.targets[0], assignment.value)
+        ):
             if isinstance(value, ast.Constant) and is_number(value.value):
                 yield name, float(value.value)
 
 
 def _bounds(node: ast.Compare, names: set[str], constants: Mapping[str, float]) -> Iterator[float]:
     sides = [node.left, *node.comparators]
-    for one, operator, other in zip(sides, node.ops, sides[1:], strict=False):
+    for first, operator, second in zip(sides, node.ops, sides[1:], strict=False):
         match operator:
             case ast.Lt() | ast.LtE():
-                smaller, larger = one, other
+                smaller, larger = first, second
             case ast.Gt() | ast.GtE():
-                smaller, larger = other, one
+                smaller, larger = second, first
             case _:
                 continue
         size = _number(larger, constants)

@@ -33,13 +33,13 @@ def _separated(chosen: Sequence[MutantResult]) -> tuple[Survivors, list[Unsolved
     """
     to_kill: Survivors = {}
     never: list[Unsolved] = []
-    for one in chosen:
-        different = [out for out in one.survived if out.indistinguishable is not True]
+    for result in chosen:
+        different = [out for out in result.survived if out.indistinguishable is not True]
         if different and any(looked.acted for out in different for looked in out.looked):
-            to_kill[one.mutant.id] = one, [out.round for out in different]
+            to_kill[result.mutant.id] = result, [out.round for out in different]
         else:
-            reason = NOTHING_DIFFERS if one.survived and not different else NOT_REACHED
-            never.append(Unsolved(one.mutant.id, reason, never=True))
+            reason = NOTHING_DIFFERS if result.survived and not different else NOT_REACHED
+            never.append(Unsolved(result.mutant.id, reason, never=True))
     return to_kill, never
 
 
@@ -72,8 +72,8 @@ def suggest(
     to_kill, never = _separated(chosen)
     nothing = Suggestions(
         unsolved=tuple(never),
-        numbers={one.mutant.id: one.mutant.number for one in chosen},
-        descriptions={one.mutant.id: one.mutant.description for one in chosen},
+        numbers={result.mutant.id: result.mutant.number for result in chosen},
+        descriptions={result.mutant.id: result.mutant.description for result in chosen},
         rounds=request.rounds,
         seeds=seeds,
     )
@@ -88,9 +88,11 @@ def suggest(
     quiet = QuietProgress(progress)
     request = replace(request, evidence=False)
     project = SuiteFiles(request)
-    places = chosen_places(project, [one for one, _ in to_kill.values()])
+    places = chosen_places(project, [result for result, _ in to_kill.values()])
     if not places:
-        tests = (looked.test for one, _ in to_kill.values() for out in one.survived for looked in out.looked)
+        tests = (
+            looked.test for result, _ in to_kill.values() for out in result.survived for looked in out.looked
+        )
         raise NothingToSuggestError(
             f"no check can be added to the tests of these survivors, such as {next(tests, 'no test')}: "
             "they are neither functions of pytest, nor methods of unittest, nor made by another tool"
@@ -101,24 +103,26 @@ def suggest(
     wide = replace(request, rounds=calibrated)
     measured = _measured(wide, project, suite, places, to_kill, quiet)
     found, refused = _proposals(project, suite, measured)
-    noticed = {mutant for one in found for mutant, _ in one.trials}
-    unnoticed = {mutant: one for mutant, one in to_kill.items() if mutant not in noticed}
-    others = other_places(project, chosen, [one for one, _ in unnoticed.values()], places)
+    noticed = {mutant for proposal in found for mutant, _ in proposal.trials}
+    unnoticed = {mutant: entry for mutant, entry in to_kill.items() if mutant not in noticed}
+    others = other_places(project, chosen, [result for result, _ in unnoticed.values()], places)
     if others:
         measured = merged(measured, _measured(wide, project, suite, others, unnoticed, quiet))
         found, refused = _proposals(project, suite, measured)
     proof = Proof(request, project, quiet)
     checks = _proven(proof, found, [*range(request.rounds), *range(calibrated, calibrated + seeds)])
-    killed = {mutant for one in checks for mutant, _ in proof.kills[one]}
-    left = [one for mutant, (one, _) in to_kill.items() if mutant not in killed]
-    reasons = [why_unsolved(one, measured, suite, found, proof.failed, refused) for one in left]
-    texts = texts_with(project, [one for one in checks if one.place.style != OTHER])
+    killed = {mutant for check in checks for mutant, _ in proof.kills[check]}
+    left = [result for mutant, (result, _) in to_kill.items() if mutant not in killed]
+    reasons = [why_unsolved(result, measured, suite, found, proof.failed, refused) for result in left]
+    texts = texts_with(project, [check for check in checks if check.place.style != OTHER])
     return replace(
         nothing,
-        checks=tuple(_suggestion(one, proof.kills[one], seeds) for one in checks),
+        checks=tuple(_suggestion(check, proof.kills[check], seeds) for check in checks),
         diff=project.diff(texts),
         unsolved=(*reasons, *never),
-        dropped=tuple(Dropped(one.place.node, one.statement, why) for one, why in proof.failed.items()),
+        dropped=tuple(
+            Dropped(proposal.place.node, proposal.statement, why) for proposal, why in proof.failed.items()
+        ),
     )
 
 
@@ -149,19 +153,20 @@ def _measured(
 def _proven(proof: Proof, found: Sequence[CheckProposal], rounds: Sequence[int]) -> list[CheckProposal]:
     """Return proven checks that together kill all that any check kills, those that kill most first."""
     for _ in range(_ATTEMPTS):
-        failures = Counter(one.place for one, why in proof.failed.items() if "fails in" in why)
+        failures = Counter(proposal.place for proposal, why in proof.failed.items() if "fails in" in why)
         left = [
-            one
-            for one in found
-            if one in proof.kills or (one not in proof.failed and failures[one.place] < _FAILURES)
+            proposal
+            for proposal in found
+            if proposal in proof.kills
+            or (proposal not in proof.failed and failures[proposal.place] < _FAILURES)
         ]
         chosen = chosen_of(left, proof.kills)
-        new = [one for one in chosen if one not in proof.kills]
+        new = [proposal for proposal in chosen if proposal not in proof.kills]
         if not new:
             break
         proof.on_survivors(proof.on_original(new, rounds))
-    chosen = [one for one in chosen if one in proof.kills and one not in proof.failed]
-    return sorted(chosen, key=lambda one: -len({mutant for mutant, _ in proof.kills[one]}))
+    chosen = [proposal for proposal in chosen if proposal in proof.kills and proposal not in proof.failed]
+    return sorted(chosen, key=lambda proposal: -len({mutant for mutant, _ in proof.kills[proposal]}))
 
 
 def chosen_of(checks: Sequence[CheckProposal], kills: Mapping[CheckProposal, Trials]) -> list[CheckProposal]:
@@ -169,16 +174,16 @@ def chosen_of(checks: Sequence[CheckProposal], kills: Mapping[CheckProposal, Tri
 
     ``kills``: what checks that were run killed; of the others counts what they would by what was measured.
     """
-    trials = {one: kills.get(one, one.trials) for one in checks}
+    trials = {proposal: kills.get(proposal, proposal.trials) for proposal in checks}
     left = frozenset().union(*trials.values())
     chosen: list[CheckProposal] = []
-    for one in sorted(checks, key=lambda one: (one.worth, len(trials[one])), reverse=True):
-        if trials[one] & left:
-            chosen.append(one)
-            left -= trials[one]
-    for one in chosen[::-1]:  # the best is the last to go
-        others = [other for other in chosen if other is not one]
-        if trials[one] <= frozenset().union(*(trials[other] for other in others)):
+    for best in sorted(checks, key=lambda proposal: (proposal.worth, len(trials[proposal])), reverse=True):
+        if trials[best] & left:
+            chosen.append(best)
+            left -= trials[best]
+    for chosen_check in chosen[::-1]:  # the best is the last to go
+        others = [other for other in chosen if other is not chosen_check]
+        if trials[chosen_check] <= frozenset().union(*(trials[other] for other in others)):
             chosen = others
     return chosen
 

@@ -82,11 +82,13 @@ class SuiteChecks:
         """Return the text of a file in which checks record what they compare."""
         marks: list[tuple[int, int, str]] = []
         starts = _starts(text)
-        for one in self.checks:
-            if one.file == file:
+        for check in self.checks:
+            if check.file == file:
                 roles = ("actual", "expected", "tolerance")
-                for node, role in zip(one.nodes, roles, strict=True):
-                    call = f'__import__("mutabot_suggest.recorder").recorder.compared("{one.key}", "{role}", '
+                for node, role in zip(check.nodes, roles, strict=True):
+                    call = (
+                        f'__import__("mutabot_suggest.recorder").recorder.compared("{check.key}", "{role}", '
+                    )
                     begin = starts[node.lineno - 1] + node.col_offset
                     end = starts[(node.end_lineno or 0) - 1] + (node.end_col_offset or 0)
                     marks += [(begin, 1, call), (end, 0, ")")]
@@ -97,7 +99,9 @@ class SuiteChecks:
 
     def constant(self, place: PlaceInTest, file: str, text: str) -> tuple[str, ...] | None:
         """Return the imports that an expression of a file's constants needs at a place; else None."""
-        names = {one.id for one in ast.walk(ast.parse(text)) if isinstance(one, ast.Name)} if text else set()
+        names = (
+            {node.id for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Name)} if text else set()
+        )
         if not names or not all(name.isupper() for name in names) or names & {*place.names}:
             return None
         return self._imports(place, file, names)
@@ -114,12 +118,12 @@ class SuiteChecks:
                     continue
                 if target.isupper() and isinstance(items, tuple | list):
                     yield from (
-                        (f"{target}[{number}]", one) for number, one in enumerate(items) if is_number(one)
+                        (f"{target}[{number}]", item) for number, item in enumerate(items) if is_number(item)
                     )
 
     def needs_of_form(self, place: PlaceInTest, check: SuiteCheck) -> tuple[str, ...] | None:
         """Return the imports that a check of this form needs at a place; None if it is not possible there."""
-        names = {one.id for one in ast.walk(ast.parse(check.form)) if isinstance(one, ast.Name)}
+        names = {node.id for node in ast.walk(ast.parse(check.form)) if isinstance(node, ast.Name)}
         names -= {ACTUAL, EXPECTED, TOLERANCE, *dir(builtins)}
         if ("self" in names) != (place.style == UNITTEST):
             return None
@@ -150,15 +154,17 @@ class SuiteChecks:
         for file in self.project.suite_files if module is not None else ():
             other = self.project.module(file)
             defined = (
-                {one.name for one in other.body if isinstance(one, TestFunctionNode)} if other else set()
+                {statement.name for statement in other.body if isinstance(statement, TestFunctionNode)}
+                if other
+                else set()
             )
-            for call in (one for one in ast.walk(other) if isinstance(one, ast.Call)) if other else ():
+            for call in (node for node in ast.walk(other) if isinstance(node, ast.Call)) if other else ():
                 if isinstance(call.func, ast.Attribute) and call.func.attr == "always":
-                    for inner in (one for one in ast.walk(call) if isinstance(one, ast.Call)):
+                    for inner in (node for node in ast.walk(call) if isinstance(node, ast.Call)):
                         reads = isinstance(inner.func, ast.Name) and inner.func.id in defined
                         if (
                             reads
-                            and [ast.unparse(one) for one in inner.args] == [name]
+                            and [ast.unparse(argument) for argument in inner.args] == [name]
                             and module is not None
                         ):
                             home = self.project.import_name(file)
@@ -172,7 +178,7 @@ class SuiteChecks:
         """Return the checks of other tests whose names are all available in a test."""
         module = self.project.module(place.file)
         own = function_of(module, place)
-        there = {text_of(one) for one in ast.walk(own) if isinstance(one, ast.stmt)} if own else set()
+        there = {text_of(inner) for inner in ast.walk(own) if isinstance(inner, ast.stmt)} if own else set()
         found: dict[str, ReusableCheck] = {}
         for file in self.project.suite_files:
             other = self.project.module(file)
@@ -182,7 +188,9 @@ class SuiteChecks:
                 is_own = own is not None and name == own.name
                 if statement in there or statement in found or is_own or name in helpers:
                     continue
-                near = next((one for one in self.checks if one.file == file and _is_at(one, node)), None)
+                near = next(
+                    (check for check in self.checks if check.file == file and _is_at(check, node)), None
+                )
                 needs = self._needs(place, file, node, near)
                 if needs is not None and not self._acts(file, node):
                     key = f"{HELD}{len(found)}"
@@ -195,7 +203,7 @@ class SuiteChecks:
         if module is None:
             return
         helpers = _checking(module) | self._imported(module)
-        for function in (one for one in ast.walk(module) if isinstance(one, TestFunctionNode)):
+        for function in (inner for inner in ast.walk(module) if isinstance(inner, TestFunctionNode)):
             for node in ast.walk(function):
                 if isinstance(node, ast.Assert):
                     yield function.name, ast.Assert(node.test) if node.msg is not None else node
@@ -227,29 +235,34 @@ class SuiteChecks:
         module, other = self.project.module(place.file), self.project.module(file)
         if module is None or other is None:
             return None
-        names = {one.id for one in ast.walk(node) if isinstance(one, ast.Name)}
+        names = {inner.id for inner in ast.walk(node) if isinstance(inner, ast.Name)}
         stored = (
-            one for one in ast.walk(node) if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)
+            inner
+            for inner in ast.walk(node)
+            if isinstance(inner, ast.Name) and isinstance(inner.ctx, ast.Store)
         )
-        names -= {one.id for one in stored} | {*dir(builtins)}
+        names -= {name_node.id for name_node in stored} | {*dir(builtins)}
         if near is not None and near.tolerance.isidentifier() and near.tolerance not in top_names(other):
             names.discard(near.tolerance)
         if "self" in names and place.style != UNITTEST:
             return None
         here = names & {*place.names}
         needs = self._imports(place, file, names - here - {"self"})
-        return needs if here or any(isinstance(one, ast.Call) for one in ast.walk(node)) else None
+        return needs if here or any(isinstance(inner, ast.Call) for inner in ast.walk(node)) else None
 
     def _acts(self, file: str, node: ast.AST, depth: int = 3) -> bool:
         """Return whether a statement runs the program or commands the robot."""
         module = self.project.module(file)
-        program = {self.project.import_name(one).rpartition(".")[2] for one in self.project.program_files}
-        commands = {
-            one.qualname.rpartition(".")[2]
-            for one in self.project.request.vocabulary.operations
-            if one.command
+        program = {
+            self.project.import_name(program_file).rpartition(".")[2]
+            for program_file in self.project.program_files
         }
-        for call in (one for one in ast.walk(node) if isinstance(one, ast.Call)):
+        commands = {
+            operation.qualname.rpartition(".")[2]
+            for operation in self.project.request.vocabulary.operations
+            if operation.command
+        }
+        for call in (inner_call for inner_call in ast.walk(node) if isinstance(inner_call, ast.Call)):
             name = ast.unparse(call.func)
             last, first = name.rpartition(".")[2], name.partition(".")[0]
             line = _import_of(module, first) if module is not None else None
@@ -257,10 +270,16 @@ class SuiteChecks:
                 return True
             if isinstance(call.func, ast.Name) and module is not None and depth > 0:
                 inner = next(
-                    (one for one in module.body if isinstance(one, TestFunctionNode) and one.name == name),
+                    (
+                        statement
+                        for statement in module.body
+                        if isinstance(statement, TestFunctionNode) and statement.name == name
+                    ),
                     None,
                 )
-                if inner is not None and any(self._acts(file, one, depth - 1) for one in inner.body):
+                if inner is not None and any(
+                    self._acts(file, statement, depth - 1) for statement in inner.body
+                ):
                     return True
         return False
 
@@ -270,12 +289,12 @@ def assigned(target: ast.expr | None, value: ast.expr | None) -> Iterator[tuple[
     if isinstance(target, ast.Name) and value is not None:
         yield target.id, value
     elif isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple):
-        for one, other in zip(target.elts, value.elts, strict=False):
-            yield from assigned(one, other)
+        for first, second in zip(target.elts, value.elts, strict=False):
+            yield from assigned(first, second)
 
 
 def _is_at(check: SuiteCheck, node: ast.stmt) -> bool:
-    return any(one is check.nodes[0] for one in ast.walk(node))
+    return any(inner is check.nodes[0] for inner in ast.walk(node))
 
 
 def _import_of(module: ast.Module, name: str) -> str | None:
@@ -303,10 +322,10 @@ def _starts(text: str) -> list[int]:
 def _checking(module: ast.Module) -> set[str]:
     """Return a file's own checking functions that tests call: no tests, fixtures or steps."""
     return {
-        one.name
-        for one in module.body
-        if isinstance(one, TestFunctionNode)
-        and not one.name.startswith("test")
-        and not one.decorator_list
-        and any(isinstance(part, ast.Assert) for part in ast.walk(one))
+        statement.name
+        for statement in module.body
+        if isinstance(statement, TestFunctionNode)
+        and not statement.name.startswith("test")
+        and not statement.decorator_list
+        and any(isinstance(part, ast.Assert) for part in ast.walk(statement))
     }

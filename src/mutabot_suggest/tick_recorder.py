@@ -125,15 +125,15 @@ def _works(read: Callable[[], Any]) -> bool:
 def _of_truth(name: str, owner: Any) -> Iterator[tuple[str, Callable[[], Any]]]:
     """Yield the readings of the object's ``truth`` that need no argument."""
     truth = getattr(owner, "truth", None)
-    for one in dir(type(truth)) if truth is not None else ():
-        read = getattr(truth, one, None) if not one.startswith("_") else None
+    for attribute in dir(type(truth)) if truth is not None else ():
+        read = getattr(truth, attribute, None) if not attribute.startswith("_") else None
         if inspect.ismethod(read) and _needs_nothing(read):
-            yield f"{name}.truth.{one}()", read
+            yield f"{name}.truth.{attribute}()", read
 
 
 def _needs_nothing(read: Callable[..., Any]) -> bool:
     given = inspect.signature(read).parameters.values()
-    return all(one.default is not inspect.Parameter.empty for one in given)
+    return all(parameter.default is not inspect.Parameter.empty for parameter in given)
 
 
 def _numbers(text: str, value: Any) -> Iterator[tuple[str, float]]:
@@ -142,7 +142,7 @@ def _numbers(text: str, value: Any) -> Iterator[tuple[str, float]]:
         yield text, float(value)
     elif is_dataclass(value) and not isinstance(value, type):
         properties = [name for name, part in vars(type(value)).items() if isinstance(part, property)]
-        names = [one.name for one in fields(value)]
+        names = [attribute.name for attribute in fields(value)]
         for name in [*names, *filter(PEAKS.search, properties)]:
             yield from _numbers(f"{text}.{name}", getattr(value, name))
     elif hasattr(type(value), "_fields"):

@@ -75,15 +75,15 @@ class StatedTolerances:
         """Return the largest tolerance for this quantity, by values or name; else the least of its group."""
         found = [*self._by_value(text)]
         if found:
-            best = max(found, key=lambda one: one.tolerance)
+            best = max(found, key=lambda tolerance: tolerance.tolerance)
             return StatedTolerance(max(best.tolerance, self._by_text(text)), best.check)
         own = self._by_text(text)
         if own:
             return StatedTolerance(own, self._form_of({last_name(text)}))
         name = last_name(text)
-        group = next((one for one in _GROUPS if name in one), set())
+        group = next((candidate for candidate in _GROUPS if name in candidate), set())
         for names in ({name}, group):
-            sizes = [size for one in names if (size := self._of_name(one))]
+            sizes = [size for related_name in names if (size := self._of_name(related_name))]
             if sizes:
                 return StatedTolerance(min(sizes), self._form_of(names))
         return StatedTolerance()
@@ -100,7 +100,7 @@ class StatedTolerances:
                     continue
                 tolerance = max(part[3] for part, _ in parts)
                 far = max(abs(part[1] - value) for part, value in parts)
-                is_named = name in {last_name(one) for one in check.names(number)}
+                is_named = name in {last_name(compared_name) for compared_name in check.names(number)}
                 if far <= tolerance * (1.0 if is_named else _NEAR):
                     yield StatedTolerance(tolerance, check)
 
@@ -116,14 +116,14 @@ class StatedTolerances:
         for read in (*self._reads, *self._elsewhere):
             for check in self._suite.checks:
                 for number, _, _, tolerance in check.parts_in(read):
-                    if name in {last_name(one) for one in check.names(number)}:
+                    if name in {last_name(compared_name) for compared_name in check.names(number)}:
                         sizes.append(tolerance)
         return max(sizes)
 
     def _form_of(self, names: set[str]) -> SuiteCheck | None:
         """Return a check of something with this name; None if there is none."""
         for check in self._suite.checks:
-            actual = {last_name(one) for one in (*check.actual, *check.expected)}
+            actual = {last_name(text) for text in (*check.actual, *check.expected)}
             if actual & names:
                 return check
         return None
@@ -138,12 +138,14 @@ def stated_in(module: ast.AST | None) -> tuple[set[str], dict[str, float]]:
     tolerances: dict[str, float] = {}
     for node in ast.walk(module) if module is not None else ():
         if isinstance(node, ast.Compare):
-            compared.update(text_of(one) for one in ast.walk(node) if isinstance(one, ast.expr))
+            compared.update(text_of(inner) for inner in ast.walk(node) if isinstance(inner, ast.expr))
         actual, allowed = _comparison_parts(node)
         if actual is None:
             continue
         text = text_of(actual)
-        values: list[Any] = [one.value for one in allowed if isinstance(one, ast.Constant)]
+        values: list[Any] = [
+            expression.value for expression in allowed if isinstance(expression, ast.Constant)
+        ]
         for size in (float(size) for size in values if is_number(size)):
             for name in (f"={text}", last_name(text)):
                 tolerances[name] = max(tolerances.get(name, 0.0), size)
@@ -154,8 +156,8 @@ def _comparison_parts(node: ast.AST) -> tuple[ast.expr | None, list[ast.expr]]:
     """Return the expression that a comparison checks, and its tolerances."""
     match node:
         case ast.Compare(left=actual, comparators=[compared]):
-            calls = [one for one in ast.walk(compared) if isinstance(one, ast.Call)]
-            sizes = [word.value for one in calls for word in one.keywords if word.arg == "abs"]
+            calls = [inner_call for inner_call in ast.walk(compared) if isinstance(inner_call, ast.Call)]
+            sizes = [word.value for call in calls for word in call.keywords if word.arg == "abs"]
             match actual:
                 case ast.Call(
                     func=ast.Name(id="abs"), args=[ast.BinOp(left=inner, op=ast.Sub() | ast.Add())]
@@ -163,6 +165,6 @@ def _comparison_parts(node: ast.AST) -> tuple[ast.expr | None, list[ast.expr]]:
                     return inner, [compared]
             return (actual, sizes) if sizes else (None, [])
         case ast.Call(args=[actual, *_], keywords=keywords):
-            sizes = [one.value for one in keywords if one.arg == "delta"]
+            sizes = [keyword.value for keyword in keywords if keyword.arg == "delta"]
             return (actual, sizes) if sizes else (None, [])
     return None, []

@@ -67,10 +67,10 @@ def _distances(columns: Columns) -> Iterator[tuple[str, Sequence[float]]]:
     if not any(GATE.search(text) for text in columns):
         return
     places = {text: match[1] for text in columns if (match := COORDINATE.search(text))}
-    for one, other in permutations(places, 2):
-        if places[other] == "tool" != places[one] and one[-2:] == other[-2:]:
-            values = [a - b for a, b in zip(columns[one], columns[other], strict=True)]
-            yield f"{one}{FROM}{other}", values
+    for first, second in permutations(places, 2):
+        if places[second] == "tool" != places[first] and first[-2:] == second[-2:]:
+            values = [a - b for a, b in zip(columns[first], columns[second], strict=True)]
+            yield f"{first}{FROM}{second}", values
 
 
 def _of_ways(
@@ -81,7 +81,7 @@ def _of_ways(
     measured: Measured,
     limits: StatedTolerances,
 ) -> Iterator[Monitor]:
-    shared = set.intersection(*({*one} for one in (*ways, *theirs.values())))
+    shared = set.intersection(*({*way} for way in (*ways, *theirs.values())))
     shared -= {text for text in shared if text.replace("_pose()", "_position()") in shared - {text}}
     scales = {text: scale for text in sorted(shared) if (scale := _scale_of(text, ways, limits))}
     zones: dict[str, Zone] = {}
@@ -208,10 +208,10 @@ def _releasing(scales: Mapping[str, float]) -> Iterator[tuple[Bound, Bound]]:
 
 
 def _scaled(columns: Columns, sides: Sequence[Bound]) -> list[tuple[float, float]]:
-    one, other = sides
+    first, second = sides
     return [
-        (one.sign * a / one.scale, other.sign * b / other.scale)
-        for a, b in zip(columns[one.text], columns[other.text], strict=True)
+        (first.sign * a / first.scale, second.sign * b / second.scale)
+        for a, b in zip(columns[first.text], columns[second.text], strict=True)
     ]
 
 

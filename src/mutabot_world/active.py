@@ -41,7 +41,11 @@ class WorldFault(ActiveFault):
                 # those that are there may be of the test, or left of others: that is known at its end
                 with suppress(LookupError):
                     found = instances_of(self.data["of"])
-                    self._earlier = [one for one in found if self._disturb(one, is_reported=False)]
+                    self._earlier = [
+                        earlier_fault
+                        for earlier_fault in found
+                        if self._disturb(earlier_fault, is_reported=False)
+                    ]
                 for reference in self.data["of"]:
                     self._wrap(reference, after=lambda _, world: self._world_made(world))
             case "making":

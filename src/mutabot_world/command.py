@@ -68,44 +68,55 @@ def _tolerances(texts: Sequence[str]) -> Tolerances:
 def sections(found: Sequence[WorldLadder]) -> Iterator[tuple[str, list[str]]]:
     """Yield both tables and the disturbances suffered unseen, as titles with lines for a terminal."""
     whole = combined_ladders(found)
-    known = [one for one in whole if one.ends]
+    known = [ladder for ladder in whole if ladder.ends]
     columns = ("parameter", "tried", "magnitudes", "unseen at", "noticed from", "by")
     rows = [
-        (*_name(one), one.bar, one.span(one.unseen) if one.unseen else "–", _noticed(one), _noticed_by(one))
-        for one in whole
+        (
+            *_name(ladder),
+            ladder.bar,
+            ladder.span(ladder.unseen) if ladder.unseen else "–",
+            _noticed(ladder),
+            _noticed_by(ladder),
+        )
+        for ladder in whole
     ]
     yield "What the tests notice, suffered unseen first", [*_table(columns, rows), "", _LEGEND]
-    yield "In sentences", [f"{one.sentence[0].upper()}{one.sentence[1:]}." for one in known]
-    unseen = [f"{one.parameter} {one.direction}: {one.finding}" for one in whole if one.unseen]
+    yield "In sentences", [f"{ladder.sentence[0].upper()}{ladder.sentence[1:]}." for ladder in known]
+    unseen = [f"{ladder.parameter} {ladder.direction}: {ladder.finding}" for ladder in whole if ladder.unseen]
     yield "Suffered unseen: all tests pass, and the world ends otherwise", unseen
-    robust = [(*_name(one), one.robust) for one in known]
+    robust = [(*_name(ladder), ladder.robust) for ladder in known]
     title = "How robust the program is: up to which size the task is done"
     yield title, _table(("parameter", "tried", "lived with up to"), robust)
-    if len({one.tests for one in found}) > 1:
-        first = sorted((one for one in found if one.ends), key=lambda one: (not one.unseen, one.parameter))
-        by_test = [(one.parameter + one.direction, one.bar, one.tests[0]) for one in first]
+    if len({ladder.tests for ladder in found}) > 1:
+        first = sorted(
+            (ladder for ladder in found if ladder.ends),
+            key=lambda ladder: (not ladder.unseen, ladder.parameter),
+        )
+        by_test = [(ladder.parameter + ladder.direction, ladder.bar, ladder.tests[0]) for ladder in first]
         yield "By test", _table(("parameter", "magnitudes", "test"), by_test)
-    unknown = [f"{one.parameter} {one.direction}: {one.why_unknown}" for one in whole if not one.ends]
+    unknown = [
+        f"{ladder.parameter} {ladder.direction}: {ladder.why_unknown}" for ladder in whole if not ladder.ends
+    ]
     yield "Nothing is known of", unknown
 
 
-def _name(one: WorldLadder) -> tuple[str, str]:
-    sign = {"+": " +", "-": " −"}.get(one.direction, "")
-    sizes = sorted(one.found)
-    return f"{one.parameter}{sign}", f"{sizes[0]:g} … {with_unit(sizes[-1], one.unit)}"
+def _name(ladder: WorldLadder) -> tuple[str, str]:
+    sign = {"+": " +", "-": " −"}.get(ladder.direction, "")
+    sizes = sorted(ladder.found)
+    return f"{ladder.parameter}{sign}", f"{sizes[0]:g} … {with_unit(sizes[-1], ladder.unit)}"
 
 
-def _noticed(one: WorldLadder) -> str:
-    if not one.ends:
+def _noticed(ladder: WorldLadder) -> str:
+    if not ladder.ends:
         return "not known"
-    return "never" if one.noticed_from is None else with_unit(one.noticed_from, one.unit)
+    return "never" if ladder.noticed_from is None else with_unit(ladder.noticed_from, ladder.unit)
 
 
-def _noticed_by(one: WorldLadder) -> str:
+def _noticed_by(ladder: WorldLadder) -> str:
     """Return what notices the threshold: a check of the tests, or an error that stops the program."""
-    if one.noticed_from is None:
+    if ladder.noticed_from is None:
         return ""
-    rounds = one.found[one.noticed_from].values()
+    rounds = ladder.found[ladder.noticed_from].values()
     stops = [each.is_stop for tests in rounds for each in tests.values() if each.end.value == "noticed"]
     return "check" if not any(stops) else "exception" if all(stops) else "check, exception"
 
@@ -120,14 +131,14 @@ def _data(found: Sequence[WorldLadder]) -> list[dict[str, Any]]:
     """Return the ladders as plain data for JSON."""
     return [
         {
-            **{key: getattr(one, key) for key in ("parameter", "direction", "unit")},
-            "tests": list(one.tests),
-            "magnitudes": sorted(one.found),
-            "ends": {f"{size:g}": str(one.end(size)) for size in sorted(one.found)},
-            "lived_with_up_to": one.robust_to,
-            **{key: getattr(one, key) for key in ("noticed_from", "unseen", "sentence", "finding")},
+            **{key: getattr(ladder, key) for key in ("parameter", "direction", "unit")},
+            "tests": list(ladder.tests),
+            "magnitudes": sorted(ladder.found),
+            "ends": {f"{size:g}": str(ladder.end(size)) for size in sorted(ladder.found)},
+            "lived_with_up_to": ladder.robust_to,
+            **{key: getattr(ladder, key) for key in ("noticed_from", "unseen", "sentence", "finding")},
         }
-        for one in found
+        for ladder in found
     ]
 
 

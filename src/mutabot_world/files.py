@@ -25,21 +25,29 @@ def parameters_of(table: WorldTable, root: Path) -> list[ParameterTable]:
     Raises UsageError for a file that cannot be read, for two parameters of one name, and for a name that is
     to be taken and is none.
     """
-    found = [one for name in table.parameters for one in _of_file(name, root)]
-    kept = [one for one in found if not table.only or any(fnmatchcase(one.name, p) for p in table.only)]
-    unused = [one for one in table.only if not any(fnmatchcase(other.name, one) for other in found)]
+    found = [found_table for name in table.parameters for found_table in _of_file(name, root)]
+    kept = [
+        found_table
+        for found_table in found
+        if not table.only or any(fnmatchcase(found_table.name, p) for p in table.only)
+    ]
+    unused = [
+        pattern for pattern in table.only if not any(fnmatchcase(other.name, pattern) for other in found)
+    ]
     if unused:
-        known = ", ".join(one.name for one in found) or "there are none"
+        known = ", ".join(found_table.name for found_table in found) or "there are none"
         raise UsageError(f"world.only: no parameter is named {unused[0]!r}; the files have: {known}")
-    stray = next((one for one in table.names if one not in [other.name for other in kept]), None)
+    stray = next((name for name in table.names if name not in [other.name for other in kept]), None)
     if stray is not None:
         raise UsageError(f"world.names: no parameter of the files is named {stray!r}")
     kept = [
-        one.model_copy(update={"names": table.names[one.name]}) if one.name in table.names else one
-        for one in kept
+        kept_table.model_copy(update={"names": table.names[kept_table.name]})
+        if kept_table.name in table.names
+        else kept_table
+        for kept_table in kept
     ]
     kept += _with_maker(table.parameter, table.of, "the configuration")
-    names = [one.name for one in kept]
+    names = [kept_table.name for kept_table in kept]
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
         raise UsageError(f"two parameters of the world are named {twice!r}")
@@ -66,11 +74,11 @@ def _of_file(name: str, root: Path) -> Iterator[ParameterTable]:
 def _with_maker(
     found: Iterable[ParameterTable], makers: tuple[str, ...], where: str
 ) -> Iterator[ParameterTable]:
-    for one in found:
-        if not (one.of or makers):
-            does_not = f"parameter {one.name!r} does not say what makes its world"
+    for table in found:
+        if not (table.of or makers):
+            does_not = f"parameter {table.name!r} does not say what makes its world"
             raise UsageError(f'{where}: {does_not}: of = ["module:Class"]')
-        yield one if one.of else one.model_copy(update={"of": makers})
+        yield table if table.of else table.model_copy(update={"of": makers})
 
 
 def _path(name: str, root: Path) -> Path:

@@ -55,9 +55,11 @@ def judge(outcome: Any, tolerances: Tolerances) -> JudgedOutcome:
     if outcome.verdict is not Verdict.SURVIVED:
         why = next(iter(outcome.away), None) or outcome.message or str(outcome.verdict)
         return JudgedOutcome(WorldEnd.UNKNOWN, why.split("\n")[0])
-    apart = [one for each in outcome.diverged for one in each.apart if not one.is_value]
+    apart = [part for each in outcome.diverged for part in each.apart if not part.is_value]
     if apart:
-        is_off = any(one.final > tolerances.get(one.unit, max(one.tolerance, one.spread)) for one in apart)
+        is_off = any(
+            part.final > tolerances.get(part.unit, max(part.tolerance, part.spread)) for part in apart
+        )
         return JudgedOutcome(WorldEnd.UNSEEN if is_off else WorldEnd.LIVED, story)
     if outcome.indistinguishable or (outcome.distance is not None and outcome.distance <= 1.0):
         return JudgedOutcome(WorldEnd.LIVED, story)
@@ -91,10 +93,10 @@ class WorldLadder:
     def end(self, size: float) -> WorldEnd:
         """Return how a magnitude ended: noticed only if so in every round, suffered unseen if so in any."""
         rounds = [combined_end(each.values()) for each in self.found[size].values()]
-        known = [one for one in rounds if one is not WorldEnd.UNKNOWN]
+        known = [end for end in rounds if end is not WorldEnd.UNKNOWN]
         if not known:
             return WorldEnd.UNKNOWN
-        others = [one for one in known if one is not WorldEnd.NOTICED]
+        others = [other_end for other_end in known if other_end is not WorldEnd.NOTICED]
         return min(others, key=[*WorldEnd].index) if others else WorldEnd.NOTICED
 
     def is_sometimes_noticed(self, size: float) -> bool:
@@ -148,9 +150,9 @@ class WorldLadder:
     def story(self, size: float, end: WorldEnd) -> tuple[str, str]:
         """Return what happened at a magnitude that ended so, and in which test; empty if not recorded."""
         for round in sorted(self.found[size]):
-            for test, one in self.found[size][round].items():
-                if one.end is end and one.story:
-                    return one.story, test
+            for test, outcome in self.found[size][round].items():
+                if outcome.end is end and outcome.story:
+                    return outcome.story, test
         return "", ""
 
     @property
@@ -159,7 +161,9 @@ class WorldLadder:
         if self.ends:
             return ""
         rounds = (tests for each in self.found.values() for tests in each.values())
-        return next(filter(None, (one.story for tests in rounds for one in tests.values())), "not run")
+        return next(
+            filter(None, (outcome.story for tests in rounds for outcome in tests.values())), "not run"
+        )
 
     @property
     def sentence(self) -> str:
@@ -194,15 +198,15 @@ class WorldLadder:
 
 def combined_end(found: Iterable[JudgedOutcome]) -> WorldEnd:
     """Return how a disturbance ended in a round, combined over the tests."""
-    ends = {one.end for one in found}
+    ends = {outcome.end for outcome in found}
     return next((end for end in WorldEnd if end in ends), WorldEnd.UNKNOWN)
 
 
 def ladders(results: Results, tolerances: Tolerances) -> list[WorldLadder]:
     """Return a ladder for each parameter, direction and test, in the order of the plan."""
     found: dict[tuple[str, str, str], WorldLadder] = {}
-    for one in results.graded:
-        mutant = one.mutant
+    for result in results.graded:
+        mutant = result.mutant
         if mutant.provider != PROVIDER:
             continue
         test, name = mutant.site.span.file, mutant.site.text
@@ -212,7 +216,7 @@ def ladders(results: Results, tolerances: Tolerances) -> list[WorldLadder]:
         size = mutant.magnitude or 0.0
         ladder.texts[size], ladder.numbers[size, test] = mutant.description, mutant.number
         rounds = ladder.found.setdefault(size, {})
-        for outcome in one.outcomes:
+        for outcome in result.outcomes:
             rounds.setdefault(outcome.round, {})[test] = judge(outcome, tolerances)
     return list(found.values())
 
@@ -223,15 +227,17 @@ def combined_ladders(found: Sequence[WorldLadder]) -> list[WorldLadder]:
     Those come first that are suffered unseen, the loosest of them before others.
     """
     whole: dict[tuple[str, str], WorldLadder] = {}
-    for one in found:
-        key = one.parameter, one.direction
-        before = whole.get(key) or WorldLadder(one.parameter, one.direction, one.unit, ())
+    for ladder in found:
+        key = ladder.parameter, ladder.direction
+        before = whole.get(key) or WorldLadder(ladder.parameter, ladder.direction, ladder.unit, ())
         whole[key] = before
-        before.tests += one.tests
-        before.texts |= one.texts
-        before.numbers |= one.numbers
-        for size, rounds in one.found.items():
+        before.tests += ladder.tests
+        before.texts |= ladder.texts
+        before.numbers |= ladder.numbers
+        for size, rounds in ladder.found.items():
             whole_size = before.found.setdefault(size, {})
             for round, tests in rounds.items():
                 whole_size.setdefault(round, {}).update(tests)
-    return sorted(whole.values(), key=lambda one: (not one.unseen, one.noticed_from is not None))
+    return sorted(
+        whole.values(), key=lambda combined: (not combined.unseen, combined.noticed_from is not None)
+    )

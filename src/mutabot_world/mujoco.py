@@ -83,7 +83,7 @@ def gain(model: Any, change: NumberChange, *, names: str, random: Random) -> Non
 
 def strength(model: Any, change: NumberChange, *, names: str, random: Random) -> None:
     """Change the largest force of actuators, N or Nm, of those that have a limit."""
-    for actuator in _named(model, "actuator", names, lambda one: bool(model.actuator_forcelimited[one])):
+    for actuator in _named(model, "actuator", names, lambda index: bool(model.actuator_forcelimited[index])):
         model.actuator_forcerange[actuator] = change(model.actuator_forcerange[actuator])
 
 
@@ -105,8 +105,8 @@ def gravity(model: Any, change: NumberChange, *, names: str, random: Random) -> 
 def sensor(model: Any, change: NumberChange, *, names: str, random: Random) -> None:
     """Change what sensors of a model read, in their own units."""
     parts = [
-        slice(int(model.sensor_adr[one]), int(model.sensor_adr[one] + model.sensor_dim[one]))
-        for one in _named(model, "sensor", names)
+        slice(int(model.sensor_adr[index]), int(model.sensor_adr[index] + model.sensor_dim[index]))
+        for index in _named(model, "sensor", names)
     ]
 
     def read(data: Any) -> None:
@@ -144,7 +144,7 @@ def offered_parameters(model: Any) -> Iterator[tuple[str, list[str]]]:
 
 
 def _of_joints(model: Any, change: NumberChange, names: str, values: Any) -> None:
-    for joint in _named(model, "joint", names, lambda one: int(model.jnt_type[one]) in (2, 3)):
+    for joint in _named(model, "joint", names, lambda index: int(model.jnt_type[index]) in (2, 3)):
         dof = int(model.jnt_dofadr[joint])  # the one of a slide or a hinge
         values[dof] = max(float(change(float(values[dof]))), 0.0)
     _recompute_constants(model)

@@ -45,22 +45,24 @@ def page(results: Results, found: Sequence[WorldLadder], recordings: Any) -> str
         recordings: what was recorded in the campaign.
     """
     whole = combined_ladders(found)
-    tests = list(dict.fromkeys(test for one in found for test in one.tests))
-    by_test = {(one.parameter, one.direction, one.tests[0]): one for one in found}
+    tests = list(dict.fromkeys(test for ladder in found for test in ladder.tests))
+    by_test = {(ladder.parameter, ladder.direction, ladder.tests[0]): ladder for ladder in found}
     legend = "".join(f"<p>{_cell('size', end)} {escape(str(end))}: {text}</p>" for end, text in _LEGEND)
     head = "<tr><th>parameter<th>all tests" + "".join(
-        f"<th>{_text(one.rpartition('::')[2])}" for one in tests
+        f"<th>{_text(test.rpartition('::')[2])}" for test in tests
     )
     rows = "".join(
-        f"<tr><th>{_text(_name(one))}<td>{_bar(one)}"
-        + "".join(f"<td>{_bar(by_test.get((one.parameter, one.direction, test)))}" for test in tests)
-        for one in whole
+        f"<tr><th>{_text(_name(ladder))}<td>{_bar(ladder)}"
+        + "".join(f"<td>{_bar(by_test.get((ladder.parameter, ladder.direction, test)))}" for test in tests)
+        for ladder in whole
     )
     findings = "".join(
-        f"<li>{_text(one.sentence)}{f'<br><b>{_text(one.finding)}</b>' if one.finding else ''}"
-        for one in whole
+        f"<li>{_text(ladder.sentence)}{f'<br><b>{_text(ladder.finding)}</b>' if ladder.finding else ''}"
+        for ladder in whole
     )
-    robust = "".join(f"<tr><td>{_text(_name(one))}<td>{_text(one.robust)}" for one in whole if one.ends)
+    robust = "".join(
+        f"<tr><td>{_text(_name(ladder))}<td>{_text(ladder.robust)}" for ladder in whole if ladder.ends
+    )
     parts = (
         "<h1>Disturbances of the world</h1>"
         f"<p>{_text(results.state)}, {results.rounds} round{'s' * (results.rounds != 1)}</p>{legend}",
@@ -78,17 +80,17 @@ def page(results: Results, found: Sequence[WorldLadder], recordings: Any) -> str
 
 def _figures(results: Results, found: Sequence[WorldLadder], recordings: Any) -> Iterable[str]:
     """Yield a drawing of each ladder's largest magnitude that was suffered unseen."""
-    ids = {one.mutant.number: one.mutant.id for one in results.graded}
-    drawn = [one for one in found if one.unseen][:_DRAWN]
+    ids = {result.mutant.number: result.mutant.id for result in results.graded}
+    drawn = [found_ladder for found_ladder in found if found_ladder.unseen][:_DRAWN]
     yield f"<h2>Recordings of what was suffered unseen</h2><p>{_KEY}</p>" if drawn else ""
-    for one in drawn:
-        size, test = one.unseen[-1], one.tests[0]
-        number = one.numbers[size, test]
-        rounds = (n for n, each in sorted(one.found[size].items()) if each[test].end is WorldEnd.UNSEEN)
+    for ladder in drawn:
+        size, test = ladder.unseen[-1], ladder.tests[0]
+        number = ladder.numbers[size, test]
+        rounds = (n for n, each in sorted(ladder.found[size].items()) if each[test].end is WorldEnd.UNSEEN)
         original, mutant = recordings.pair(ids[number], next(rounds), test)
         if original is not None and mutant is not None:
-            story = one.story(size, WorldEnd.UNSEEN)[0]
-            text = f"{one.texts[size]}, {test.rpartition('::')[2]} (mutant {number}): {story}"
+            story = ladder.story(size, WorldEnd.UNSEEN)[0]
+            text = f"{ladder.texts[size]}, {test.rpartition('::')[2]} (mutant {number}): {story}"
             drawing = _drawing(RecordedPaths(original), RecordedPaths(mutant))
             yield f"<figure>{drawing}<figcaption>{_text(text)}</figcaption></figure>"
 
@@ -115,11 +117,13 @@ def _drawing(original: RecordedPaths, mutant: RecordedPaths) -> str:
     return f'<svg width="{_EDGE}" height="{_EDGE}" {label}>{"".join(shapes)}</svg>'
 
 
-def _bar(one: WorldLadder | None) -> str:
-    if one is None:
+def _bar(ladder: WorldLadder | None) -> str:
+    if ladder is None:
         return "–"
-    cells = ((size, one.end(size), one.is_sometimes_noticed(size)) for size in sorted(one.found))
-    return "".join(_cell(f"{size:g}", end, is_some=some) for size, end, some in cells) + f" {one.unit or ''}"
+    cells = ((size, ladder.end(size), ladder.is_sometimes_noticed(size)) for size in sorted(ladder.found))
+    return (
+        "".join(_cell(f"{size:g}", end, is_some=some) for size, end, some in cells) + f" {ladder.unit or ''}"
+    )
 
 
 def _cell(text: str, end: WorldEnd, *, is_some: bool = False) -> str:
@@ -127,8 +131,8 @@ def _cell(text: str, end: WorldEnd, *, is_some: bool = False) -> str:
     return f'<i class="{kind}" title="{end}">{_text(text)}</i>'
 
 
-def _name(one: WorldLadder) -> str:
-    return f"{one.parameter} {'−' if one.direction == '-' else one.direction}".strip()
+def _name(ladder: WorldLadder) -> str:
+    return f"{ladder.parameter} {'−' if ladder.direction == '-' else ladder.direction}".strip()
 
 
 def _text(text: str) -> str:

@@ -66,19 +66,19 @@ def wrap(reference: str, *, before: Before | None = None, after: After | None = 
     owner, last, found = resolve(reference)
     if not isinstance(found, type):
         return _wrap_attribute(owner, last, before, after, set())
-    below = [one for one in dict.fromkeys(_below(found)) if after and "__init__" in vars(one)]
+    below = [cls for cls in dict.fromkeys(_below(found)) if after and "__init__" in vars(cls)]
     running: set[Any] = set()
     undoes = [_wrap_attribute(found, "__init__", before, after, running)]
-    undoes += [_wrap_attribute(one, "__init__", None, after, running) for one in below]
+    undoes += [_wrap_attribute(cls, "__init__", None, after, running) for cls in below]
     return lambda: [each() for each in undoes]
 
 
 def _below(kind: type) -> Iterator[type]:
     """Yield all subclasses of a class."""
     below: list[type] = kind.__subclasses__()
-    for one in below:
-        yield one
-        yield from _below(one)
+    for cls in below:
+        yield cls
+        yield from _below(cls)
 
 
 def _wrap_attribute(
@@ -129,7 +129,7 @@ def _wrap_attribute(
 
 def instances_of(references: list[str]) -> Iterator[Any]:
     """Yield the objects of these classes that are alive, each once; references to functions yield nothing."""
-    kinds = tuple(found for one in references if isinstance(found := resolve(one)[2], type))
+    kinds = tuple(found for reference in references if isinstance(found := resolve(reference)[2], type))
     if not kinds:
         return
     seen: set[int] = set()
@@ -137,7 +137,7 @@ def instances_of(references: list[str]) -> Iterator[Any]:
     for holder in gc.get_objects():
         # those that Python's collector does not know are held by others
         held = [holder] if isinstance(holder, kinds) else gc.get_referents(holder)
-        for one in held:
-            if isinstance(one, kinds) and id(one) not in seen:
-                seen.add(id(one))
-                yield one
+        for instance in held:
+            if isinstance(instance, kinds) and id(instance) not in seen:
+                seen.add(id(instance))
+                yield instance

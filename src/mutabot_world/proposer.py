@@ -38,7 +38,7 @@ class WorldProposer:
 
         def begin(library: str, _: Any) -> None:
             shipped = _shipped(library)
-            makers = (one for table in (shipped, *shipped["parameter"]) for one in table.get("of", ()))
+            makers = (target for table in (shipped, *shipped["parameter"]) for target in table.get("of", ()))
             for reference in dict.fromkeys(makers):
                 with suppress(LookupError):
                     wrap(reference, after=partial(note, library))
@@ -49,10 +49,10 @@ class WorldProposer:
 
     def lines(self, seen: Sequence[Any]) -> list[str]:
         """Return the lines of table ``world``: a package's parameter file, or one parameter per thing."""
-        files = list(dict.fromkeys(name for one in seen for name in one["files"]))
+        files = list(dict.fromkeys(name for seen_report in seen for name in seen_report["files"]))
         names: _Names = {}
-        for one in seen:
-            for library, found in one["names"].items():
+        for report in seen:
+            for library, found in report["names"].items():
                 _add(names, library, found.items())
         if not names:
             return []
@@ -79,7 +79,7 @@ def _files_of_packages() -> Iterator[str]:
         for folder in [] if "." in name else getattr(module, "__path__", ()):
             file = Path(folder, "world.toml")
             makers = tomllib.loads(file.read_text(encoding="utf-8")).get("of", ()) if file.is_file() else ()
-            if any(one.partition(":")[0] in sys.modules for one in makers):
+            if any(maker.partition(":")[0] in sys.modules for maker in makers):
                 yield f"{name}:world.toml"
 
 

@@ -81,7 +81,7 @@ class WorldFaults(FaultProvider):
         planned = Planned()
         for parameter in parameters_of(table, project.root):
             for test in tests:
-                if parameter.tests and not any(fnmatchcase(test, one) for one in parameter.tests):
+                if parameter.tests and not any(fnmatchcase(test, pattern) for pattern in parameter.tests):
                     continue
                 reached = [
                     round
@@ -99,9 +99,9 @@ class WorldFaults(FaultProvider):
         key = Activation.at_time(moment.number) if moment.kind == "time" else Activation.EACH_TEST
         for way in parameter.ways:
             sign = {"+": "+", "-": "−"}.get(way, "")
-            words = (parameter.less if way == "-" else parameter.more) or f"{parameter.name} {sign}{{}}"
+            template = (parameter.less if way == "-" else parameter.more) or f"{parameter.name} {sign}{{}}"
             for size in parameter.ladder:
-                text = f"{words.format(with_unit(size, unit))}{moment.text}"
+                text = f"{template.format(with_unit(size, unit))}{moment.text}"
                 variant = f"{way}{size:g}{'%' if unit == 'percent' else unit or ''}"
                 made = self.mutant(Disturb(), site, text, variant=variant, magnitude=size, unit=unit)
                 data = _data(parameter, -size if way == "-" else size)

@@ -91,7 +91,7 @@ class Body:
     def _joints(self, item: int) -> dict[int, Any]:
         count = pybullet.getNumJoints(self.number, physicsClientId=self.client)
         found = {n: self.own("getJointInfo", n)[item] for n in range(count)}
-        return {n: one.decode() if isinstance(one, bytes) else one for n, one in found.items()}
+        return {n: name.decode() if isinstance(name, bytes) else name for n, name in found.items()}
 
     def _named(self, names: str, kind: str, known: dict[int, str]) -> list[int]:
         found = [
@@ -100,7 +100,9 @@ class Body:
             if fnmatchcase(name, names) or fnmatchcase(f"{self.name}/{name}", names)
         ]
         if not found:
-            of_all = sorted({one.name for one in _worlds.values() if isinstance(one, Body)} | {self.name})
+            of_all = sorted(
+                {world.name for world in _worlds.values() if isinstance(world, Body)} | {self.name}
+            )
             there = ", ".join(filter(None, known.values())) or "none"
             raise NotInWorldError(
                 f"no {kind} is named {names!r}; the last body has: {there}; bodies: {', '.join(of_all)}"
@@ -143,7 +145,10 @@ def position(world: Any, change: NumberChange, *, names: str, random: Random, ax
     body.bases(names)
 
     def moved(place: Sequence[float]) -> list[float]:
-        return [float(change(one)) if n == number else float(one) for n, one in enumerate(place)]
+        return [
+            float(change(coordinate)) if n == number else float(coordinate)
+            for n, coordinate in enumerate(place)
+        ]
 
     def put(named: dict[str, Any]) -> None:
         if body.is_of(named):
@@ -201,7 +206,7 @@ def _of_links(body: Body, links: Iterable[int], key: str, change: NumberChange, 
             named[key] = max(float(change(before)), least)
             if key == "mass" and "localInertiaDiagonal" in named and before:
                 factor = named[key] / before
-                named["localInertiaDiagonal"] = [one * factor for one in named["localInertiaDiagonal"]]
+                named["localInertiaDiagonal"] = [moment * factor for moment in named["localInertiaDiagonal"]]
 
     for link in meant:
         mass, friction, inertia = body.own("getDynamicsInfo", link)[:3]
@@ -224,9 +229,9 @@ def _of_motors(body: Body, change: NumberChange, names: str, key: str) -> None:
     def of_many(named: dict[str, Any]) -> None:
         if body.is_of(named) and joints & {*named["jointIndices"]}:
             numbers = [*named["jointIndices"]]
-            values = [float(one) for one in named.get(f"{key}s", [default] * len(numbers))]
+            values = [float(value) for value in named.get(f"{key}s", [default] * len(numbers))]
             pairs = zip(numbers, values, strict=True)
-            named[f"{key}s"] = [float(change(one)) if n in joints else one for n, one in pairs]
+            named[f"{key}s"] = [float(change(value)) if n in joints else value for n, value in pairs]
 
     _changes["setJointMotorControl2"].append(of_one)
     _changes["setJointMotorControlArray"].append(of_many)

@@ -63,9 +63,9 @@ class ParameterTable(Table):
     @field_validator("of", "apply")
     @classmethod
     def _are_references(cls, found: Any) -> Any:
-        for one in (found,) if isinstance(found, str) else found or ():
-            if not _REFERENCE.fullmatch(one):
-                raise ValueError(f"{one!r} names nothing in a module; write module:name")
+        for reference in (found,) if isinstance(found, str) else found or ():
+            if not _REFERENCE.fullmatch(reference):
+                raise ValueError(f"{reference!r} names nothing in a module; write module:name")
         return found
 
     @field_validator("when")

@@ -48,8 +48,8 @@ def outcomes(*, rounds: int = 3, luck: int = 1, complete: bool = True) -> tuple[
         tests = generator.sample(TESTS, generator.choice((1, 2, 3)))
         for round in range(rounds):
             kind = usual if generator.random() < 0.9 else generator.choices(range(len(weights)), weights)[0]
-            one = _outcome(mutant.id, round, kind, tests)
-            found.append(one if complete else replace(one, complete=False, kills=one.kills[:1]))
+            outcome = _outcome(mutant.id, round, kind, tests)
+            found.append(outcome if complete else replace(outcome, complete=False, kills=outcome.kills[:1]))
     return tuple(found)
 
 

@@ -38,8 +38,8 @@ def test_json_holds_the_numbers_and_where_they_come_from(comparison: FamilyCompa
     assert robot["without_oracle"]["valid"] > 0
     assert data["together"]["killed_mutants"] == comparison.redundancy.killed
     assert len(data["mutants"]) == 222
-    assert all(len(one["ends"]) == 3 for one in data["mutants"])
-    assert {one["dominator"] for one in data["mutants"]} - {None} == set(
+    assert all(len(mutant["ends"]) == 3 for mutant in data["mutants"])
+    assert {mutant["dominator"] for mutant in data["mutants"]} - {None} == set(
         range(1, data["together"]["dominators"] + 1)
     )
 

@@ -33,7 +33,7 @@ def test_every_end_comes_from_some_outcome() -> None:
     outcomes = [Outcome("m", 0, verdict) for verdict in Verdict]
     outcomes += [killed(A), ended(Verdict.SURVIVED, same=True)]
     outcomes += [Outcome("m", 0, Verdict.KILLED, By.EXCEPTION, commands=0)]
-    assert {end_of(one) for one in outcomes} == set(End)
+    assert {end_of(outcome) for outcome in outcomes} == set(End)
 
 
 @pytest.mark.parametrize(

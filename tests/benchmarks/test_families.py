@@ -29,14 +29,14 @@ def comparison(results: Results) -> FamilyComparison:
 def test_there_is_a_column_for_each_family_and_role_in_the_order_asked_for(
     comparison: FamilyComparison,
 ) -> None:
-    assert [(one.name, one.role) for one in comparison.families] == [
+    assert [(family.name, family.role) for family in comparison.families] == [
         ("robot", "program"), ("robot", "oracle"), ("conventional", "program"), ("text", "program"),
     ]  # fmt: skip
 
 
 def test_the_program_stands_before_the_oracle_whichever_the_plan_has_first(results: Results) -> None:
     turned = compare_families(replace(results, mutants=results.mutants[::-1]))
-    assert [one.role for one in turned.families if one.name == "robot"] == ["program", "oracle"]
+    assert [family.role for family in turned.families if family.name == "robot"] == ["program", "oracle"]
 
 
 def test_every_outcome_has_one_end_and_every_end_is_there(comparison: FamilyComparison) -> None:
@@ -48,7 +48,7 @@ def test_every_outcome_has_one_end_and_every_end_is_there(comparison: FamilyComp
 
 def test_shares_of_ends_are_those_of_the_outcomes(results: Results, comparison: FamilyComparison) -> None:
     robot = comparison.families[0]
-    ends = [end_of(one) for result in results.mutants[:30] for one in result.outcomes]
+    ends = [end_of(outcome) for result in results.mutants[:30] for outcome in result.outcomes]
     assert {end: share.count for end, share in robot.ends.items()} == {end: ends.count(end) for end in End}
 
 
@@ -105,7 +105,7 @@ def test_joint_dominators_are_shared_out_among_the_families(comparison: FamilyCo
 
 
 def test_a_family_without_a_mutant_is_there_with_nothing(results: Results) -> None:
-    only_robot = tuple(one for one in results.mutants if one.mutant.family == "robot")
+    only_robot = tuple(result for result in results.mutants if result.mutant.family == "robot")
     groups = tuple(group for group in results.groups if group.family == "robot")
     found = compare_families(replace(results, mutants=only_robot, groups=groups))
     text = found.families[-1]
@@ -146,6 +146,6 @@ def test_the_scores_without_an_oracle_stand_beside_the_others(tmp_path: Path, re
 
 def test_a_campaign_of_one_family_is_compared_with_nobody(tmp_path: Path) -> None:
     found = compare_families(campaigns.read(samples.write_journal(tmp_path / "journal.sqlite")))
-    assert [(one.name, one.role, one.mutants) for one in found.families] == [
+    assert [(family.name, family.role, family.mutants) for family in found.families] == [
         ("robot", "program", 3), ("robot", "oracle", 2),
     ]  # fmt: skip

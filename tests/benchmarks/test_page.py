@@ -40,7 +40,7 @@ def data(made: Any) -> Any:
 
 
 def family(data: Any, name: str) -> Any:
-    return next(one for one in data["families"] if (one["family"], one["role"]) == (name, "program"))
+    return next(group for group in data["families"] if (group["family"], group["role"]) == (name, "program"))
 
 
 def share(count: int, of: int) -> dict[str, Any]:
@@ -91,10 +91,10 @@ def test_each_weakness_speaks_for_or_against_its_own_claim(data: Any, key: str, 
     family(data, "robot")["weaknesses"][key] = share(5, 100)
     assert finding(claim, data, "text").stance is Stance.FOR
     family(data, "robot")["weaknesses"][key] = share(100, 100)
-    one = finding(claim, data, "text")
-    assert one.stance is Stance.AGAINST
-    assert "90/100" in one.sentence
-    assert "100/100" in one.sentence
+    weakness = finding(claim, data, "text")
+    assert weakness.stance is Stance.AGAINST
+    assert "90/100" in weakness.sentence
+    assert "100/100" in weakness.sentence
 
 
 def test_fewer_informative_mutants_speak_for_the_claim(data: Any) -> None:
@@ -123,7 +123,7 @@ def test_a_family_without_a_mutant_has_too_few_places_and_says_nothing_else(data
 
 
 def test_a_family_that_was_not_run_says_nothing(data: Any) -> None:
-    data["families"] = [one for one in data["families"] if one["family"] != "text"]
+    data["families"] = [group for group in data["families"] if group["family"] != "text"]
     assert {finding(claim, data, "text").stance for claim in CLAIMS} == {Stance.UNKNOWN}
 
 
@@ -149,10 +149,10 @@ def test_the_table_says_of_each_claim_and_family_what_was_found(data: Any) -> No
     assert [(claim, family) for claim, family, _ in rows] == [
         (claim.name, family) for claim in CLAIMS for family in ("conventional", "text")
     ]
-    for claim, (_, family, told) in zip([one for one in CLAIMS for _ in range(2)], rows, strict=True):
-        one = finding(claim, data, family)
-        assert told.strip("*").startswith(one.stance.value)
-        assert one.sentence in told or one.stance is Stance.UNKNOWN
+    for claim, (_, family, told) in zip([wanted for wanted in CLAIMS for _ in range(2)], rows, strict=True):
+        stated = finding(claim, data, family)
+        assert told.strip("*").startswith(stated.stance.value)
+        assert stated.sentence in told or stated.stance is Stance.UNKNOWN
 
 
 def test_other_numbers_make_another_page(data: Any) -> None:

@@ -38,23 +38,23 @@ def test_each_operator_of_the_family_says_how_many_bugs_it_stands_for() -> None:
 def test_a_later_class_is_a_better_one_and_crashes_have_none() -> None:
     bugs = silent()
     assert len(bugs) == 253
-    assert Counter(one["class"] for one in bugs)["sign"] == 26
-    assert all("EMTN".index(one["now"]) < "EMTN".index(one["robot"]) for one in bugs if "now" in one)
+    assert Counter(bug["class"] for bug in bugs)["sign"] == 26
+    assert all("EMTN".index(bug["now"]) < "EMTN".index(bug["robot"]) for bug in bugs if "now" in bug)
 
 
 def test_the_page_has_the_shares() -> None:
     bugs = silent()
     for told in (
-        share([one["robot"] == "E" for one in bugs]),
-        share([now(one) == "E" for one in bugs]),
-        share([now(one) in "EM" for one in bugs]),
-        share(["E" in (now(one), one["conventional"]) for one in bugs]),
+        share([bug["robot"] == "E" for bug in bugs]),
+        share([now(bug) == "E" for bug in bugs]),
+        share([now(bug) in "EM" for bug in bugs]),
+        share(["E" in (now(bug), bug["conventional"]) for bug in bugs]),
     ):
         assert re.search(rf"\| {re.escape(told)} \|", PAGE)
 
 
 def test_each_bug_of_the_programs_applies_and_says_its_class() -> None:
-    classes = {one["class"] for one in silent()}
+    classes = {bug["class"] for bug in silent()}
     found = sorted(PROGRAMS.glob("*/patches/*.patch"))
     assert len(found) >= 60
     for file in found:
@@ -64,13 +64,15 @@ def test_each_bug_of_the_programs_applies_and_says_its_class() -> None:
 
 
 def test_the_data_have_the_bugs_and_tests_that_there_are() -> None:
-    assert [one.name for one in FOUND] == sorted(one.name for one in PROGRAMS.iterdir())
-    for one in FOUND:
-        bugs = {each.what.partition(": ")[0] for each in one.mutants if each.family == BUGS}
-        assert bugs == {file.stem for file in (PROGRAMS / one.name / "patches").glob("*.patch")}
-        texts = [file.read_text(encoding="utf-8") for file in (PROGRAMS / one.name / "tests").glob("*.py")]
+    assert [gathered.name for gathered in FOUND] == sorted(path.name for path in PROGRAMS.iterdir())
+    for real_program in FOUND:
+        bugs = {each.what.partition(": ")[0] for each in real_program.mutants if each.family == BUGS}
+        assert bugs == {file.stem for file in (PROGRAMS / real_program.name / "patches").glob("*.patch")}
+        texts = [
+            file.read_text(encoding="utf-8") for file in (PROGRAMS / real_program.name / "tests").glob("*.py")
+        ]
         defined = set(re.findall(r"^def (test_\w+)", "\n".join(texts), re.MULTILINE))
-        assert {test.rpartition("::")[2].partition("[")[0] for test in one.tests} == defined
+        assert {test.rpartition("::")[2].partition("[")[0] for test in real_program.tests} == defined
 
 
 @pytest.mark.parametrize("part", [coupling.of_suites, coupling.of_coupling, coupling.of_minimal])
@@ -79,7 +81,7 @@ def test_the_page_has_the_tables_of_the_data(part: coupling.Table) -> None:
 
 
 def test_operators_are_common_as_the_rates_say() -> None:
-    common = {one.operator for one in rates(FOUND, silent()) if one.is_common}
+    common = {rate.operator for rate in rates(FOUND, silent()) if rate.is_common}
     assert {rule.name for rule in rules_of(known_families()) if rule.is_common} == common
     assert f"{len(common)} operators are common" in PAGE
 
@@ -158,6 +160,6 @@ def test_who_notices_a_bug_in_a_fork_notices_it_by_plain_pytest(tmp_path: Path) 
 
 
 def test_a_text_that_makes_no_sense_is_stillborn() -> None:
-    stillborn = [one for each in FOUND for one in each.mutants if one.end == STILLBORN]
-    assert {one.family for one in stillborn} <= {"bugs", "conventional"}
-    assert any(one.operator == "counterpart" for one in stillborn)
+    stillborn = [mutant for each in FOUND for mutant in each.mutants if mutant.end == STILLBORN]
+    assert {mutant.family for mutant in stillborn} <= {"bugs", "conventional"}
+    assert any(mutant.operator == "counterpart" for mutant in stillborn)

@@ -24,9 +24,9 @@ def killed(
     )  # fmt: skip
 
 
-def subsumes(one: frozenset[tuple[str, int]], other: frozenset[tuple[str, int]]) -> bool:
+def subsumes(first: frozenset[tuple[str, int]], second: frozenset[tuple[str, int]]) -> bool:
     """The definition: something kills the one mutant, and whatever does kills the other too."""
-    return bool(one) and one <= other
+    return bool(first) and first <= second
 
 
 def redundancy(*outcomes: Outcome) -> Redundancy:
@@ -41,9 +41,9 @@ def test_no_dominator_subsumes_another_and_members_of_one_subsume_each_other(
     matrix: dict[int, frozenset[tuple[str, int]]],
 ) -> None:
     found = dominators(matrix)
-    for one, other in combinations(found, 2):
-        assert not subsumes(matrix[one[0]], matrix[other[0]])
-        assert not subsumes(matrix[other[0]], matrix[one[0]])
+    for first, second in combinations(found, 2):
+        assert not subsumes(matrix[first[0]], matrix[second[0]])
+        assert not subsumes(matrix[second[0]], matrix[first[0]])
     for members in found:
         assert len({matrix[member] for member in members}) == 1
 
@@ -83,7 +83,7 @@ def test_the_order_of_mutants_does_not_matter(
     names = list(matrix)
     random.shuffle(names)  # type: ignore[attr-defined]
     shuffled = dominators({name: matrix[name] for name in names})
-    assert {frozenset(one) for one in shuffled} == {frozenset(one) for one in dominators(matrix)}
+    assert {frozenset(group) for group in shuffled} == {frozenset(group) for group in dominators(matrix)}
 
 
 def test_the_same_test_in_another_round_is_another_killer() -> None:

@@ -27,7 +27,7 @@ DATA = Path(__file__).parents[2] / "docs" / "data" / "tasks"
 
 def mutant(*noticed: str | None, operator: str = "skip", end: End = End.CHECK) -> dict[str, Any]:
     """A mutant that these suites notice, one in each round."""
-    ends = [end.value if one is not None or end is End.REFUSED else End.SURVIVED.value for one in noticed]
+    ends = [end.value if name is not None or end is End.REFUSED else End.SURVIVED.value for name in noticed]
     return {"operator": operator, "place": "a.py:1", "fault": "", "ends": ends, "noticed": [*noticed]}
 
 
@@ -53,8 +53,11 @@ def test_what_is_kept_of_a_task_is_of_complete_campaigns_with_an_end_in_each_rou
         for family, campaign in task["campaigns"].items():
             assert campaign["state"] == "complete", (name, family)
             rounds = campaign["meta"]["rounds"]
-            assert {len(one["ends"]) for one in campaign["mutants"]} == {rounds}, (name, family)
-            assert {len(one["noticed"]) for one in campaign["mutants"]} == {rounds}, (name, family)
+            assert {len(candidate["ends"]) for candidate in campaign["mutants"]} == {rounds}, (name, family)
+            assert {len(candidate["noticed"]) for candidate in campaign["mutants"]} == {rounds}, (
+                name,
+                family,
+            )
 
 
 def test_a_suite_notices_what_the_weaker_ones_beside_it_do() -> None:
@@ -136,4 +139,4 @@ def test_the_page_names_every_task_that_was_run_and_no_other() -> None:
     others = [name for name in ORDER if name != "paper"]
     assert all(f"| {name} |" not in text for name in others)
     assert f"Not run: {', '.join(others)}." in text
-    assert len(mutants_of(task)) == sum(len(one["mutants"]) for one in task["campaigns"].values())
+    assert len(mutants_of(task)) == sum(len(campaign["mutants"]) for campaign in task["campaigns"].values())

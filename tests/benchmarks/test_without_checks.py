@@ -20,7 +20,7 @@ pytest_args = ["-o", "pythonpath=. tests"]
 
 
 def ends(request: Request) -> dict[str, Outcome]:
-    return {one.mutant: one for one in outcomes(run_campaign(request, Quiet()))}
+    return {outcome.mutant: outcome for outcome in outcomes(run_campaign(request, Quiet()))}
 
 
 @pytest.mark.whole
@@ -63,7 +63,7 @@ def test_without_checks_only_exceptions_kill(tmp_path: Path, monkeypatch: pytest
             patch.setenv(name, value)
         unchecked = ends(request)
     assert checked.keys() == unchecked.keys()
-    assert not [mutant for mutant, one in unchecked.items() if one.by is By.CHECK]
+    assert not [mutant for mutant, outcome in unchecked.items() if outcome.by is By.CHECK]
     assert (checked[inverted].by, unchecked[inverted].verdict) == (By.CHECK, Verdict.SURVIVED)
     assert (unchecked[program].verdict, unchecked[program].by) == (Verdict.KILLED, By.EXCEPTION)
     assert unchecked[bomb].verdict is Verdict.KILLED

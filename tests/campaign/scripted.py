@@ -115,7 +115,7 @@ class Script:
 
     def kill(self, *words: str) -> None:
         """Mutants whose ids contain one of these words are noticed; all others survive."""
-        self.mutated = lambda run: CHECKED if any(one in _id(run) for one in words) else {}
+        self.mutated = lambda run: CHECKED if any(word in _id(run) for word in words) else {}
 
     @contextmanager
     def opened(self, request: Request, progress: object) -> Iterator[Executor]:
@@ -176,16 +176,19 @@ class Scripted:
     def _lines(self, job: Job, result: Result) -> Iterator[Event]:
         tests = job.tests if job.tests is not None else tuple(self.suite.tests)
         before = self._count(job.mutant, job.round)
-        found = {one.id: self._count(one, job.round) for one in (job.forking.mutants if job.forking else ())}
+        found = {
+            mutant.id: self._count(mutant, job.round)
+            for mutant in (job.forking.mutants if job.forking else ())
+        }
         forked: dict[str, int] = {}
         yield from self.suite.sites
         if job.record and job.mutant is None:
             yield CallsAsked(self.suite.imported)
         places = self._places(job)
         if places:
-            files = {one.span.file for one in places}
+            files = {place.span.file for place in places}
             yield TextsSeen(
-                tuple(sorted(files)), tuple(Sighting(one.number, 1, ("number",)) for one in places)
+                tuple(sorted(files)), tuple(Sighting(place.number, 1, ("number",)) for place in places)
             )
         left_out = job.left_out(job.mutant.id) if job.mutant is not None else frozenset()
         for test in tests:
@@ -194,7 +197,7 @@ class Scripted:
             run = Run(test, tests, job.round, job.mutant, before, is_short=bool(left_out))
             yield TestStart(test)
             reached = tuple(
-                one.number for one in places if one.span.function in self.suite.tests[test].functions
+                place.number for place in places if place.span.function in self.suite.tests[test].functions
             )
             if reached:
                 yield PlacesReached(test, reached)
@@ -221,8 +224,12 @@ class Scripted:
     ) -> Iterator[Event]:
         """What forks do in one test: from the first on that reaches them, to one that decides."""
         assert job.forking is not None
-        due = [one for one in job.forking.mutants if one.id in found and one.id not in forked]
-        if due := [one for one in due if self.suite.tests[fork_parent.test].hits(one)]:
+        due = [
+            candidate
+            for candidate in job.forking.mutants
+            if candidate.id in found and candidate.id not in forked
+        ]
+        if due := [candidate for candidate in due if self.suite.tests[fork_parent.test].hits(candidate)]:
             control = replace(due[0], family=CONTROL, operator=Identity.name, variant=fork_parent.test)
             run = replace(fork_parent, mutant=control, is_fork=True)
             original = self.script.original(fork_parent)
@@ -315,16 +322,22 @@ class _Suite:
     @classmethod
     def read(cls, request: Request) -> _Suite:
         """As the files stand now."""
-        operations = {one.target.rpartition(".")[2]: one for one in request.vocabulary.operations}
+        operations = {
+            operation.target.rpartition(".")[2]: operation for operation in request.vocabulary.operations
+        }
         program = request.configuration.program
         calls = {
             name: found for file in program for name, found in _functions(request.root, file, operations)
         }
         order = {
-            id(call): number for number, call in enumerate(one for some in calls.values() for one in some)
+            id(call): number
+            for number, call in enumerate(call_seen for some in calls.values() for call_seen in some)
         }
         numbered = {
-            name: [replace(one, site=replace(one.site, index=order[id(one)])) for one in some]
+            name: [
+                replace(call_seen, site=replace(call_seen.site, index=order[id(call_seen)]))
+                for call_seen in some
+            ]
             for name, some in calls.items()
         }
         tests = {}
@@ -333,7 +346,7 @@ class _Suite:
             for node in ast.walk(_parsed(path)):
                 if not isinstance(node, ast.FunctionDef) or not node.name.startswith("test"):
                     continue
-                names = {_name(one) for one in ast.walk(node)}
+                names = {_name(inner) for inner in ast.walk(node)}
                 found = tuple(call for name, some in numbered.items() if name in names for call in some)
                 functions = frozenset(name for name in numbered if name in names)
                 executed = _executed(request.root, program, functions, file, node.name)
@@ -349,7 +362,7 @@ class _Suite:
     @property
     def imported(self) -> tuple[str, ...]:
         """The files of the program of which a test executes anything."""
-        return tuple(sorted({file for one in self.tests.values() for file in one.executed}))
+        return tuple(sorted({file for test in self.tests.values() for file in test.executed}))
 
     def end(self, run: Run, end: Mapping[str, Any]) -> TestEnd:
         """The report of a test that ends like this, beside what the text says."""
@@ -395,21 +408,23 @@ def _functions(
     """The functions of a file with the calls that they make, in their order."""
     for function in ast.walk(_parsed(root / file)):
         if isinstance(function, ast.FunctionDef):
-            ends = next((n for n, one in enumerate(function.body, 1) if isinstance(one, ast.Return)), None)
-            reached = (node for one in function.body[:ends] for node in ast.walk(one))
+            ends = next(
+                (n for n, statement in enumerate(function.body, 1) if isinstance(statement, ast.Return)), None
+            )
+            reached = (node for statement in function.body[:ends] for node in ast.walk(statement))
             nodes = [node for node in reached if isinstance(node, ast.Call)]
-            nodes.sort(key=lambda one: (one.end_lineno or 0, one.end_col_offset or 0))
+            nodes.sort(key=lambda node: (node.end_lineno or 0, node.end_col_offset or 0))
             found = ((node, operations.get(_name(node.func) or "")) for node in nodes)
             yield (
                 function.name,
-                [_call(file, function.name, node, one) for node, one in found if one is not None],
+                [_call(file, function.name, node, call) for node, call in found if call is not None],
             )
 
 
 def _call(file: str, function: str, node: ast.Call, operation: Operation) -> _Call:
     span = Span(file, node.lineno, node.col_offset, node.end_lineno or 0, node.end_col_offset or 0, function)
     site = SiteSeen(-1, span, operation.target, None, oracle=False, direct=True)
-    written = [_literal(one) for one in node.args]
+    written = [_literal(argument) for argument in node.args]
     return _Call(site, _values(operation.arguments, written), _values(operation.result, [READING]))
 
 
@@ -422,7 +437,7 @@ def _literal(node: ast.expr) -> Any:
 
 
 def _values(quantities: Sequence[Quantity], values: Sequence[Any]) -> dict[str, Any]:
-    return {one.name: value for one, value in zip(quantities, values, strict=False)}
+    return {quantity.name: value for quantity, value in zip(quantities, values, strict=False)}
 
 
 def _name(node: ast.AST) -> str | None:

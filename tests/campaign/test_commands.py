@@ -74,7 +74,8 @@ VOCABULARY = """
 def test_nodes_registers_and_modes_are_mutated_alike_by_both_engines(tmp_path: Path) -> None:
     write_project(tmp_path, MISSION, TESTS, robot=ROBOT, vocabulary=VOCABULARY)
     found = {
-        mutant.split(":", 2)[2].replace("#1", ""): one for (mutant, _), one in both_engines(tmp_path).items()
+        mutant.split(":", 2)[2].replace("#1", ""): both_engine
+        for (mutant, _), both_engine in both_engines(tmp_path).items()
     }
     wanted = {
         'cell.node("ns=2;s=Arm.X").write_value:ns=2;s=Arm.X/value:reverse': (0.5, -0.5),
@@ -86,7 +87,7 @@ def test_nodes_registers_and_modes_are_mutated_alike_by_both_engines(tmp_path: P
         "cell.move:relative=false/x:by-to": (0.125, 0.375),
         "cell.move:relative=true/x:by-to": (0.125, 0.0),
     }
-    examples = {name: one.example for name, one in found.items()}
+    examples = {name: outcome.example for name, outcome in found.items()}
     assert {name: examples.get(name) for name in wanted} == wanted
     assert {found[name].verdict for name in wanted} == {Verdict.KILLED}
     assert {found[name].hits for name in wanted} == {1}

@@ -142,15 +142,17 @@ def _is_same(first: Outcome, second: Outcome) -> bool:
     return same_end(first, second) and _more(first) == _more(second)
 
 
-def _more(one: Outcome) -> tuple[Any, ...]:
-    return one.acted, one.commands, one.kills, one.example, one.indistinguishable
+def _more(outcome: Outcome) -> tuple[Any, ...]:
+    return outcome.acted, outcome.commands, outcome.kills, outcome.example, outcome.indistinguishable
 
 
 def test_forks_are_what_runs_mutants_that_act_in_a_test_or_before_any(ends: dict[str, Outcome]) -> None:
     assert any(":<module>:" in mutant for mutant in ends)
     # on a busy machine, what ran out of time is run once more by itself
-    others = {mutant: one for mutant, one in ends.items() if one.engine != "fork" and one.tests}
-    assert {one.verdict for one in others.values()} <= {Verdict.TIMEOUT}
+    others = {
+        mutant: outcome for mutant, outcome in ends.items() if outcome.engine != "fork" and outcome.tests
+    }
+    assert {outcome.verdict for outcome in others.values()} <= {Verdict.TIMEOUT}
 
 
 def test_a_check_kills(ends: dict[str, Outcome]) -> None:
@@ -366,8 +368,8 @@ def test_every_test_that_notices_is_known_when_asked_for(tmp_path: Path, engine:
     assert [kill.test.rpartition("::")[2] for kill in inverted.kills] == ["test_near", "test_far"]
     assert {kill.by for kill in inverted.kills} == {By.CHECK}
     assert inverted.test == inverted.kills[0].test
-    one = found["mission.py:near:x < 0.5#1:ROR=trueOp"]
-    assert [kill.test.rpartition("::")[2] for kill in one.kills] == ["test_far"]
+    outcome = found["mission.py:near:x < 0.5#1:ROR=trueOp"]
+    assert [kill.test.rpartition("::")[2] for kill in outcome.kills] == ["test_far"]
 
 
 @ENGINES
@@ -388,7 +390,7 @@ def test_a_file_that_a_test_runs_by_itself_is_changed_for_it(tmp_path: Path) -> 
     """
     project = write_project(tmp_path, "def near(x):\n    return x < 0.5\n", tests)
     found = run(project, families=("conventional",), only=("*ROR=trueOp", "*ROR=falseOp"), engine="auto")
-    verdicts = {name.rpartition("=")[2]: (one.verdict, one.engine) for name, one in found.items()}
+    verdicts = {name.rpartition("=")[2]: (outcome.verdict, outcome.engine) for name, outcome in found.items()}
     assert verdicts == {"trueOp": (Verdict.SURVIVED, "replay"), "falseOp": (Verdict.KILLED, "replay")}
 
 
@@ -398,7 +400,7 @@ def test_a_file_that_no_test_imports_has_mutants_that_are_not_covered(tmp_path: 
     with pytest.raises(NothingToDoError, match=r"no test reaches any of the \d+ mutants of mission.py"):
         run(project, families=("conventional",))
     mutants = plan_with_robot(project).mutants
-    assert any(one.site.span.file == "mission.py" for one in mutants)
+    assert any(mutant.site.span.file == "mission.py" for mutant in mutants)
 
 
 def plan_with_robot(project: Path) -> PlannedCampaign:
@@ -471,7 +473,7 @@ def test_a_command_that_the_vocabulary_does_not_know_is_invalid(tmp_path: Path, 
     tests = "import mission\n\ndef test_it():\n    mission.run()\n"
     project = write_project(tmp_path, mission, tests, robot=robot, vocabulary=vocabulary)
     ends = run(project, engine=engine, families=("text",), only=("*swap*", "*replace*"))
-    found = {mutant.rpartition(":")[2]: one.verdict for mutant, one in ends.items()}
+    found = {mutant.rpartition(":")[2]: outcome.verdict for mutant, outcome in ends.items()}
     assert set(found.values()) == {Verdict.INVALID, Verdict.REFUSED}
     assert found["swap-characters=2"] is Verdict.INVALID
     assert found["replace-character=6"] is Verdict.REFUSED  # lift/6: a command, and too high
@@ -497,5 +499,5 @@ def test_text_whose_tests_fail_while_it_is_looked_at_is_named_and_not_mutated(
     planned = plan_only(request_for(tmp_path, families=("robot", "conventional"), rounds=rounds), Quiet())
     mutants, left_out = planned.mutants, planned.left_out
     assert {mutant.family for mutant in mutants} == {"robot"}
-    reasons = {one.reason for one in left_out if "mission.py" in one.id}
+    reasons = {omission.reason for omission in left_out if "mission.py" in omission.id}
     assert "tests fail while mutabot looks which values its text has" in reasons

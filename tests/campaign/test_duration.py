@@ -47,13 +47,13 @@ def test_more_rounds_take_longer_and_more_jobs_less(
 ) -> None:
     script.original = lambda run: {"wall": 3.0}
     project = write_project(tmp_path, MISSION, TESTS)
-    one = data(project, capsys, command, "-j", "1")
+    single = data(project, capsys, command, "-j", "1")
     more = data(project, capsys, command, "-j", "1", "--rounds", "3")
-    two = data(project, capsys, command, "-j", "2")
-    assert one["seconds"] > 3.0
-    assert more["runs"] == 3 * one["runs"] == 3 * two["runs"]
-    assert more["seconds"] == pytest.approx(3 * one["seconds"], rel=0.2)
-    assert two["seconds"] == pytest.approx(one["seconds"] / 2, rel=0.2)
+    double = data(project, capsys, command, "-j", "2")
+    assert single["seconds"] > 3.0
+    assert more["runs"] == 3 * single["runs"] == 3 * double["runs"]
+    assert more["seconds"] == pytest.approx(3 * single["seconds"], rel=0.2)
+    assert double["seconds"] == pytest.approx(single["seconds"] / 2, rel=0.2)
 
 
 def test_both_commands_say_it(tmp_path: Path, script: Script, capsys: pytest.CaptureFixture[str]) -> None:

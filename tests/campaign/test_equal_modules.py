@@ -75,9 +75,11 @@ def test_modules_of_equal_text_have_the_same_mutants_each(tmp_path: Path, famili
 def test_each_acts_in_its_own_file(tmp_path: Path) -> None:
     outcomes = by_forks(project(tmp_path), families=("robot",))
     for name in STATIONS:
-        own = {id: one for (id, _), one in outcomes.items() if id.startswith(f"mission/{name}.py")}
-        assert {one.test for one in own.values() if one.test} <= {f"tests/test_mission.py::test_{name}"}
-        assert {one.verdict for one in own.values()} & {Verdict.KILLED, Verdict.SURVIVED}
+        own = {id: outcome for (id, _), outcome in outcomes.items() if id.startswith(f"mission/{name}.py")}
+        assert {outcome.test for outcome in own.values() if outcome.test} <= {
+            f"tests/test_mission.py::test_{name}"
+        }
+        assert {outcome.verdict for outcome in own.values()} & {Verdict.KILLED, Verdict.SURVIVED}
         reverse = own[f"mission/{name}.py:approach:arm.move_by#1:dx:reverse"]
         assert reverse.verdict is (Verdict.KILLED if name == "left" else Verdict.SURVIVED)
 
@@ -102,6 +104,8 @@ def test_calls_of_equal_text_on_one_line_are_told_apart(tmp_path: Path) -> None:
     """
     outcomes = by_forks(write_project(tmp_path, mission, tests), families=("robot",))
     verdicts = {
-        (id.partition("#")[2][:1], one.verdict) for (id, _), one in outcomes.items() if id.endswith("reverse")
+        (id.partition("#")[2][:1], outcome.verdict)
+        for (id, _), outcome in outcomes.items()
+        if id.endswith("reverse")
     }
     assert verdicts == {("1", Verdict.KILLED), ("2", Verdict.SURVIVED)}

@@ -121,7 +121,7 @@ def test_it_is_told_what_happened(recorded: tuple[Path, dict[str, Outcome]]) -> 
     assert diverged.story.startswith("part was never let go (original: at 1.1 s)")
     assert diverged.fault == pytest.approx(1.0)
     assert diverged.is_simulated
-    (part,) = [one for one in diverged.apart if one.name == "part"]
+    (part,) = [deviation for deviation in diverged.apart if deviation.name == "part"]
     assert part.final == pytest.approx(0.25)
     missed = found["arm.grip#1:call:skip"].diverged[0]
     assert missed.story.startswith("gripper never touched part (original: at ")
@@ -138,7 +138,7 @@ def test_a_mutant_that_was_killed_is_recorded_up_to_its_end(
     assert original is not None
     assert mutant is not None
     assert mutant.faulty_call == 2
-    assert [one.operation for one in mutant.calls] == [one.operation for one in original.calls]
+    assert [call.operation for call in mutant.calls] == [call.operation for call in original.calls]
     assert mutant.tracks["tool"].values[-3] == pytest.approx(-0.25, abs=0.051)
 
 
@@ -181,19 +181,19 @@ def test_where_room_is_short_some_are_left_out_and_that_is_said(tmp_path: Path) 
     with Journal.open(run_campaign(request, progress)) as journal:
         outcomes = journal.outcomes()
     with evidence(folder) as stored:
-        kept = {one.mutant for one in outcomes if stored.tests(one.mutant, 0)}
+        kept = {outcome.mutant for outcome in outcomes if stored.tests(outcome.mutant, 0)}
         assert stored.tests("", 0) == (TEST,)
         used = sum(path.stat().st_size for path in folder.glob(".mutabot/*-evidence.sqlite"))
-    assert len(kept) < len([one for one in outcomes if one.diverged])
+    assert len(kept) < len([outcome for outcome in outcomes if outcome.diverged])
     assert used < 50_000
     assert any("set `evidence` to more" in line for line in progress.lines)
-    assert all(one.diverged for one in outcomes if one.verdict is Verdict.KILLED)
+    assert all(outcome.diverged for outcome in outcomes if outcome.verdict is Verdict.KILLED)
 
 
 def test_nothing_is_recorded_where_that_is_not_asked_for(tmp_path: Path) -> None:
     folder = project(tmp_path)
     with Journal.open(run_campaign(request_for(folder, only=SOME), Quiet())) as journal:
-        assert all(one.diverged == () for one in journal.outcomes())
+        assert all(outcome.diverged == () for outcome in journal.outcomes())
     assert not recordings_path(folder / ".mutabot" / "journal.sqlite").exists()
 
 
@@ -207,7 +207,7 @@ def test_a_program_without_a_feed_is_recorded_by_its_calls(tmp_path: Path) -> No
     assert original is not None
     assert not original.times
     # the clock of the vocabulary tells the time since its first tick
-    assert [one.began for one in original.calls] == pytest.approx([0.0, 0.45, 0.5, 1.0, 1.05])
+    assert [call.began for call in original.calls] == pytest.approx([0.0, 0.45, 0.5, 1.0, 1.05])
 
 
 def test_a_feed_that_fails_is_said_once(tmp_path: Path) -> None:
@@ -301,7 +301,7 @@ def test_with_one_round_the_original_runs_with_more_seeds(tmp_path: Path) -> Non
     assert outcome.verdict is Verdict.SURVIVED
     (diverged,) = outcome.diverged
     assert diverged.scatters.startswith("part by ")
-    (part,) = [one for one in diverged.apart if one.name == "part"]
+    (part,) = [deviation for deviation in diverged.apart if deviation.name == "part"]
     assert part.spread > 0.1
     assert part.deviation == pytest.approx(max(part.final / part.spread, part.aside / part.aside_spread))
     assert "part ended" not in diverged.story

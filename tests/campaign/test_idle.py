@@ -213,7 +213,7 @@ def found(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     """How the mutants that leave a command out ended, by the function and the call they are in."""
     folder = project(tmp_path_factory.mktemp("project"), MISSION, TESTS, VOCABULARY)
     outcomes = run(folder, engine=request.param, only=("skip",))
-    return {name.partition(":")[2].partition(":skip")[0]: one for name, one in outcomes.items()}
+    return {name.partition(":")[2].partition(":skip")[0]: outcome for name, outcome in outcomes.items()}
 
 
 #: the mutant, and what it is killed by where the robot's log is looked at: never by its answer
@@ -266,7 +266,7 @@ def test_a_mutant_without_an_answer_is_left_out_with_the_reason(
     assert "stopped:arm.stop#1:call" not in found
     folder = project(tmp_path, USES_HANDLE, TEST_OF_HANDLE, operation("start"))
     left_out = plan_only(request_for(folder), Quiet()).left_out
-    (reason,) = [one.reason for one in left_out if one.id.endswith(":skip")]
+    (reason,) = [omission.reason for omission in left_out if omission.id.endswith(":skip")]
     assert reason == (
         "what it answers cannot be kept (builtins:function); "
         "say in the vocabulary what to answer while the robot does nothing: idle = …"
@@ -294,7 +294,7 @@ def test_a_statement_by_itself_needs_no_answer_to_be_left_out(tmp_path: Path, li
     folder = project(tmp_path, mission, tests, operation("start"))
     planned = plan_only(request_for(folder), Quiet())
     plan, left_out = planned.mutants, planned.left_out
-    assert "skip" in {one.operator for one in plan}
+    assert "skip" in {mutant.operator for mutant in plan}
     assert left_out == []
 
 
@@ -379,7 +379,7 @@ def test_an_operator_of_another_name_with_the_body_of_skip_ends_as_skip(
         """
     folder = project(tmp_path / "project", mission, tests, operation("poses"))
     found = run(folder, engine=engine, only=("skip", "lost"))
-    assert {(one.verdict, one.acted) for one in found.values()} == {(Verdict.SURVIVED, 1)}
+    assert {(outcome.verdict, outcome.acted) for outcome in found.values()} == {(Verdict.SURVIVED, 1)}
     assert len(found) == 2
 
 

@@ -125,22 +125,24 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def outcomes(project: Path) -> dict[str, Outcome]:
     found = by_forks(project, families=("robot", "catalogue"))
-    return {id.split(":", 1)[1]: one for (id, _), one in found.items()}
+    return {id.split(":", 1)[1]: value for (id, _), value in found.items()}
 
 
 def test_readings_that_are_written_through_are_left_out_with_the_reason(project: Path) -> None:
     planned = plan_only(request_for(project, families=("robot", "catalogue", "graded")), Quiet())
     mutants, left_out = planned.mutants, planned.left_out
-    functions = {one.site.span.function for one in mutants}
+    functions = {mutant.site.span.function for mutant in mutants}
     assert functions == {"set_elsewhere", "set_first", "look", "lift"}
     for function in ("set_at_once", "set_by_name"):
-        reasons = {one.reason for one in left_out if one.id.startswith(f"mission.py:{function}:")}
+        reasons = {
+            omission.reason for omission in left_out if omission.id.startswith(f"mission.py:{function}:")
+        }
         assert any("the robot's own memory" in reason for reason in reasons)
 
 
 def test_a_write_to_a_copy_that_the_text_does_not_show_is_never_a_kill(outcomes: dict[str, Outcome]) -> None:
-    found = {id: one for id, one in outcomes.items() if id.startswith("set_elsewhere:")}
-    assert {one.verdict for one in found.values() if one.acted} == {Verdict.ERROR}
+    found = {id: outcome for id, outcome in outcomes.items() if id.startswith("set_elsewhere:")}
+    assert {outcome.verdict for outcome in found.values() if outcome.acted} == {Verdict.ERROR}
     negate = found["set_elsewhere:sim.qpos#1:[0]:negate"]
     assert "it wrote to a copy" in (negate.message or "")
 

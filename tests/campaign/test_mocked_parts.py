@@ -44,7 +44,11 @@ TESTS = """
 def test_mocks_end_no_campaign(tmp_path: Path, engine: str) -> None:
     found = run(write_project(tmp_path, MISSION, TESTS), engine=engine)
     assert found
-    assert {one.verdict for one in found.values()} <= {Verdict.KILLED, Verdict.SURVIVED, Verdict.NO_EFFECT}
+    assert {outcome.verdict for outcome in found.values()} <= {
+        Verdict.KILLED,
+        Verdict.SURVIVED,
+        Verdict.NO_EFFECT,
+    }
 
 
 def test_looking_at_what_mocks_answer_calls_no_mock(tmp_path: Path) -> None:
@@ -66,7 +70,7 @@ def test_looking_at_what_mocks_answer_calls_no_mock(tmp_path: Path) -> None:
             assert fake.return_value.move_by.mock_calls == [mock.call(0.25), mock.call(-0.5)]
     """
     found = run(write_project(tmp_path, MISSION, tests))
-    assert {one.verdict for one in found.values()} >= {Verdict.KILLED}
+    assert {outcome.verdict for outcome in found.values()} >= {Verdict.KILLED}
 
 
 def test_a_mock_in_the_place_of_a_property_is_read_by_the_mutant(tmp_path: Path) -> None:
@@ -105,7 +109,7 @@ def test_a_mock_in_the_place_of_a_property_is_read_by_the_mutant(tmp_path: Path)
         result = { kind = "position", axis = "z", unit = "m" }
     """
     found = run(write_project(tmp_path, mission, tests, robot=robot, vocabulary=vocabulary))
-    (negated,) = [one for one in found.values() if one.mutant.endswith("negate")]
+    (negated,) = [result for result in found.values() if result.mutant.endswith("negate")]
     assert (negated.verdict, negated.hits) == (Verdict.KILLED, 1)
 
 
@@ -158,11 +162,11 @@ def test_half_a_turn_the_other_way_is_a_fault_to_a_test_that_compares_numbers(
 ) -> None:
     mission = "def run(arm):\n    arm.turn(180.0)\n"
     found = run(write_project(tmp_path, mission, tests, robot=TURN, vocabulary=TO))
-    (turned,) = [one for one in found.values() if one.mutant.endswith("reverse")]
+    (turned,) = [result for result in found.values() if result.mutant.endswith("reverse")]
     assert (turned.verdict, turned.example) == (Verdict.KILLED, (180.0, -180.0))
 
 
 def test_half_a_turn_the_other_way_is_the_same_to_a_robot(tmp_path: Path) -> None:
     mission = "def run(arm):\n    arm.turn(180.0)\n"
     found = run(write_project(tmp_path, mission, REAL, robot=TURN, vocabulary=TO))
-    assert not [one for one in found.values() if one.mutant.endswith("reverse")]
+    assert not [result for result in found.values() if result.mutant.endswith("reverse")]

@@ -86,7 +86,7 @@ def test_calls_in_a_window_of_simulated_time_are_wrong(outcome: Run) -> None:
 
 
 def test_a_drawn_call_is_one_in_each_round_and_not_always_the_same(outcome: Run) -> None:
-    drawn = [calls_of(one) for one in outcome("once", rounds=4)]
+    drawn = [calls_of(end) for end in outcome("once", rounds=4)]
     assert all(len(calls) == 1 for calls in drawn)
     assert len({calls[0] for calls in drawn}) > 1
 
@@ -98,7 +98,7 @@ def test_both_engines_draw_alike(tmp_path: Path) -> None:
         folder = write_project(tmp_path / engine, MISSION, TESTS, robot=ROBOT, vocabulary=VOCABULARY)
         wanted = request_for(folder, engine=engine, only=("skip",), moments=(Moment.parse("once"),), rounds=2)
         with Journal.open(run_campaign(wanted, Quiet())) as journal:
-            ends.append([(one.round, one.verdict) for one in journal.outcomes()])
+            ends.append([(end.round, end.verdict) for end in journal.outcomes()])
     assert sorted(ends[0]) == sorted(ends[1])
 
 
@@ -106,5 +106,7 @@ def test_a_call_that_no_test_makes_is_left_out(tmp_path: Path) -> None:
     folder = write_project(tmp_path, MISSION, TESTS, robot=ROBOT, vocabulary=VOCABULARY)
     wanted = request_for(folder, moments=(None, Moment.parse("51")))
     with Journal.open(run_campaign(wanted, Quiet())) as journal:
-        assert {one.reason for one in journal.left_out()} == {"no test makes call 51 here; the most are 50"}
+        assert {omission.reason for omission in journal.left_out()} == {
+            "no test makes call 51 here; the most are 50"
+        }
         assert all(mutant.moment is None for mutant in journal.mutants())

@@ -71,14 +71,14 @@ def test_calls_that_no_test_reaches_are_not_covered_and_lower_the_score(
 ) -> None:
     script.kill("move_by")
     results = ran(project(tmp_path))
-    idle = {one.mutant.site.place for one in results.mutants if Verdict.NOT_COVERED in verdicts(one)}
+    idle = {result.mutant.site.place for result in results.mutants if Verdict.NOT_COVERED in verdicts(result)}
     assert idle == {"mission.py:6:5", "other.py:3:5"}
     assert results.untested.text == "2 of 3 robot calls and 2 of 3 functions are reached by no test"
     assert decide(results, min_score=0.9).exit_code is ExitCode.SCORE_TOO_LOW
 
 
 def verdicts(result: Any) -> set[Verdict]:
-    return {one.verdict for one in result.outcomes}
+    return {outcome.verdict for outcome in result.outcomes}
 
 
 @pytest.mark.parametrize("words", [("move_by",), ("ahead",), ()])
@@ -101,15 +101,15 @@ def test_a_mutant_keeps_its_id_and_its_outcome_gives_way_once_a_test_comes(
     before = ran(folder)
     (folder / "tests" / "test_mission.py").write_text(dedent(AHEAD) + dedent(BACK), encoding="utf-8")
     after = ran(folder)
-    assert {one.mutant.id for one in after.mutants} <= {one.mutant.id for one in before.mutants}
-    ends = {one.mutant.id: verdicts(one) for one in after.mutants if ":back:" in one.mutant.id}
+    assert {result.mutant.id for result in after.mutants} <= {result.mutant.id for result in before.mutants}
+    ends = {result.mutant.id: verdicts(result) for result in after.mutants if ":back:" in result.mutant.id}
     assert set.union(*ends.values()) == {Verdict.KILLED}
 
 
 def test_mutants_that_run_keep_their_numbers(tmp_path: Path, script: Script) -> None:
     alone = plan_only(request_for(write_project(tmp_path / "alone", PROGRAM, AHEAD)), Quiet()).mutants
     both = plan_only(request_for(project(tmp_path / "both")), Quiet()).mutants
-    assert [one.id for one in both[: len(alone)]] == [one.id for one in alone]
+    assert [mutant.id for mutant in both[: len(alone)]] == [mutant.id for mutant in alone]
 
 
 def test_where_no_test_reaches_anything_there_is_no_campaign(tmp_path: Path, script: Script) -> None:
@@ -120,13 +120,13 @@ def test_where_no_test_reaches_anything_there_is_no_campaign(tmp_path: Path, scr
 
 def test_a_selection_may_be_of_what_no_test_reaches(tmp_path: Path, script: Script) -> None:
     results = ran(project(tmp_path), only=("other.py",))
-    assert {one.mutant.site.span.file for one in results.mutants} == {"other.py"}
+    assert {result.mutant.site.span.file for result in results.mutants} == {"other.py"}
     assert score(results) == 0.0
 
 
 def test_all_rounds_and_samples_know_of_them(tmp_path: Path, script: Script) -> None:
     results = ran(project(tmp_path), rounds=2)
-    assert all(len(one.outcomes) == 2 for one in results.mutants)
+    assert all(len(result.outcomes) == 2 for result in results.mutants)
 
 
 @pytest.mark.parametrize("engine", ["fork", REPLAY])
@@ -135,7 +135,7 @@ def test_the_text_of_a_real_project_tells(tmp_path: Path, engine: str) -> None:
     folder = project(tmp_path)
     results = ran(folder, engine=engine)
     told = document(results)["untested"]
-    assert [one["place"] for one in told["unreached_calls"]] == ["mission.py:6:5", "other.py:3:5"]
+    assert [call["place"] for call in told["unreached_calls"]] == ["mission.py:6:5", "other.py:3:5"]
     assert told["unreached_files"] == ["other.py"]
     assert told["unreached_functions"] == ["mission.py:5 back", "other.py:2 flee"]
     assert told["doubtful_calls"] == []
@@ -167,8 +167,8 @@ def test_of_a_call_in_a_branch_and_of_one_that_is_no_operation(tmp_path: Path) -
             assert arm.x == 0.25
     """
     results = ran(write_project(tmp_path, program, tests))
-    assert [one.place for one in results.untested.unreached_calls] == ["mission.py:5:9"]
-    assert [one.place for one in results.untested.doubtful_calls] == ["mission.py:6:9"]
+    assert [call.place for call in results.untested.unreached_calls] == ["mission.py:5:9"]
+    assert [call.place for call in results.untested.doubtful_calls] == ["mission.py:6:9"]
     assert results.untested.text == "1 of 2 robot calls is reached by no test"
 
 
@@ -212,6 +212,6 @@ def test_where_another_text_runs_it_is_not_said_that_no_test_reaches_a_call(tmp_
     results = ran(folder)
     assert score(results) == 1.0
     assert results.untested.unreached_calls == ()
-    assert {one.doubt for one in results.untested.doubtful_calls} == {
+    assert {call.doubt for call in results.untested.doubtful_calls} == {
         "the code that runs is not compiled from this file's text"
     }

@@ -66,12 +66,12 @@ class Follower:
 
     def events(self, told: Iterable[Any]) -> Iterator[Any]:
         """What the executor tells, from the end of the mutant's test on."""
-        for one in told:
-            is_fork = isinstance(one, tuple) and isinstance(one[1], ForkTestEnd)
-            is_fresh = isinstance(one, Result) and one.task.job.mutant is not None
+        for entry in told:
+            is_fork = isinstance(entry, tuple) and isinstance(entry[1], ForkTestEnd)
+            is_fresh = isinstance(entry, Result) and entry.task.job.mutant is not None
             self.is_under_way = self.is_under_way or is_fork or is_fresh
             sys.setprofile(self.look if self.is_under_way else None)
-            yield one
+            yield entry
             sys.setprofile(None)
 
 

@@ -39,13 +39,13 @@ def test_all_mutants_of_known_places_are_active_though_the_plan_has_them_no_long
     tests = (f"{next(project.rglob('test_*.py')).relative_to(project)}::test_goes",)
     request = request_for(project, rounds=1).changed(tests=tests)
     with CampaignRun.open(request, Quiet()) as campaign:
-        planned = [one for one in campaign.planned.values() if one.operator == "skip"]
+        planned = [mutant for mutant in campaign.planned.values() if mutant.operator == "skip"]
         assert len(planned) == 2
         # as an earlier campaign had them, of a magnitude that is not asked for now
-        earlier = [replace(one, variant="old", number=one.number + 100) for one in planned]
-        now = [campaign.current(one) for one in earlier]
+        earlier = [replace(mutant, variant="old", number=mutant.number + 100) for mutant in planned]
+        now = [campaign.current(mutant) for mutant in earlier]
         assert now == earlier
-        assert [campaign.task(one, 0, campaign.baseline.suite(0)).job.mutant for one in now] == earlier
+        assert [campaign.task(mutant, 0, campaign.baseline.suite(0)).job.mutant for mutant in now] == earlier
         elsewhere = replace(planned[0].site, text="arm.away")
         with pytest.raises(SelectionError, match=r"no test reaches \S*arm.away"):
             campaign.current(replace(planned[0], site=elsewhere))
@@ -53,7 +53,7 @@ def test_all_mutants_of_known_places_are_active_though_the_plan_has_them_no_long
 
 def test_the_original_is_run_in_the_rounds_asked_for_also_if_tests_fail(project: Path) -> None:
     with CampaignRun.of_original(request_for(project), [0, 3], Quiet()) as results:
-        found = {one.task.key: [end.outcome for end in one.ends] for one in results}
+        found = {result.task.key: [end.outcome for end in result.ends] for result in results}
     assert found == {0: ["passed", "failed"], 3: ["passed", "failed"]}
 
 
@@ -65,7 +65,7 @@ def test_a_changed_request_has_other_tests_and_further_probes_and_leaves_the_fir
     changed = request.changed(root=tmp_path / "copy", tests=GOES, probes={"robot:place": 0.1})
     assert changed.root == tmp_path / "copy"
     assert changed.configuration.tests == GOES
-    assert [(one.target, one.tolerance) for one in changed.vocabulary.probes[len(before) :]] == [
+    assert [(probe.target, probe.tolerance) for probe in changed.vocabulary.probes[len(before) :]] == [
         ("robot:place", 0.1)
     ]
     assert (request.root, request.vocabulary.probes) == (project, before)

@@ -235,10 +235,12 @@ def test_a_process_that_fails_before_the_mutant_acts_is_an_error(tmp_path: Path)
             found = run(project, engine="replay", fresh=True, jobs=1)
         finally:
             Path(f"/var/tmp/{tmp_path.name}-{id(tmp_path)}").unlink(missing_ok=True)
-    failed = [one for one in found.values() if one.message and "licence server" in one.message]
+    failed = [
+        outcome for outcome in found.values() if outcome.message and "licence server" in outcome.message
+    ]
     assert failed
-    assert {one.verdict for one in failed} == {Verdict.ERROR}
-    assert all("ended before the mutant changed anything" in (one.message or "") for one in failed)
+    assert {outcome.verdict for outcome in failed} == {Verdict.ERROR}
+    assert all("ended before the mutant changed anything" in (outcome.message or "") for outcome in failed)
 
 
 def test_what_keeps_apart_from_the_campaign_is_told(tmp_path: Path) -> None:
@@ -311,6 +313,6 @@ def test_a_script_sees_itself_as_ever_when_its_text_is_mutated(tmp_path: Path) -
             assert told == "('__main__', None, None, 'What it does.', True, True) mission.py 3\\n"
     """
     found = run(write_project(tmp_path, mission, tests), fresh=True, families=("conventional",))
-    changed = [one for mutant, one in found.items() if ":3#1:" in mutant]
+    changed = [value for mutant, value in found.items() if ":3#1:" in mutant]
     assert changed
-    assert {one.verdict for one in changed} == {Verdict.KILLED}
+    assert {outcome.verdict for outcome in changed} == {Verdict.KILLED}

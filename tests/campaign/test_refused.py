@@ -89,9 +89,10 @@ VOCABULARY = """
 def test_a_command_that_is_refused_by_data_is_never_a_kill(tmp_path: Path) -> None:
     write_project(tmp_path, MISSION, TESTS, robot=ROBOT, vocabulary=VOCABULARY)
     outcomes = {
-        mutant.split(":", 1)[1].replace("#1", ""): one for (mutant, _), one in by_forks(tmp_path).items()
+        mutant.split(":", 1)[1].replace("#1", ""): by_fork
+        for (mutant, _), by_fork in by_forks(tmp_path).items()
     }
-    told = {name: (one.verdict, one.message) for name, one in outcomes.items()}
+    told = {name: (outcome.verdict, outcome.message) for name, outcome in outcomes.items()}
     refused = Verdict.REFUSED
     assert told["run:arm.move_to:x:reverse"] == (refused, "answered status 5")
     assert told["careful:arm.move_to:x:reverse"] == (refused, "answered status 5")

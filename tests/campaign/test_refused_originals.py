@@ -65,7 +65,7 @@ BOTH_REFUSED = """
 
 
 def by_name(outcomes: dict[tuple[str, int], Outcome]) -> dict[str, Outcome]:
-    return {id.split(":", 1)[1].replace("#1", ""): one for (id, _), one in outcomes.items()}
+    return {id.split(":", 1)[1].replace("#1", ""): outcome for (id, _), outcome in outcomes.items()}
 
 
 @pytest.fixture(scope="module")
@@ -131,7 +131,7 @@ def test_a_skipped_call_of_which_nobody_knows_the_answer_is_left_out(
     """
     write_project(tmp_path, MISSION, tests, robot=robot, vocabulary=vocabulary)
     left_out = plan_only(request_for(tmp_path), Quiet()).left_out
-    reasons = {one.id: one.reason for one in left_out}
+    reasons = {omission.id: omission.reason for omission in left_out}
     assert "no recorded call returned" in reasons["mission.py:too_far:arm.move_by#1:call:skip"]
 
 
@@ -141,13 +141,13 @@ def test_a_mutant_of_the_text_is_judged_by_the_tests_as_well(tmp_path: Path) -> 
     """One number for another: the robot refuses either, and the test expects which."""
     write_project(tmp_path, MISSION, TESTS)
     outcomes = by_forks(tmp_path, families=("conventional",))
-    told = [one for (id, _), one in outcomes.items() if id.startswith("mission.py:too_far_told:5.0")]
+    told = [outcome for (id, _), outcome in outcomes.items() if id.startswith("mission.py:too_far_told:5.0")]
     assert told
-    refused_as_well = [one for one in told if "out of reach" in (one.message or "")]
+    refused_as_well = [outcome for outcome in told if "out of reach" in (outcome.message or "")]
     assert refused_as_well
-    assert {(one.verdict, one.by) for one in refused_as_well} == {(Verdict.KILLED, By.CHECK)}
-    near = [one for (id, _), one in outcomes.items() if id.startswith("mission.py:near:0.75")]
-    assert Verdict.REFUSED in {one.verdict for one in near}
+    assert {(outcome.verdict, outcome.by) for outcome in refused_as_well} == {(Verdict.KILLED, By.CHECK)}
+    near = [outcome for (id, _), outcome in outcomes.items() if id.startswith("mission.py:near:0.75")]
+    assert Verdict.REFUSED in {outcome.verdict for outcome in near}
 
 
 ANSWERING = """
@@ -200,7 +200,9 @@ def test_a_refusal_by_data_that_the_original_gets_as_well_is_judged_by_the_tests
     found = by_name(by_forks(tmp_path, families=("robot", "graded")))
     assert found["too_far:arm.move_to:x:reverse"].verdict is Verdict.SURVIVED
     # there the original is not refused
-    graded = {one.verdict for name, one in found.items() if name.startswith("there:arm.move_to:x:offset=+")}
+    graded = {
+        outcome.verdict for name, outcome in found.items() if name.startswith("there:arm.move_to:x:offset=+")
+    }
     assert Verdict.REFUSED in graded
 
 
@@ -226,5 +228,5 @@ def test_a_refusal_in_a_process_below_the_tests_is_known_as_well(tmp_path: Path)
             assert subprocess.run([sys.executable, "mission.py"], env=os.environ).returncode == 3
     """
     outcomes = by_forks(write_project(tmp_path, mission, tests))
-    reverse = next(one for (id, _), one in outcomes.items() if id.endswith(":reverse"))
+    reverse = next(outcome for (id, _), outcome in outcomes.items() if id.endswith(":reverse"))
     assert (reverse.verdict, reverse.acted) == (Verdict.SURVIVED, 1)

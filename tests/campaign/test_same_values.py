@@ -93,8 +93,8 @@ def project(folder: Path) -> Path:
 def test_what_the_robot_cannot_tell_apart_is_not_planned(tmp_path: Path) -> None:
     plan = plan_only(request_for(project(tmp_path)), Quiet())
     mutants, left_out = plan.mutants, plan.left_out
-    planned = {one.id.split(":", 1)[1] for one in mutants if one.operator == "reverse"}
-    reasons = {one.id.split(":", 1)[1]: one.reason for one in left_out}
+    planned = {mutant.id.split(":", 1)[1] for mutant in mutants if mutant.operator == "reverse"}
+    reasons = {omission.id.split(":", 1)[1]: omission.reason for omission in left_out}
     assert "would change nothing" in reasons["half_a_turn:arm.turn_to#1:yaw:reverse"]
     assert "would change nothing" in reasons["flip:arm.face#1:angles:reverse"]
     # another motion, and another turn of the joint

@@ -42,10 +42,17 @@ def campaign(folder: Path, engine: str) -> tuple[Any, ...]:
     request = request_for(folder, engine=engine, only=("skip", "reverse", "negate"))
     with Journal.open(run_campaign(request, Quiet())) as journal:
         ends = {
-            one.mutant: (one.verdict, one.by, one.test, one.hits, one.tests, one.engine)
-            for one in journal.outcomes()
+            outcome.mutant: (
+                outcome.verdict,
+                outcome.by,
+                outcome.test,
+                outcome.hits,
+                outcome.tests,
+                outcome.engine,
+            )
+            for outcome in journal.outcomes()
         }
-        controls = {(one.test_file, one.control, one.ok) for one in journal.controls()}
+        controls = {(control.test_file, control.control, control.ok) for control in journal.controls()}
         return journal.mutants(), ends, controls
 
 

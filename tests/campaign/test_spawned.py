@@ -92,7 +92,7 @@ def project(folder: Path, ways: list[str]) -> Path:
 @pytest.mark.parametrize("ways", [["spawn", "empty_spawn"], pytest.param([*WAYS], marks=pytest.mark.whole)])
 def test_processes_below_a_fork_are_its_mutant(tmp_path: Path, ways: list[str]) -> None:
     found = run(project(tmp_path, ways), engine="auto", only=("reverse",))
-    assert {(one.verdict, one.test) for one in found.values()} == {
+    assert {(outcome.verdict, outcome.test) for outcome in found.values()} == {
         (Verdict.KILLED, f"tests/test_mission.py::test_{way}") for way in ways
     }
 

@@ -69,20 +69,27 @@ def project(folder: Path, text: str, name: str) -> Path:
 
 def run(folder: Path) -> tuple[dict[str, Outcome], Path]:
     path = run_campaign(request_for(folder), Quiet())
-    return {one.mutant: one for one in outcomes(path)}, path
+    return {outcome.mutant: outcome for outcome in outcomes(path)}, path
 
 
 def ends(found: dict[str, Outcome], text: str, name: str) -> dict[str, object]:
     """How they ended, in words in which the texts of both projects are called alike."""
 
     def alike(said: str | None) -> str | None:
-        for one in (text, name):
-            said = said.replace(one, "…") if said is not None else None
+        for part in (text, name):
+            said = said.replace(part, "…") if said is not None else None
         return said
 
     return {
-        mutant: (one.verdict, one.by, alike(one.test), alike(one.message), one.hits, one.acted)
-        for mutant, one in found.items()
+        mutant: (
+            outcome.verdict,
+            outcome.by,
+            alike(outcome.test),
+            alike(outcome.message),
+            outcome.hits,
+            outcome.acted,
+        )
+        for mutant, outcome in found.items()
     }
 
 
@@ -93,8 +100,8 @@ def test_with_texts_that_are_no_utf_8_each_mutant_ends_as_without(tmp_path: Path
     found, path = run(project(tmp_path / "a\udcff b", "\\udcff", "test_\udcff.py"))
     assert len(plain) == 14
     assert ends(found, "\\udcff", "test_\\udcff.py") == ends(plain, "well", "test_well.py")
-    assert any(one.test == "tests/test_\\udcff.py::test_twice" for one in found.values())
-    assert sum("\\udcff" in (one.message or "") for one in found.values()) >= 6
+    assert any(outcome.test == "tests/test_\\udcff.py::test_twice" for outcome in found.values())
+    assert sum("\\udcff" in (outcome.message or "") for outcome in found.values()) >= 6
     with Journal.open(path) as journal:
         results = read_results(journal)
     assert (results.state, results.done, results.planned) == ("complete", 14, 14)
@@ -155,5 +162,5 @@ def test_an_outcome_that_gets_lost_on_its_way_to_the_journal_is_missed(
     assert (results.state, results.done, results.planned) == ("incomplete", len(lost) - 1, len(lost))
     decision = decide(results)
     assert decision.exit_code == 4
-    number = next(one.mutant.number for one in results.mutants if one.mutant.id == lost[0])
+    number = next(result.mutant.number for result in results.mutants if result.mutant.id == lost[0])
     assert f"mutants {number};" in decision.lines[0]

@@ -46,7 +46,11 @@ def accept(project: Path, *tables: str) -> None:
 
 
 def accepted(results: Results) -> dict[str, str]:
-    return {one.mutant.id: one.acceptance.why for one in results.accepted if one.acceptance is not None}
+    return {
+        result.mutant.id: result.acceptance.why
+        for result in results.accepted
+        if result.acceptance is not None
+    }
 
 
 def entry(action: str = "accept", **keys: str) -> str:
@@ -61,9 +65,11 @@ def test_an_accepted_survivor_leaves_list_and_score_and_keeps_its_verdict(
     accept(project, entry(id=FIRST, line="arm.move_by(0.1)", why="it is repeated"))
     after = campaign(project)
     assert accepted(after) == {FIRST: "it is repeated"}
-    assert {one.mutant.id for one in before.survivors} - {one.mutant.id for one in after.survivors} == {FIRST}
-    assert [one.rounds[0].verdict for one in after.mutants if one.rounds[0]] == [
-        one.rounds[0].verdict for one in before.mutants if one.rounds[0]
+    assert {survivor.mutant.id for survivor in before.survivors} - {
+        survivor.mutant.id for survivor in after.survivors
+    } == {FIRST}
+    assert [result.rounds[0].verdict for result in after.mutants if result.rounds[0]] == [
+        result.rounds[0].verdict for result in before.mutants if result.rounds[0]
     ]
     assert after.all.total.valid == before.all.total.valid - 1
     assert after.all.total.killed == before.all.total.killed
@@ -97,7 +103,7 @@ def test_a_comment_accepts_its_operators_on_its_line(project: Path, script: Scri
     (project / "mission.py").write_text(program)
     found = campaign(project)
     assert accepted(found) == {FIRST: "slow", FIRST.replace("skip", "repeat"): "slow"}
-    assert all(one.acceptance and one.acceptance.in_source for one in found.accepted)
+    assert all(result.acceptance and result.acceptance.in_source for result in found.accepted)
 
 
 def test_excluded_mutants_are_left_out_with_the_reason_and_numbers_stay(
@@ -106,9 +112,13 @@ def test_excluded_mutants_are_left_out_with_the_reason_and_numbers_stay(
     before = campaign(project)
     accept(project, entry("exclude", operator="skip", file="mission.py", why="no time"))
     after = campaign(project)
-    assert {one.id: one.reason for one in after.left_out}[FIRST] == "excluded: no time"
-    rest = {one.mutant.id: one.mutant.number for one in before.mutants if one.mutant.operator != "skip"}
-    assert {one.mutant.id: one.mutant.number for one in after.mutants} == rest
+    assert {omission.id: omission.reason for omission in after.left_out}[FIRST] == "excluded: no time"
+    rest = {
+        result.mutant.id: result.mutant.number
+        for result in before.mutants
+        if result.mutant.operator != "skip"
+    }
+    assert {result.mutant.id: result.mutant.number for result in after.mutants} == rest
 
 
 def test_a_line_that_has_changed_is_named_and_its_survivor_is_not_accepted(
@@ -119,8 +129,8 @@ def test_a_line_that_has_changed_is_named_and_its_survivor_is_not_accepted(
     found = campaign(project, progress)
     text = f"{FILE}:1: the line of {FIRST} has changed from 'arm.move_by(0.15)' to 'arm.move_by(0.1)'"
     assert accepted(found) == {}
-    assert [one for one in found.accepting.unmatched if one.startswith(text)]
-    assert [one for one in progress.lines if one.startswith(text)]
+    assert [line for line in found.accepting.unmatched if line.startswith(text)]
+    assert [line for line in progress.lines if line.startswith(text)]
 
 
 def test_a_call_that_is_gone_is_named(project: Path, script: Script) -> None:
@@ -143,7 +153,7 @@ def test_what_is_killed_by_now_is_named_unless_a_mutant_of_the_same_decision_sur
     script.kill(FIRST, "repeat")
     accept(project, entry(operator="skip", why="one survives"), entry(operator="repeat", why="none does"))
     found = campaign(project)
-    killed = [str(one.mutant.number) for one in found.mutants if one.mutant.operator == "repeat"]
+    killed = [str(result.mutant.number) for result in found.mutants if result.mutant.operator == "repeat"]
     assert found.needlessly_accepted == [
         f"{FILE}:5: mutants {', '.join(killed)} are killed now, so there is nothing to accept"
     ]
@@ -154,7 +164,7 @@ def test_a_survivor_in_one_of_several_rounds_is_accepted_in_all(project: Path, s
     accept(project, entry(id=FIRST, why="by chance"))
     found = campaign(project, rounds=2)
     assert list(accepted(found)) == [FIRST]
-    assert [one.valid for one in found.all.rounds] == [len(found.mutants) - 1] * 2
+    assert [end.valid for end in found.all.rounds] == [len(found.mutants) - 1] * 2
 
 
 @pytest.mark.parametrize(
@@ -216,9 +226,9 @@ def test_the_command_accepts_several_numbers_at_once_and_none_if_one_of_them_is_
 ) -> None:
     script.kill(FIRST, "repeat")
     found = campaign(project).mutants
-    survivors = [one.mutant.number for one in found if one.is_survivor]
+    survivors = [result.mutant.number for result in found if result.is_survivor]
     first, *_, last = survivors
-    numbers = {one.mutant.number: one for one in found}
+    numbers = {result.mutant.number: result for result in found}
     between = [number for number in range(first, last + 1) if not numbers[number].is_survivor]
     assert between
     assert run(project, "accept", f"{first}-{last}", "--why", "all") == ExitCode.USAGE
@@ -231,7 +241,7 @@ def test_the_command_accepts_several_numbers_at_once_and_none_if_one_of_them_is_
 def test_the_command_writes_reason_line_and_date_and_applies_them_at_once(
     project: Path, script: Script, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    number = next(one.mutant.number for one in campaign(project).mutants if one.mutant.id == FIRST)
+    number = next(result.mutant.number for result in campaign(project).mutants if result.mutant.id == FIRST)
     why = 'it is "repeated" \\ later'
     assert run(project, "accept", str(number), "--why", why) == ExitCode.FINE
     capsys.readouterr()

@@ -70,7 +70,11 @@ def run(folder: Path, **options: object) -> tuple[Results, list[str]]:
 
 
 def verdicts(results: Results) -> Verdicts:
-    return {(one.mutant, one.round): one.verdict for each in results.everything for one in each.outcomes}
+    return {
+        (outcome.mutant, outcome.round): outcome.verdict
+        for each in results.everything
+        for outcome in each.outcomes
+    }
 
 
 @pytest.fixture(scope="module")

@@ -75,12 +75,12 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[Bracket]]:
     )
     request = request_for(folder, families=("graded",), rounds=1)
     with Journal.open(run_campaign(request, Quiet())) as journal:
-        mutants = {one.id: one for one in journal.mutants()}
+        mutants = {candidate.id: candidate for candidate in journal.mutants()}
         rows: dict[tuple[str, int], dict[float, MagnitudeResult]] = {}
-        for one in journal.outcomes():
-            mutant = mutants[one.mutant]
+        for outcome in journal.outcomes():
+            mutant = mutants[outcome.mutant]
             assert mutant.magnitude is not None
-            rows.setdefault((mutant.ladder, one.round), {})[mutant.magnitude] = seen(one)
+            rows.setdefault((mutant.ladder, outcome.round), {})[mutant.magnitude] = seen(outcome)
     brackets: dict[str, list[Bracket]] = {}
     for (ladder, _), row in rows.items():
         brackets.setdefault(ladder.partition("run:")[2], []).append(bracket_of(row))
@@ -103,12 +103,14 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[Bracket]]:
 def test_the_threshold_is_where_the_test_s_tolerance_puts_it(
     found: dict[str, list[Bracket]], ladder: str, bracket: Bracket
 ) -> None:
-    assert [(one.low, one.high) for one in found[ladder]] == [(bracket.low, bracket.high)]
+    assert [(bracket_found.low, bracket_found.high) for bracket_found in found[ladder]] == [
+        (bracket.low, bracket.high)
+    ]
 
 
 def test_what_the_robot_refuses_is_no_detection(found: dict[str, list[Bracket]]) -> None:
     # 0.25 + 0.1 m is out of reach, and 0.25 + 0.02 m is noticed before
-    assert all(one.refused is None for one in found["arm.move_by#1:dx:offset=+"])
+    assert all(bracket_found.refused is None for bracket_found in found["arm.move_by#1:dx:offset=+"])
 
 
 @pytest.mark.whole
@@ -118,7 +120,7 @@ def test_magnitude_and_verdict_agree_in_both_engines(tmp_path: Path) -> None:
         folder = write_project(tmp_path / engine, MISSION, TESTS, robot=ROBOT, vocabulary=VOCABULARY)
         request = request_for(folder, families=("graded",), only=("lag", "drift"), engine=engine)
         with Journal.open(run_campaign(request, Quiet())) as journal:
-            ends.append({(one.mutant, one.round): one.verdict for one in journal.outcomes()})
+            ends.append({(outcome.mutant, outcome.round): outcome.verdict for outcome in journal.outcomes()})
     assert ends[0] == ends[1]
     assert ends[0]
 
@@ -137,10 +139,14 @@ def test_a_demanded_magnitude_joins_its_ladders_and_is_run_in_every_round(tmp_pa
         tmp_path, MISSION, TESTS, robot=ROBOT, vocabulary=VOCABULARY, configuration=configuration
     )
     with Journal.open(run_campaign(request_for(folder, rounds=2), Quiet())) as journal:
-        graded = [one for one in journal.mutants() if one.ladder]
-        assert {one.ladder.rpartition(":")[2] for one in graded} == {"offset=+", "offset=-"}
-        demanded = {one.id for one in graded if one.magnitude == 12.0}
-        ends = {(one.mutant, one.round): seen(one) for one in journal.outcomes() if one.mutant in demanded}
+        graded = [mutant for mutant in journal.mutants() if mutant.ladder]
+        assert {mutant.ladder.rpartition(":")[2] for mutant in graded} == {"offset=+", "offset=-"}
+        demanded = {mutant.id for mutant in graded if mutant.magnitude == 12.0}
+        ends = {
+            (outcome.mutant, outcome.round): seen(outcome)
+            for outcome in journal.outcomes()
+            if outcome.mutant in demanded
+        }
     assert {name.rpartition("=")[2] for name in demanded} == {"+12mm", "-12mm"}
     assert set(ends) == {(name, round) for name in demanded for round in range(2)}
-    assert {str(one) for one in ends.values()} == {"missed"}  # the test takes 15 mm
+    assert {str(end) for end in ends.values()} == {"missed"}  # the test takes 15 mm

@@ -82,7 +82,7 @@ VOCABULARY = """
 def found(folder: Path) -> dict[str, Outcome]:
     write_project(folder, MISSION, TESTS, robot=ROBOT, vocabulary=VOCABULARY)
     outcomes = by_forks(folder).items()
-    return {mutant.split(":", 2)[2].replace("#1", ""): one for (mutant, _), one in outcomes}
+    return {mutant.split(":", 2)[2].replace("#1", ""): outcome for (mutant, _), outcome in outcomes}
 
 
 def test_one_callable_is_several_operations_and_other_calls_are_left_alone(tmp_path: Path) -> None:
@@ -141,5 +141,5 @@ def test_calls_that_are_left_alone_may_raise_anything(tmp_path: Path) -> None:
         arguments.x = { kind = "translation", axis = "x", unit = "m", mode = "by" }
         """,
     )
-    verdicts = {one.verdict for one in by_forks(tmp_path).values()}
+    verdicts = {outcome.verdict for outcome in by_forks(tmp_path).values()}
     assert verdicts == {Verdict.SURVIVED}

@@ -87,7 +87,7 @@ def test_help_lists_commands_in_the_order_in_which_they_are_used(capsys: pytest.
 
 
 @pytest.mark.parametrize(
-    "command", [pytest.param(one, marks=pytest.mark.needs(one)) for one in ("init", "suggest")]
+    "command", [pytest.param(name, marks=pytest.mark.needs(name)) for name in ("init", "suggest")]
 )
 def test_help_of_a_command_of_a_package_writes_nothing(
     command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
@@ -356,7 +356,7 @@ def test_the_limit_of_the_configuration_holds_unless_the_command_line_says_other
 
 def in_all_rounds(verdict: Verdict) -> tuple[Outcome, ...]:
     """Every mutant ends so in both rounds."""
-    return tuple(Outcome(one.id, round, verdict) for one in samples.MUTANTS for round in (0, 1))
+    return tuple(Outcome(mutant.id, round, verdict) for mutant in samples.MUTANTS for round in (0, 1))
 
 
 def test_a_run_in_which_everything_is_refused_is_3(

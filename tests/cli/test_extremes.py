@@ -49,7 +49,11 @@ def declared() -> Iterator[tuple[str, set[type], set[str], Any]]:
             if get_origin(hint) is Annotated and isinstance(hint.__metadata__[0], OptionInfo):
                 kind = get_args(hint)[0]
                 option = hint.__metadata__[0]
-                names = {one for one in (option.default, *(option.param_decls or ())) if isinstance(one, str)}
+                names = {
+                    declaration
+                    for declaration in (option.default, *(option.param_decls or ()))
+                    if isinstance(declaration, str)
+                }
                 yield name, {*(get_args(kind) or (kind,))}, names, option
 
 
@@ -143,8 +147,8 @@ def test_the_greatest_number_is_taken_and_the_next_is_told_with_it(tmp_path: Pat
 
 
 def test_every_number_of_the_configuration_has_both_bounds() -> None:
-    for name, one in Settings.model_json_schema()["properties"].items():
-        for kind in one.get("anyOf", [one]):
+    for name, setting in Settings.model_json_schema()["properties"].items():
+        for kind in setting.get("anyOf", [setting]):
             if kind.get("type") in ("integer", "number") and "enum" not in kind:
                 assert kind.keys() & {"maximum", "exclusiveMaximum"}, name
                 assert kind.keys() & {"minimum", "exclusiveMinimum"} or name in ("memory", "evidence"), name

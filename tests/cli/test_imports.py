@@ -50,7 +50,7 @@ def test_a_report_loads_nothing_that_runs_a_campaign_and_no_other_format(tmp_pat
     words = [sys.executable, "-c", CODE, "-C", str(tmp_path), "report", "--format", name]
     done = subprocess.run(words, capture_output=True, text=True, check=True)
     assert_light(done.stderr)
-    formats = [one for one in done.stderr.split() if one.startswith("mutabot.report.formats.")]
+    formats = [module for module in done.stderr.split() if module.startswith("mutabot.report.formats.")]
     assert formats == [f"mutabot.report.formats.{name.replace('-', '_')}"]
     assert not {"pandas", "pyarrow"} & set(done.stderr.split())
 

@@ -32,7 +32,7 @@ def printed(capsys: pytest.CaptureFixture[str], *words: str) -> dict[str, int]:
     """Ids and numbers of the mutants that a command prints."""
     capsys.readouterr()
     assert main([*words, "--json"]) == ExitCode.FINE
-    return {one["id"]: one["number"] for one in json.loads(capsys.readouterr().out)["mutants"]}
+    return {mutant["id"]: mutant["number"] for mutant in json.loads(capsys.readouterr().out)["mutants"]}
 
 
 @pytest.mark.whole
@@ -43,13 +43,13 @@ def test_list_and_run_number_alike_with_and_without_a_selection(
     whole = printed(capsys, "list")
     chosen = [*whole][3:0:-2]
     Path("chosen.txt").write_text("\n".join(chosen))
-    wanted = {one: whole[one] for one in whole if one in chosen}
+    wanted = {mutant: whole[mutant] for mutant in whole if mutant in chosen}
     assert printed(capsys, "list", "--only", "@chosen.txt") == wanted
     assert printed(capsys, "run", "--only", "@chosen.txt") == wanted
     assert printed(capsys, "results") == wanted
     assert printed(capsys, "run") == whole
     shown = printed(capsys, "run", "--only", "@chosen.txt")
-    assert {one: shown[one] for one in wanted} == wanted
+    assert {mutant: shown[mutant] for mutant in wanted} == wanted
     assert printed(capsys, "list", "--only", "2,4") == wanted
 
 

@@ -20,10 +20,10 @@ def no_project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_all_operators_are_there_family_by_family(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["operators", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)["operators"]
-    assert sorted(one["name"] for one in found) == sorted([*operators.names(), *operators_of_packages()])
-    families = [one["family"] for one in found]
+    assert sorted(rule["name"] for rule in found) == sorted([*operators.names(), *operators_of_packages()])
+    families = [rule["family"] for rule in found]
     assert len([*dict.fromkeys(families)]) == sum(
-        one != other for one, other in zip([None, *families], families, strict=False)
+        first != second for first, second in zip([None, *families], families, strict=False)
     )
 
 
@@ -38,7 +38,7 @@ def test_one_family_says_what_each_stands_for_and_where(capsys: pytest.CaptureFi
 
 def test_published_operators_name_the_rows_that_they_make(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["operators", "--family", "robot", "--json"]) == 0
-    found = {one["name"]: one for one in json.loads(capsys.readouterr().out)["operators"]}
+    found = {operator["name"]: operator for operator in json.loads(capsys.readouterr().out)["operators"]}
     assert found["repeat"]["source"] == "Published operators: 8. do command x → do command x twice."
     assert found["repeat"]["where"]
 

@@ -61,7 +61,9 @@ def test_ladders_are_in_no_score_and_their_magnitudes_need_not_be_run(tmp_path: 
     assert both.groups == alone.groups
     assert both.all == alone.all
     assert (both.planned, both.done) == (alone.planned, alone.done)
-    assert [one.mutant.id for one in both.survivors] == [one.mutant.id for one in alone.survivors]
+    assert [survivor.mutant.id for survivor in both.survivors] == [
+        survivor.mutant.id for survivor in alone.survivors
+    ]
     assert (both.ladders, len(both.graded), len(both.everything)) == (1, 7, 12)
 
 

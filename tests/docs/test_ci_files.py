@@ -210,15 +210,15 @@ def steps_of_github(site: Site, job: dict[str, Any], folder: Path, *, base: str 
             site.run(step["run"], folder, **known, **environment)
         elif action.startswith("actions/upload-artifact"):
             paths = [Path(path) for path in filled(given["path"]).split()]
-            files = [one for path in paths for one in (folder / path.parent).glob(path.name)]
+            files = [found_path for path in paths for found_path in (folder / path.parent).glob(path.name)]
             assert files
             for file in files:
                 to = store / filled(given["name"]) / file.name
                 to.parent.mkdir(parents=True, exist_ok=True)
                 shutil.copytree(file, to) if file.is_dir() else shutil.copy(file, to)
         elif action.startswith("actions/download-artifact"):
-            for one in store.glob(given["pattern"]):
-                shutil.copytree(one, Path(filled(given["path"])) / one.name)
+            for source in store.glob(given["pattern"]):
+                shutil.copytree(source, Path(filled(given["path"])) / source.name)
         elif action.startswith("actions/cache/save"):
             shutil.copytree(filled(given["path"]), store / "cache")
         elif action.startswith("actions/cache/restore") and (store / "cache").is_dir():

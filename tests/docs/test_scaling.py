@@ -56,7 +56,7 @@ def test_no_mutant_is_lost_and_all_time_is_accounted_for(engine: str, workers: i
 def test_without_chance_and_overhead_nothing_is_lost_on_one_worker() -> None:
     way = simulation.Way("replay", **EVEN)
     run = simulation.simulate(COSTS, way, 1, 100)
-    assert run.useful == pytest.approx(sum(one.seconds for one in simulation.units_of(COSTS, way, 1, 100)))
+    assert run.useful == pytest.approx(sum(unit.seconds for unit in simulation.units_of(COSTS, way, 1, 100)))
     assert run.lost == run.idle == 0.0
     assert run.ended == pytest.approx(simulation.alone(COSTS, "replay", 100))
 

@@ -58,7 +58,7 @@ def foreign(message: str) -> str:
     wanted = fragments(message)
     if max(map(len, wanted)) < 8:
         return f"{message!r}: too little of it to be found by"
-    missing = [[one for one in wanted if one not in texts] for texts in messages().values()]
+    missing = [[text for text in wanted if text not in texts] for texts in messages().values()]
     return (
         "" if [] in missing else f"no module has all of {wanted}; the nearest lacks {min(missing, key=len)}"
     )

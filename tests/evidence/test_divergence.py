@@ -157,6 +157,6 @@ def test_what_is_only_drawn_changes_nothing_of_a_difference() -> None:
 
 def test_what_is_only_drawn_changes_no_spread() -> None:
     runs = [recorded([*line(SHELF, (1.0, 0.0, z), 1.0)], [SHELF] * 10) for z in (0.02, 0.03)]
-    bare = spread_between([RecordedPaths(one) for one in runs])
-    drawn = [with_arm(one, height) for one, height in zip(runs, (0.1, 0.9), strict=True)]
-    assert spread_between([RecordedPaths(one) for one in drawn]) == bare
+    bare = spread_between([RecordedPaths(run) for run in runs])
+    drawn = [with_arm(run, height) for run, height in zip(runs, (0.1, 0.9), strict=True)]
+    assert spread_between([RecordedPaths(recording) for recording in drawn]) == bare

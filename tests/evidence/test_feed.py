@@ -138,7 +138,7 @@ def test_contacts_are_told_when_they_begin_and_end(recorder: WorldRecorder) -> N
     feed = fed(world)
     feed.contacts(lambda: [("box", "arm"), ("arm", "box")] if 0.3 < world.time < 0.6 else [])
     world.run(feed, 1.0)
-    assert [(one.what, one.text) for one in recorder.recording.moments] == [
+    assert [(moment.what, moment.text) for moment in recorder.recording.moments] == [
         ("touch", "arm, box"),
         ("part", "arm, box"),
     ]
@@ -189,7 +189,7 @@ def test_bodies_may_be_numbers(recorder: WorldRecorder) -> None:
     feed = fed(world)
     feed.contacts(lambda: [(7, 3)])  # type: ignore[list-item]  # what users may do
     world.run(feed, 0.2)
-    assert [one.text for one in recorder.recording.moments] == ["3, 7"]
+    assert [moment.text for moment in recorder.recording.moments] == ["3, 7"]
 
 
 def test_a_rate_of_nothing_is_refused() -> None:

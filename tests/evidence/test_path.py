@@ -40,7 +40,7 @@ def test_the_distance_from_a_line_is_that_of_its_nearest_point(point: Point, dis
 @settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(POINTS, some.tuples(*[some.floats(-2.0, 2.0)] * 3))
 def test_a_path_is_no_farther_than_any_of_its_points(points: list[Point], point: Point) -> None:
-    assert aside([point], points) <= min(dist(point, one) for one in points) + 1e-9
+    assert aside([point], points) <= min(dist(point, vertex) for vertex in points) + 1e-9
 
 
 def path_of(points: Sequence[Point], rate: float = 10.0) -> TrackPath:

@@ -41,7 +41,7 @@ def told(mutant: Recording, *runs: Recording) -> Diverged:
 
 
 def box_of(found: Diverged) -> float:
-    (box,) = (one.deviation for one in found.apart if one.name == "box")
+    (box,) = (deviation.deviation for deviation in found.apart if deviation.name == "box")
     return box
 
 
@@ -93,12 +93,12 @@ def test_a_contact_that_the_original_has_with_another_seed_is_no_news() -> None:
 
 
 @pytest.mark.parametrize(
-    ("unit", "one", "other"), [("deg", 180.0, -180.0), ("rad", 3.0, 3.0 - 6.283185307179586)]
+    ("unit", "first", "second"), [("deg", 180.0, -180.0), ("rad", 3.0, 3.0 - 6.283185307179586)]
 )
-def test_angles_are_the_same_a_full_turn_apart(unit: str, one: float, other: float) -> None:
-    assert difference_of(one, other, unit) == pytest.approx(0.0, abs=1e-9)
-    assert spread_of([one, other], unit) == pytest.approx(0.0, abs=1e-9)
-    assert difference_of(one, other, "m") > 6.0
+def test_angles_are_the_same_a_full_turn_apart(unit: str, first: float, second: float) -> None:
+    assert difference_of(first, second, unit) == pytest.approx(0.0, abs=1e-9)
+    assert spread_of([first, second], unit) == pytest.approx(0.0, abs=1e-9)
+    assert difference_of(first, second, "m") > 6.0
 
 
 def test_of_one_run_there_is_no_spread() -> None:
@@ -143,9 +143,9 @@ def test_what_turns_the_same_way_at_other_moments_is_not_turned_aside() -> None:
     usual = turning(*range(0, 180, 10))
     found = diverged("test", RecordedPaths(usual), RecordedPaths(turning(*range(5, 175, 10), 170)))
     assert found is not None
-    (one,) = (one for one in found.apart if one.name == "tool turned")
-    assert one.largest > 4.9
-    assert one.aside == pytest.approx(0.0, abs=0.2)
+    (turned,) = (deviation for deviation in found.apart if deviation.name == "tool turned")
+    assert turned.largest > 4.9
+    assert turned.aside == pytest.approx(0.0, abs=0.2)
 
 
 def test_turned_aside_is_the_angle_whatever_the_sign_of_the_quaternions() -> None:

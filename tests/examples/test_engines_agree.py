@@ -51,7 +51,7 @@ def test_each_fact_that_differs_is_a_disagreement(differential: ModuleType, fact
     key = (KILLED.mutant, KILLED.round)
     other = replace(KILLED, **{fact: value})
     found = differential.disagreements({key: KILLED}, {key: other})
-    assert [one.fact for one in found] == [fact]
+    assert [disagreement.fact for disagreement in found] == [fact]
 
 
 def test_what_an_outcome_cost_is_no_disagreement(differential: ModuleType) -> None:
@@ -64,5 +64,5 @@ def test_an_outcome_that_only_one_engine_has_is_a_disagreement(differential: Mod
     key = (KILLED.mutant, KILLED.round)
     found = differential.disagreements({key: KILLED}, {})
     assert {"verdict": ("killed", "no outcome")}.items() <= {
-        one.fact: (one.fork, one.replay) for one in found
+        disagreement.fact: (disagreement.fork, disagreement.replay) for disagreement in found
     }.items()

@@ -39,10 +39,10 @@ def ends(tmp_path_factory: pytest.TempPathFactory) -> dict[str, set[Verdict]]:
     )  # fmt: skip
     found: dict[str, set[Verdict]] = {}
     with Journal.open(run_campaign(request, Quiet())) as journal:
-        mutants = {one.id: one for one in journal.mutants()}
-        for one in journal.outcomes():
-            mutant = mutants[one.mutant]
-            found.setdefault(mutant.moment.text if mutant.moment else "", set()).add(one.verdict)
+        mutants = {candidate.id: candidate for candidate in journal.mutants()}
+        for outcome in journal.outcomes():
+            mutant = mutants[outcome.mutant]
+            found.setdefault(mutant.moment.text if mutant.moment else "", set()).add(outcome.verdict)
     return found
 
 

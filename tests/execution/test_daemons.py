@@ -107,7 +107,7 @@ def test_a_daemon_that_a_mutant_starts_is_gone_and_told(engine: str, tmp_path: P
     progress = Quiet()
     request = request_for(folder, engine=engine, rounds=1, only=("reverse", "skip"))
     found = outcomes(run_campaign(request, progress))
-    assert engine == "auto" or {one.engine for one in found} == {engine}
+    assert engine == "auto" or {outcome.engine for outcome in found} == {engine}
     check_gone(heartbeat)
     told = [line for line in progress.lines if "leave processes running" in line]
     assert len(told) == 1
@@ -176,7 +176,7 @@ def test_the_tests_see_no_orphans_of_theirs(tmp_path: Path, heartbeat: Path) -> 
         """
     folder = project(tmp_path, MISSION.replace("start_daemon()", "pass"), tests, heartbeat)
     found = outcomes(run_campaign(request_for(folder, engine="replay", rounds=1), Quiet()))
-    assert {one.verdict.value for one in found} == {"killed"}
+    assert {outcome.verdict.value for outcome in found} == {"killed"}
 
 
 def wait_until(is_so: object) -> None:

@@ -41,7 +41,7 @@ def command(folder: Path, soft: int, hard: int, *words: str) -> tuple[int, str]:
     return done.returncode, done.stderr
 
 
-SLOW = [pytest.param((one, "-j", "2"), marks=pytest.mark.whole) for one in ("check", "list")]
+SLOW = [pytest.param((name, "-j", "2"), marks=pytest.mark.whole) for name in ("check", "list")]
 
 
 @pytest.mark.parametrize("words", [("run", "-j", "2"), *SLOW])

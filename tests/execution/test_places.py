@@ -64,7 +64,9 @@ def test_a_fork_parent_begins_beside_a_token_for_each_other_that_has_ended_no_te
 
     def started(workers: Workers, task: Any) -> None:
         if task.is_fork_parent:
-            needed.append(sum(one.task.is_fork_parent and not one.result.ends for one in workers._workers))
+            needed.append(
+                sum(worker.task.is_fork_parent and not worker.result.ends for worker in workers._workers)
+            )
             assert spared[-1] == needed[-1]
         start(workers, task)
 
@@ -74,4 +76,4 @@ def test_a_fork_parent_begins_beside_a_token_for_each_other_that_has_ended_no_te
     path = run_campaign(request_for(folder, engine="fork", rounds=3, jobs=jobs), Quiet())
     assert len(needed) == 3
     with JournalReader.open(path) as journal:
-        assert {one.round for one in journal.outcomes()} == {0, 1, 2}
+        assert {outcome.round for outcome in journal.outcomes()} == {0, 1, 2}

@@ -59,7 +59,9 @@ def test_nothing_is_left(tmp_path: Path) -> None:
     pids = [int(line) for line in numbers.read_text("ascii").splitlines()]
     numbers.unlink()
     # the worker was killed: nobody in it cleared up
-    assert any(one.verdict is Verdict.ERROR for one in found), [(one.verdict, one.message) for one in found]
+    assert any(outcome.verdict is Verdict.ERROR for outcome in found), [
+        (outcome.verdict, outcome.message) for outcome in found
+    ]
     assert len(pids) > 4
     assert not any(map(is_alive, pids))
 

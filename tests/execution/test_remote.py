@@ -40,9 +40,9 @@ class Here:
         self.ran: list[Task] = []
 
     def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Event]]:
-        for one in tasks:
-            self.ran.append(one)
-            yield Result(one, log="here")
+        for given in tasks:
+            self.ran.append(given)
+            yield Result(given, log="here")
 
 
 class There(RemoteExecutor):
@@ -56,9 +56,9 @@ class There(RemoteExecutor):
         self._end = end
 
     def answers(self, tasks: Iterator[Task]) -> Iterator[Answer | Task]:
-        for one in tasks:
-            found = self._end(one)
-            yield found or one
+        for given in tasks:
+            found = self._end(given)
+            yield found or given
             if found is None:
                 return
 
@@ -68,7 +68,7 @@ def answer(task: Task) -> Answer:
 
 
 def where(found: Iterable[Result | tuple[Task, Event]]) -> dict[str, str]:
-    return {one.task.key: one.log for one in found if isinstance(one, Result)}
+    return {event.task.key: event.log for event in found if isinstance(event, Result)}
 
 
 def test_the_original_and_what_nothing_may_run_beside_stay_here() -> None:
@@ -76,7 +76,7 @@ def test_the_original_and_what_nothing_may_run_beside_stay_here() -> None:
     tasks = [task("mutant", mutant(1)), task("original", None), task("alone", mutant(1), alone=True)]
     found = list(there.events(tasks))
     assert where(found) == {"mutant": "there", "original": "here", "alone": "here"}
-    assert [one[0].key for one in found if not isinstance(one, Result)] == ["mutant"]
+    assert [event[0].key for event in found if not isinstance(event, Result)] == ["mutant"]
 
 
 def test_no_other_machine_is_asked_for_the_original() -> None:
@@ -95,11 +95,11 @@ def test_of_forks_that_a_wall_clock_ended_there_only_these_are_run_again_here() 
     died = [ForkDied(mutant(1).id, "a", -9, overdue="1 s"), ForkDied(mutant(2).id, "a", -9)]
     there = There(lambda task: Answer([*died], Result(task, log="there")))
     found = list(there.events([fork_parent()]))
-    assert [one[1] for one in found if not isinstance(one, Result)] == [died[1]]
+    assert [event[1] for event in found if not isinstance(event, Result)] == [died[1]]
     assert where(found) == {"forks": "here"}
     (again,) = there.here.ran
     assert again.job.forking is not None
-    assert [one.id for one in again.job.forking.mutants] == [mutant(1).id]
+    assert [candidate.id for candidate in again.job.forking.mutants] == [mutant(1).id]
 
 
 def test_what_other_machines_give_back_or_do_not_take_runs_here() -> None:

@@ -115,7 +115,9 @@ GARBAGE = """
 """
 
 
-INTO_REPORT, INTO_PIPES = (GARBAGE.replace("{is_reported}", str(one)) for one in (True, False))
+INTO_REPORT, INTO_PIPES = (
+    GARBAGE.replace("{is_reported}", str(is_reported)) for is_reported in (True, False)
+)
 
 
 def project(folder: Path, harm: str = "pass") -> Path:
@@ -125,17 +127,19 @@ def project(folder: Path, harm: str = "pass") -> Path:
 def run(folder: Path, **changes: object) -> tuple[dict[str, Outcome], Quiet, Path]:
     told = Quiet()
     path = run_campaign(request_for(folder, **changes), told)
-    return {one.mutant: one for one in outcomes(path)}, told, path
+    return {outcome.mutant: outcome for outcome in outcomes(path)}, told, path
 
 
 def ends(found: dict[str, Outcome]) -> dict[str, object]:
-    return {name: (one.verdict, one.by, one.test, one.message) for name, one in found.items()}
+    return {
+        name: (outcome.verdict, outcome.by, outcome.test, outcome.message) for name, outcome in found.items()
+    }
 
 
 @pytest.fixture(scope="module")
 def harmless(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Outcome]:
     found, _, _ = run(project(tmp_path_factory.mktemp("harmless")))
-    assert {one.verdict for one in found.values()} >= {Verdict.KILLED, Verdict.SURVIVED}
+    assert {outcome.verdict for outcome in found.values()} >= {Verdict.KILLED, Verdict.SURVIVED}
     return found
 
 
@@ -324,12 +328,14 @@ def test_what_a_mutant_does_to_descriptors_touches_no_other(tmp_path: Path, engi
     """
     folder = write_project(tmp_path, moves, tests, robot=robot, vocabulary=vocabulary)
     path = run_campaign(request_for(folder, engine=engine, only=("*:reverse", "*:skip")), Quiet())
-    found = {one.mutant: one for one in outcomes(path)}
+    found = {outcome.mutant: outcome for outcome in outcomes(path)}
     harmful = {name for name in found if name.endswith("reverse")}
     assert len(harmful) == len(DEEDS)
     assert {found[name].verdict for name in harmful} <= {Verdict.KILLED, Verdict.ERROR}
     others = [found[name] for name in sorted(found.keys() - harmful)]
-    assert [(one.verdict, one.engine, one.test, (one.message or "")[:14]) for one in others] == [
+    assert [
+        (outcome.verdict, outcome.engine, outcome.test, (outcome.message or "")[:14]) for outcome in others
+    ] == [
         (Verdict.KILLED, engine.replace("auto", "fork"), f"tests/test_mission.py::test_{n}", "assert 0.0 == ")
         for n in range(len(STEPS))
     ]

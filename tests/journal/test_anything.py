@@ -84,7 +84,7 @@ def damage(connection: sqlite3.Connection, chance: random.Random) -> set[tuple[s
     """Put anything into one row; returns which it was and is: table, and its first two columns."""
     table = chance.choice(["outcome", "outcome", "mutant", "kept", "meta", *columns()])
     names_of = columns()[table]
-    names = ", ".join(f'"{one}"' for one in names_of)
+    names = ", ".join(f'"{name}"' for name in names_of)
     rows = connection.execute(f"SELECT rowid, {names} FROM {table}").fetchall()
     row, *values = chance.choice(rows)
     index = chance.randrange(len(names_of))
@@ -139,8 +139,8 @@ def read_all(path: Path) -> None:
     thresholds_of(found)
     console = make_console()
     print_results(console, found)
-    for one in found.everything:
-        print_mutant(console, found.mutant(one.mutant.id), lambda _: samples.PROGRAM)
+    for result in found.everything:
+        print_mutant(console, found.mutant(result.mutant.id), lambda _: samples.PROGRAM)
 
 
 def written_as(name: str) -> Callable[[Path], None]:
@@ -154,21 +154,21 @@ def written_as(name: str) -> Callable[[Path], None]:
 def test_rows_may_hold_anything(whole: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     chance = random.Random(SEED)
     ways = [read_all, read_all, *(written_as(name) for name in names())]
-    expected = {(one.mutant, one.round): one for one in samples.OUTCOMES}
+    expected = {(end.mutant, end.round): end for end in samples.OUTCOMES}
     path = tmp_path / "journal.sqlite"
     for number in range(TIMES):
         touched = damaged(whole, path, chance)
         try:
             with JournalReader.open(path) as journal:
-                found = {(one.mutant, one.round): one for one in journal.outcomes()}
+                found = {(end.mutant, end.round): end for end in journal.outcomes()}
                 rows = {
                     row for table, *row in map(list, touched) if table == "outcome" for row in [tuple(row)]
                 }
                 for pair, outcome in expected.items():
                     assert pair in rows or found.get(pair) == outcome
                 plan = {row[1] for row in touched if row[0] == "mutant"}
-                ids = {one.id for one in journal.mutants()}
-                assert {one.id for one in samples.MUTANTS} - ids <= plan
+                ids = {mutant.id for mutant in journal.mutants()}
+                assert {mutant.id for mutant in samples.MUTANTS} - ids <= plan
             use(path, number, ways)
         except Exception as error:
             error.add_note(f"{number}: {touched}")

@@ -42,11 +42,14 @@ def test_everything_that_is_written_is_read_back_equal(path: Path) -> None:
         assert journal.finished == "complete"
         assert journal.source("mission.py") == samples.PROGRAM
         assert journal.source("other.py") is None
-        assert [(one.round, one.test.test) for one in journal.tests()] == [
+        assert [(test.round, test.test.test) for test in journal.tests()] == [
             (0, samples.TEST),
             (1, samples.TEST),
         ]
-        assert {(one.control, one.ok) for one in journal.controls()} == {("identity", True), ("fatal", True)}
+        assert {(control.control, control.ok) for control in journal.controls()} == {
+            ("identity", True),
+            ("fatal", True),
+        }
 
 
 def test_the_last_outcome_of_a_mutant_in_a_round_wins(path: Path) -> None:
@@ -232,7 +235,7 @@ def test_texts_that_are_no_utf_8_are_stored_and_found_again(path: Path) -> None:
         journal.add_tests([BaselineTest(0, 0, TestEnd("t\udcff", "passed"))])
         journal.set_plan([], [], sources={"mission\udcff.py": "x = '\udcff'"})
     with Journal.open(path) as reader:
-        assert [one.mutant for one in reader.outcomes()] == ["mission\\udcff.py"]
+        assert [outcome.mutant for outcome in reader.outcomes()] == ["mission\\udcff.py"]
         assert reader.outcomes()[0].example == (1, "\\udcfe")
         assert reader.source("mission\udcff.py") == "x = '\\udcff'"
         assert reader.tests()[0].test.test == "t\\udcff"
@@ -396,7 +399,7 @@ def test_a_read_only_folder_can_be_read_and_says_so_when_written(readable_by_all
     path = readable_by_all / "journal.sqlite"
     journal = Journal.create(path, meta={})
     journal.add_outcome(KILLED)
-    kept = {one.name: one.read_bytes() for one in readable_by_all.iterdir()}
+    kept = {entry.name: entry.read_bytes() for entry in readable_by_all.iterdir()}
     journal.close()
     if killed:  # as a writer leaves it that has no time to tidy up
         for name, content in kept.items():

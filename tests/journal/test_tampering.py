@@ -216,7 +216,7 @@ def test_no_file_of_a_journal_is_mapped_into_memory(path: Path) -> None:
             assert reader.outcomes() == [KILLED]
         mapped = Path("/proc/self/maps").read_text("utf-8")
         assert str(path.parent) not in mapped
-        assert sorted(one.name for one in path.parent.iterdir() if "-shm" in one.name) == []
+        assert sorted(file.name for file in path.parent.iterdir() if "-shm" in file.name) == []
 
 
 def test_readers_change_nothing(path: Path) -> None:

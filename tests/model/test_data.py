@@ -168,7 +168,9 @@ def test_a_new_value_is_of_the_class_of_what_was_there(before: Any, value: Any, 
         assert found == after
         assert type(found) is type(after)
         if isinstance(after, list | tuple):
-            assert [type(one) for one in found] == [type(one) for one in after]
+            assert [type(found_value) for found_value in found] == [
+                type(expected_value) for expected_value in after
+            ]
 
 
 @pytest.mark.parametrize("number", [Fraction(10**400), Decimal("sNaN")])

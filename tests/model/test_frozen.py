@@ -80,14 +80,14 @@ def test_values_of_two_classes_are_not_equal() -> None:
 
 
 @pytest.mark.parametrize(
-    "again", [copy.copy, copy.deepcopy, lambda one: pickle.loads(pickle.dumps(one)), replace]
+    "again", [copy.copy, copy.deepcopy, lambda thing: pickle.loads(pickle.dumps(thing)), replace]
 )
 def test_copies_are_equal(again: Callable[[Thing], Thing]) -> None:
     assert again(Thing("a", (1.0,), note="n")) == Thing("a", (1.0,))
 
 
 def test_it_is_a_dataclass_with_slots_and_keeps_methods_of_its_own() -> None:
-    assert [one.name for one in fields(Thing)] == ["name", "sizes", "secret", "note"]
+    assert [attribute.name for attribute in fields(Thing)] == ["name", "sizes", "secret", "note"]
     assert not hasattr(Thing("a"), "__dict__")
     assert repr(Loud("a")) == "A"
     assert Loud("a") == Loud("a")
@@ -105,7 +105,7 @@ class More(Thing):
 
 
 def test_a_class_below_it_has_its_fields_first() -> None:
-    assert [one.name for one in fields(More)] == ["name", "sizes", "secret", "note", "count"]
+    assert [attribute.name for attribute in fields(More)] == ["name", "sizes", "secret", "note", "count"]
     assert repr(More("a", secret="hidden", count=2)) == "More(name='a', sizes=(1.0,), note='', count=2)"
     assert More("a") != Thing("a", (1.0,))
 
@@ -120,7 +120,7 @@ def test_a_class_without_an_object_is_a_dataclass_for_others() -> None:
         pass
 
     assert is_dataclass(Below)
-    assert [one.compare for one in fields(Late)] == [True, False]
+    assert [attribute.compare for attribute in fields(Late)] == [True, False]
     match Late("a", "b"):
         case Late(name, note):
             assert (name, note) == ("a", "b")

@@ -41,13 +41,13 @@ def changed(old: str, new: str, name: str = "mission.py") -> set[str]:
 
 
 def test_functions_are_units_but_for_those_with_decorators_that_nobody_knows() -> None:
-    one = file(TEXT)
-    assert set(one.said) == {"", "Arm.move", "far"}
-    lines = one.lines_of({"", "Arm.move"})
+    source_file = file(TEXT)
+    assert set(source_file.said) == {"", "Arm.move", "far"}
+    lines = source_file.lines_of({"", "Arm.move"})
     assert lines == (MODULE, 9)
-    assert one.names_at(lines) == {"", "Arm.move"}
-    assert one.names_at((WHOLE,)) is None
-    assert one.names_at((3,)) is None  # no unit begins there
+    assert source_file.names_at(lines) == {"", "Arm.move"}
+    assert source_file.names_at((WHOLE,)) is None
+    assert source_file.names_at((3,)) is None  # no unit begins there
 
 
 @pytest.mark.parametrize(
@@ -96,16 +96,16 @@ def test_who_reads_program_text_depends_on_all_of_the_file() -> None:
 
 
 def test_what_cannot_be_parsed_counts_whole() -> None:
-    one = file("def (:\n")
-    assert not one.is_python
-    assert one.names_at((MODULE,)) is None
-    assert one.lines_of({"x"}) == (WHOLE,)
+    source_file = file("def (:\n")
+    assert not source_file.is_python
+    assert source_file.names_at((MODULE,)) is None
+    assert source_file.lines_of({"x"}) == (WHOLE,)
 
 
 def test_a_file_keeps_no_syntax_tree() -> None:
-    one = file("def only_here():\n    pass\n")
-    assert one.is_python
-    assert "only_here" in one.said
+    source_file = file("def only_here():\n    pass\n")
+    assert source_file.is_python
+    assert "only_here" in source_file.said
     kept = (node for node in gc.get_objects() if isinstance(node, ast.FunctionDef))
     assert not any(node.name == "only_here" for node in kept)
 

@@ -12,7 +12,7 @@ from mutabot.model.quantity import same
 
 
 @pytest.mark.parametrize(
-    ("one", "other", "expected"),
+    ("first", "second", "expected"),
     [
         (0.1 + 0.2, 0.3, True),
         (-1.27e-14, 0.0, True),
@@ -27,5 +27,5 @@ from mutabot.model.quantity import same
         (None, 0.0, False),
     ],
 )
-def test_values_are_the_same_up_to_rounding(one: Any, other: Any, expected: bool) -> None:
-    assert same(one, other) is expected
+def test_values_are_the_same_up_to_rounding(first: Any, second: Any, expected: bool) -> None:
+    assert same(first, second) is expected

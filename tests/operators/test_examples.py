@@ -48,7 +48,7 @@ def play(name: str, example: Example) -> CallRecord:
         )  # fmt: skip
 
     for earlier in example.earlier:
-        sides = ({one.name for one in side} for side in (subject.written, subject.read))
+        sides = ({quantity.name for quantity in side} for side in (subject.written, subject.read))
         go(*({name: earlier[name] for name in side if name in earlier} for side in sides))
     return go(example.values, example.replied)
 
@@ -89,13 +89,17 @@ def test_the_example_does_what_it_says(name: str, index: int) -> None:
 
 
 def test_every_operator_shows_where_it_acts() -> None:
-    acting = {name for name in names() if any(not one.away for one in operator(name).examples)}
+    acting = {name for name in names() if any(not example.away for example in operator(name).examples)}
     assert {name for name in names() if name not in acting or not operator(name).summary} == set()
 
 
 def test_operators_on_values_show_where_they_stay_away() -> None:
-    on_values = {name for name in names() if any(one.subject.quantity for one in operator(name).examples)}
-    assert {name for name in on_values if not any(one.away for one in operator(name).examples)} == set()
+    on_values = {
+        name for name in names() if any(example.subject.quantity for example in operator(name).examples)
+    }
+    assert {
+        name for name in on_values if not any(example.away for example in operator(name).examples)
+    } == set()
 
 
 @pytest.mark.parametrize("name", [name for name in names() if operator(name).family == CATALOGUE])
@@ -121,7 +125,10 @@ def test_who_never_makes_the_call_promises_it() -> None:
     silent = {
         name
         for name in names()
-        if all(not one.away and not one.performed and not one.afterwards for one in operator(name).examples)
+        if all(
+            not example.away and not example.performed and not example.afterwards
+            for example in operator(name).examples
+        )
     }
     assert {name for name in names() if operator(name).does_nothing} == silent
 

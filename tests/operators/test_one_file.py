@@ -92,23 +92,23 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def of_both_families(site: Path, folder: Path, *arguments: str) -> dict[str, Any]:
     found = mutants(site, folder, *arguments, "--family", "robot,conventional")
-    return {name.removeprefix("mission.py:run:"): one for name, one in found.items()}
+    return {name.removeprefix("mission.py:run:"): value for name, value in found.items()}
 
 
 def test_both_come_last_in_the_plan_and_the_others_keep_their_order(site: Path, tmp_path: Path) -> None:
     write_project(tmp_path, MISSION, TESTS)
     found = of_both_families(site, tmp_path, "list")
-    names = [one["operator"] for one in found.values()]
+    names = [mutant["operator"] for mutant in found.values()]
     assert [*dict.fromkeys(names)] == ["reverse", "skip", "repeat", "bit-off", "thrice", "BSR", "UOI", "CZR"]
-    assert {one["family"] for one in found.values() if one["operator"] == "bit-off"} == {"robot"}
-    assert {one["family"] for one in found.values() if one["operator"] == "CZR"} == {"conventional"}
+    assert {mutant["family"] for mutant in found.values() if mutant["operator"] == "bit-off"} == {"robot"}
+    assert {mutant["family"] for mutant in found.values() if mutant["operator"] == "CZR"} == {"conventional"}
 
 
 def test_both_get_verdicts(site: Path, tmp_path: Path) -> None:
     write_project(tmp_path, MISSION, TESTS)
     only = (word for name in ("bit-off", "thrice", "CZR") for word in ("--only", name))
     found = of_both_families(site, tmp_path, "run", *only, "-o", "repeats=false")
-    verdicts = {name: one["rounds"][0]["verdict"] for name, one in found.items()}
+    verdicts = {name: mutant["rounds"][0]["verdict"] for name, mutant in found.items()}
     assert verdicts == {
         "arm.move_by#1:dx:bit-off=0.001": "survived",
         "arm.move_by#1:dx:bit-off=0.5": "killed",

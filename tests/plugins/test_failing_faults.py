@@ -171,6 +171,6 @@ def test_such_a_fault_is_an_error_and_no_kill(tmp_path: Path) -> None:
     project = write(tmp_path / "project", {**PROJECT, "world.py": PROJECT["world.py"] + "wind = 0.0\n"})
     done = mutabot(site, project, "run", "--json", "-o", "repeats=false")
     assert done.returncode == ERRORS, done.stderr
-    found = {name: one["rounds"][0] for name, one in by_parameter(json.loads(done.stdout)).items()}
-    assert {name: one["verdict"] for name, one in found.items()} == dict.fromkeys(WRONG, "error")
-    assert all("parameter " in one["message"] for one in found.values())
+    found = {name: mutant["rounds"][0] for name, mutant in by_parameter(json.loads(done.stdout)).items()}
+    assert {name: end["verdict"] for name, end in found.items()} == dict.fromkeys(WRONG, "error")
+    assert all("parameter " in end["message"] for end in found.values())

@@ -123,7 +123,7 @@ def project(tmp_path: Path) -> Path:
 
 
 def by_parameter(found: dict[str, Any]) -> dict[str, dict[str, Any]]:
-    return {one["id"].partition(":")[2].partition(":")[0]: one for one in found["mutants"]}
+    return {mutant["id"].partition(":")[2].partition(":")[0]: mutant for mutant in found["mutants"]}
 
 
 @pytest.mark.whole
@@ -132,8 +132,8 @@ def test_parameters_get_verdicts(engine: str, site: Path, project: Path) -> None
     done = mutabot(site, project, "run", "--json", "-o", "repeats=false", "--engine", engine)
     assert done.returncode == ERRORS, done.stderr
     found = by_parameter(json.loads(done.stdout))
-    rounds = {name: one["rounds"][0] for name, one in found.items()}
-    assert {name: one["verdict"] for name, one in rounds.items()} == {
+    rounds = {name: mutant["rounds"][0] for name, mutant in found.items()}
+    assert {name: end["verdict"] for name, end in rounds.items()} == {
         name: verdict for name, (_, verdict) in ENDS.items()
     }
     assert found["gravity"]["id"] == "world:gravity:parameter=5"
@@ -143,7 +143,11 @@ def test_parameters_get_verdicts(engine: str, site: Path, project: Path) -> None
     assert (rounds["mass"]["hits"], rounds["mass"]["acted"]) == (3, 0)
     assert rounds["mass"]["message"] == "the site was reached, but no value changed"
     assert "parameter cannot be put in place: AttributeError" in rounds["wind"]["message"]
-    reports = [["results"], ["show", "1"], *(["report", "--format", one] for one in FORMATS)]
+    reports = [
+        ["results"],
+        ["show", "1"],
+        *(["report", "--format", report_format] for report_format in FORMATS),
+    ]
     every = (
         "import sys; from mutabot.cli.app import main; sys.exit([main(words) for words in %r] != [0] * %d)"
     )
@@ -167,7 +171,7 @@ def test_what_only_forks_may_judge_is_handed_on_with_the_reason(tmp_path: Path, 
 
 def test_its_operators_are_listed_and_its_family_is_known(site: Path, project: Path) -> None:
     done = mutabot(site, project, "operators", "--family", "toys", "--json")
-    assert [one["name"] for one in json.loads(done.stdout)["operators"]] == ["parameter"]
+    assert [operator["name"] for operator in json.loads(done.stdout)["operators"]] == ["parameter"]
     unknown = mutabot(None, project, "list")
     assert unknown.returncode == USAGE
     assert "unknown family 'toys'" in unknown.stderr
@@ -205,4 +209,4 @@ def test_mutants_of_calls_need_nothing_that_parses_program_text(project: Path) -
         "assert 'libcst' not in sys.modules\nsys.exit(code)"
     )
     done = python(None, "-c", code, "-C", str(project), "run", "--json", "--only", "negate")
-    assert [one["operator"] for one in json.loads(done.stdout)["mutants"]] == ["negate"], done.stderr
+    assert [mutant["operator"] for mutant in json.loads(done.stdout)["mutants"]] == ["negate"], done.stderr

@@ -143,18 +143,20 @@ def rounds(folder: Path, site: Path, *options: str) -> dict[str, dict[str, Any]]
     """How each mutant ended, by its magnitude."""
     done = mutabot(site, folder, "run", "--json", "--fresh", *options)
     assert done.returncode == 0, done.stderr
-    return {one["id"].rpartition("=")[2]: one["rounds"][0] for one in json.loads(done.stdout)["graded"]}
+    return {
+        mutant["id"].rpartition("=")[2]: mutant["rounds"][0] for mutant in json.loads(done.stdout)["graded"]
+    }
 
 
 @pytest.mark.parametrize("engine", ["fork", pytest.param("replay", marks=pytest.mark.whole)])
 def test_a_fault_begins_at_its_simulated_time(engine: str, tmp_path: Path) -> None:
     site, project = installed(tmp_path), write(tmp_path / "project", PROJECT)
     found = rounds(project, site, "--engine", engine)
-    assert {size: (one["verdict"], one["engine"]) for size, one in found.items()} == {
+    assert {size: (end["verdict"], end["engine"]) for size, end in found.items()} == {
         "0.05": ("survived", engine), "0.5": ("killed", engine),
     }  # fmt: skip
     assert found["0.5"]["test"] == "tests/test_mission.py::test_a_long_way"
-    assert {one["acted"] for one in found.values()} == {1}
+    assert {end["acted"] for end in found.values()} == {1}
 
 
 #: an engine, and what the fault awaits
@@ -187,7 +189,7 @@ BELOW = {
     ("engine", "awaits"),
     [
         ("fork", "'belt'"),
-        *(pytest.param(*one, marks=pytest.mark.whole) for one in WAYS if one != ("fork", "'belt'")),
+        *(pytest.param(*way, marks=pytest.mark.whole) for way in WAYS if way != ("fork", "'belt'")),
     ],
 )
 def test_a_process_below_the_tests_has_the_fault_when_it_has_what_that_needs(
@@ -196,7 +198,7 @@ def test_a_process_below_the_tests_has_the_fault_when_it_has_what_that_needs(
     head = "import sys; assert 'belt' in sys.modules, 'the simulator is not there yet'"
     site, project = installed(tmp_path, head, awaits), write(tmp_path / "project", BELOW)
     found = rounds(project, site, "--engine", engine)
-    assert {size: (one["verdict"], one["engine"]) for size, one in found.items()} == {
+    assert {size: (end["verdict"], end["engine"]) for size, end in found.items()} == {
         "0.05": ("survived", engine), "0.5": ("killed", engine),
     }  # fmt: skip
 
@@ -214,7 +216,7 @@ def test_a_fault_that_needs_a_simulator_waits_until_the_program_has_imported_it(
     head = "import sys; assert 'belt' in sys.modules, 'the simulator is not there yet'"
     project = write(tmp_path / "project", PROJECT)
     found = rounds(project, installed(tmp_path / "site", head, "'belt'"), "--engine", "replay")
-    assert {size: one["verdict"] for size, one in found.items()} == {"0.05": "survived", "0.5": "killed"}
+    assert {size: end["verdict"] for size, end in found.items()} == {"0.05": "survived", "0.5": "killed"}
 
 
 DEMAND = """
@@ -230,11 +232,11 @@ def test_a_demanded_magnitude_of_a_package_is_planted_searched_and_judged(tmp_pa
     demanding = {"pyproject.toml": dedent(configuration) + DEMAND % "friction"}
     project = write(tmp_path / "project", {**PROJECT, **demanding})
     done = mutabot(installed(tmp_path), project, "run", "--json")
-    found = {one["magnitude"]: one for one in json.loads(done.stdout)["graded"]}
-    verdicts = {size: one["rounds"][0]["verdict"] for size, one in found.items()}
+    found = {graded["magnitude"]: graded for graded in json.loads(done.stdout)["graded"]}
+    verdicts = {size: mutant["rounds"][0]["verdict"] for size, mutant in found.items()}
     assert verdicts == {0.05: "survived", 0.2: "survived", 0.5: "killed"}
     assert found[0.2]["description"] == "friction is 0.2 less from 1 s on"
-    assert [one["number"] for one in found.values()] == [1, 2, 3]
+    assert [graded["number"] for graded in found.values()] == [1, 2, 3]
     assert done.returncode == SCORE_TOO_LOW
     assert "survives 0.2 in round 1 (mutant 2)" in done.stderr
     told = json.loads(mutabot(tmp_path / "site", project, "thresholds", "--json").stdout)
@@ -262,8 +264,8 @@ def test_moments_are_for_operators_that_have_some(has_moments: bool, tmp_path: P
     done = mutabot(site, project, "list", "--json", "-o", "when=['from 2', 'once']")
     found = json.loads(done.stdout)
     ids = [f"belt:friction:slip={size}{'@from 2' if has_moments else ''}" for size in ("0.05", "0.5")]
-    assert [one["id"] for one in found["mutants"]] == ids
-    reasons = {one["reason"] for one in found["left_out"]}
+    assert [mutant["id"] for mutant in found["mutants"]] == ids
+    reasons = {omission["reason"] for omission in found["left_out"]}
     unknown = {"how often a test reaches it is not known, so that no moment can be drawn"}
     assert reasons == (unknown if has_moments else set())
     is_told = "mutants of world act wherever they are reached: moments are those of calls" in done.stderr

@@ -132,21 +132,21 @@ def project(tmp_path: Path) -> Path:
 def mutants(site: Path, project: Path, *options: str) -> dict[str, Any]:
     done = mutabot(site, project, "run", "-o", "repeats=false", "--json", *options)
     assert done.returncode == 0, done.stderr
-    return {one["id"]: one for one in json.loads(done.stdout)["mutants"]}
+    return {mutant["id"]: mutant for mutant in json.loads(done.stdout)["mutants"]}
 
 
 def test_its_lines_are_sites_with_verdicts(project: Path, tmp_path: Path) -> None:
     site = write(tmp_path / "site", PACKAGE)
     found = mutants(site, project, "--only", "*skip", "--only", "*reverse")
-    verdicts = {name: one["rounds"][0]["verdict"] for name, one in found.items()}
+    verdicts = {name: mutant["rounds"][0]["verdict"] for name, mutant in found.items()}
     assert verdicts == {
         f"mission.STEPS:steps:move#{number}:{rule}": "killed"
         for number in (1, 2)
         for rule in ("dx:reverse", "call:skip")
     }
     # columns of the JSON are those of editors, which begin with 1
-    spans = {name.split(":")[2]: one["span"] for name, one in found.items()}
-    assert {name: (one["line"], one["end_column"]) for name, one in spans.items()} == {
+    spans = {name.split(":")[2]: mutant["span"] for name, mutant in found.items()}
+    assert {name: (span["line"], span["end_column"]) for name, span in spans.items()} == {
         "move#1": (1, 10), "move#2": (3, 11),
     }  # fmt: skip
     report = json.loads(mutabot(site, project, "report", "--format", "mutation-testing").stdout)
@@ -157,8 +157,8 @@ def test_its_lines_are_sites_with_verdicts(project: Path, tmp_path: Path) -> Non
 def test_its_text_has_mutants_of_the_package(engine: str, project: Path, tmp_path: Path) -> None:
     site = write(tmp_path / "site", PACKAGE)
     found = mutants(site, project, "-o", "families=['steps']", "--engine", engine)
-    assert {one["rounds"][0]["engine"] for one in found.values()} == {engine}
-    assert {one["description"]: one["rounds"][0]["verdict"] for one in found.values()} == {
+    assert {mutant["rounds"][0]["engine"] for mutant in found.values()} == {engine}
+    assert {mutant["description"]: mutant["rounds"][0]["verdict"] for mutant in found.values()} == {
         "without move 0.25": "killed", "without say Grüße": "survived", "without move 0.125": "killed",
     }  # fmt: skip
     assert (project / "mission.STEPS").read_bytes() == MISSION.encode("latin-1")

@@ -234,7 +234,7 @@ def mutabot(site: Path, project: Path, *arguments: str, code: str = "") -> subpr
 def verdicts(done: subprocess.CompletedProcess[str]) -> dict[str, Any]:
     assert done.returncode == 0, done.stderr
     found = json.loads(done.stdout)["mutants"]
-    ends = {one["id"].partition(":")[2]: one["rounds"][0] for one in found}
+    ends = {mutant["id"].partition(":")[2]: mutant["rounds"][0] for mutant in found}
     return {name: (end["verdict"], end["by"]) for name, end in ends.items()}
 
 

@@ -23,7 +23,7 @@ steps = test_languages.project
 
 def files() -> dict[str, str]:
     """The files of the package by path: each block of the page whose first line names one."""
-    blocks = (one.text.partition("\n") for one in pages.blocks(PAGE.read_text(encoding="utf-8")))
+    blocks = (block.text.partition("\n") for block in pages.blocks(PAGE.read_text(encoding="utf-8")))
     return {first.removeprefix("# "): text for first, _, text in blocks if first.startswith("# ")}
 
 
@@ -56,7 +56,7 @@ def test_its_operator_executor_and_format_are_at_work(installed: Path, project: 
     assert creep["description"] == "robot.distance: reads result 0.155 m instead of 0.15 m"
     assert creep["rounds"][0]["verdict"] == "killed"
     told = mutabot(installed, project, "report", "--format", "survivors").stdout
-    survivors = {name for name, one in found.items() if one["rounds"][0]["verdict"] == "survived"}
+    survivors = {name for name, mutant in found.items() if mutant["rounds"][0]["verdict"] == "survived"}
     assert len(told.splitlines()) == len(survivors) > 0
 
 

@@ -133,8 +133,8 @@ def test_patches_of_several_files_are_judged_and_the_users_files_stay(tmp_path: 
     before = {file: file.read_bytes() for file in project.rglob("*.*") if file.is_file()}
     done = mutabot(site, project, "run", "--json", "-o", "repeats=false")
     assert done.returncode == ERRORS, done.stderr
-    found = {one["description"]: one["rounds"][0] for one in json.loads(done.stdout)["mutants"]}
-    assert {name: (one["verdict"], one["test"]) for name, one in found.items()} == {
+    found = {mutant["description"]: mutant["rounds"][0] for mutant in json.loads(done.stdout)["mutants"]}
+    assert {name: (end["verdict"], end["test"]) for name, end in found.items()} == {
         "double": ("killed", "tests/test_move.py::test_fast"),
         "force": ("survived", None),
         "late": ("killed", "tests/test_move.py::test_slow"),
@@ -150,8 +150,8 @@ def test_patches_of_several_files_are_judged_and_the_users_files_stay(tmp_path: 
 
 def _check_reports(site: Path, project: Path) -> None:
     """All reports have every place of the patch of two files that survives; its number is 5."""
-    (found,) = [one for one in json.loads(mutabot(site, project, "results", "--json").stdout)["mutants"]
-                if one["description"] == "quiet"]  # fmt: skip
+    (found,) = [mutant for mutant in json.loads(mutabot(site, project, "results", "--json").stdout)["mutants"]
+                if mutant["description"] == "quiet"]  # fmt: skip
     assert found["id"] == "cell/limits.json:quiet:patch"
     places = [{"file": "cell/limits.json", "line": 1, "column": 1, "end_line": 1, "end_column": 30},
               {"file": "cell/move.py", "line": 4, "column": 1, "end_line": 4, "end_column": 26}]  # fmt: skip
@@ -166,19 +166,23 @@ def _check_reports(site: Path, project: Path) -> None:
     assert line.startswith("::warning file=cell/limits.json,line=1,endLine=1,col=1,endColumn=30,title=")
     assert "::quiet (also at cell/move.py:4): survived" in line
     (told,) = json.loads(mutabot(site, project, "report", "--format", "sarif").stdout)["runs"]
-    (result,) = [one for one in told["results"] if one["properties"]["number"] == 5]
-    regions = [one["physicalLocation"] for one in (*result["locations"], *result["relatedLocations"])]
-    assert [(one["artifactLocation"]["uri"], one["region"]["snippet"]["text"]) for one in regions] == [
+    (result,) = [finding for finding in told["results"] if finding["properties"]["number"] == 5]
+    regions = [
+        location["physicalLocation"] for location in (*result["locations"], *result["relatedLocations"])
+    ]
+    assert [
+        (region["artifactLocation"]["uri"], region["region"]["snippet"]["text"]) for region in regions
+    ] == [
         ("cell/limits.json", '{"speed": 2.0, "force": 10.0}'),
         ("cell/move.py", "    return clipped(speed)"),
     ]
     files = json.loads(mutabot(site, project, "report", "--format", "mutation-testing").stdout)["files"]
-    assert {name: one["language"] for name, one in files.items()} == {
+    assert {name: file["language"] for name, file in files.items()} == {
         "../elsewhere.py": "python", "cell/limits.json": "text", "cell/move.py": "python",
     }  # fmt: skip
     mutabot(site, project, "report", "--html", str(project / "page"))
     sources = (project / "page/data/sources.js").read_text(encoding="utf-8")
-    assert all(f'"{one["file"]}"' in sources for one in places)
+    assert all(f'"{place["file"]}"' in sources for place in places)
     assert '"cell/move.py","line":4' in (project / "page/data/campaign.js").read_text(encoding="utf-8")
 
 
@@ -204,7 +208,7 @@ def test_a_patch_is_chosen_by_each_of_its_files_and_lines(
     project = write(tmp_path / "project", PROJECT)
     done = mutabot(site, project, "list", "--json", *words)
     found = json.loads(done.stdout)["mutants"] if done.returncode == 0 else []
-    assert [one["description"] for one in found] == names, done.stderr
+    assert [mutant["description"] for mutant in found] == names, done.stderr
 
 
 def test_a_patch_is_accepted_until_its_line_changes(site: Path, tmp_path: Path) -> None:

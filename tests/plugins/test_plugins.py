@@ -278,7 +278,7 @@ def test_a_family_of_a_plug_ins_own_is_planted_where_it_is_asked_for(project: Pa
     configuration = project / "pyproject.toml"
     configuration.write_text(configuration.read_text() + 'families = ["wild"]\n')
     late = mutants(mutabot(site, project, "list", "--json"))
-    assert {name: one["family"] for name, one in late.items()} == {"late": "wild"}
+    assert {name: value["family"] for name, value in late.items()} == {"late": "wild"}
 
 
 @pytest.mark.parametrize("where", ["--family", "families"])

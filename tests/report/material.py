@@ -63,8 +63,8 @@ def with_text(campaign: mutabot.StoredCampaign, text: str) -> mutabot.StoredCamp
     """The same campaign with this text wherever a program, a test or a message can bring one."""
     return replace(
         campaign,
-        mutants=tuple(_mutant(one, text) for one in campaign.mutants),
-        left_out=tuple(LeftOut(one.id, text, text) for one in campaign.left_out),
+        mutants=tuple(_mutant(mutant, text) for mutant in campaign.mutants),
+        left_out=tuple(LeftOut(omission.id, text, text) for omission in campaign.left_out),
         flaky=replace(campaign.flaky, tests=(text,)),
         sources={file: "\n".join([text] * 3 + ["    " + text] * 3) for file in campaign.sources},
         operators=dict.fromkeys(campaign.operators, text),
@@ -80,9 +80,9 @@ def _mutant(result: MutantResult, text: str) -> MutantResult:
         why=text,
         rounds=tuple(
             replace(
-                one,
+                end,
                 mutant=mutant.id,
-                test=f"tests/test_a.py::test[{text}]" if one.test is not None else None,
+                test=f"tests/test_a.py::test[{text}]" if end.test is not None else None,
                 message=text,
                 exception=text,
                 place=text,
@@ -90,9 +90,9 @@ def _mutant(result: MutantResult, text: str) -> MutantResult:
                 gaps=(text,),
                 example=(text, [text]),
             )
-            if one is not None
+            if end is not None
             else None
-            for one in result.rounds
+            for end in result.rounds
         ),
     )
 

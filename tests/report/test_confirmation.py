@@ -17,7 +17,7 @@ from mutabot.report.terminal.mutant import print_mutant
 from report.material import made, stored
 from results import samples
 
-SURVIVORS = [one for one in samples.OUTCOMES if one.verdict is Verdict.SURVIVED]
+SURVIVORS = [outcome for outcome in samples.OUTCOMES if outcome.verdict is Verdict.SURVIVED]
 TEXT = (
     f"0 of {len(SURVIVORS)} survivors confirmed by the whole suite; "
     "how many of the others are wrong is not known"
@@ -25,7 +25,9 @@ TEXT = (
 
 
 def campaign(folder: Path, **changes: Any) -> Any:
-    outcomes = tuple(replace(one, **changes) if one in SURVIVORS else one for one in samples.OUTCOMES)
+    outcomes = tuple(
+        replace(outcome, **changes) if outcome in SURVIVORS else outcome for outcome in samples.OUTCOMES
+    )
     return stored(folder, outcomes=outcomes)
 
 
@@ -38,7 +40,7 @@ def on_terminal(found: Any, number: int) -> tuple[str, str]:
 
 def test_what_was_not_confirmed_is_told_in_all_of_them(tmp_path: Path) -> None:
     found = campaign(tmp_path, confirmed=False)
-    survivor = next(one for one in found.survivors if one.outcomes[0].confirmed is False)
+    survivor = next(result for result in found.survivors if result.outcomes[0].confirmed is False)
     of_all, of_one = on_terminal(found, survivor.mutant.number)
     assert TEXT in of_all
     assert "not confirmed by the whole suite" in of_one
@@ -50,9 +52,9 @@ def test_what_was_not_confirmed_is_told_in_all_of_them(tmp_path: Path) -> None:
     data = document(found)
     assert data["confirmation"]["text"] == TEXT
     assert data["confirmation"]["left"] == len(SURVIVORS)
-    assert [one["rounds"][0]["confirmed"] for one in data["mutants"] if one["id"] == survivor.mutant.id] == [
-        False
-    ]
+    assert [
+        mutant["rounds"][0]["confirmed"] for mutant in data["mutants"] if mutant["id"] == survivor.mutant.id
+    ] == [False]
 
 
 def test_nothing_is_told_where_all_were_run_with_the_whole_suite(tmp_path: Path) -> None:

@@ -101,8 +101,8 @@ def test_groups_and_rounds_carry_scores_and_counts(tmp_path: Path) -> None:
     assert program["score"] == pytest.approx(7 / 12)
     assert program["check_score"] == pytest.approx(0.25)
     assert program["counts"]["refused"] == 1
-    assert [one["round"] for one in program["rounds"]] == [1, 2]
-    assert [(one["round"], one["killed"], one["valid"]) for one in found["rounds"]] == [(1, 1, 3), (2, 3, 5)]
+    assert [end["round"] for end in program["rounds"]] == [1, 2]
+    assert [(end["round"], end["killed"], end["valid"]) for end in found["rounds"]] == [(1, 1, 3), (2, 3, 5)]
 
 
 def test_meta_says_with_what_and_how_it_ended(tmp_path: Path) -> None:
@@ -172,8 +172,10 @@ def test_the_plan_has_the_same_keys_for_a_mutant(tmp_path: Path) -> None:
 def full(path: Path) -> Any:
     """A document with all that one may hold."""
     outcomes = tuple(
-        replace(one, diverged=DIVERGED, confirmed=False) if one.verdict is Verdict.SURVIVED else one
-        for one in samples.OUTCOMES
+        replace(outcome, diverged=DIVERGED, confirmed=False)
+        if outcome.verdict is Verdict.SURVIVED
+        else outcome
+        for outcome in samples.OUTCOMES
     )
     shard = {"number": 2, "of": 8, "mutants": [1]}
     told = {
@@ -205,7 +207,7 @@ def keys(schema: Any) -> Iterator[tuple[str, str]]:
     """The keys of all objects that a schema knows, but for the numbers per verdict, with their texts."""
     parts = schema if isinstance(schema, list) else [*schema.values()] if isinstance(schema, dict) else []
     if isinstance(schema, dict) and {*(own := schema.get("properties", {}))} != {*Verdict}:
-        yield from ((name, one.get("description", "")) for name, one in own.items())
+        yield from ((name, field.get("description", "")) for name, field in own.items())
     for part in parts:
         yield from keys(part)
 

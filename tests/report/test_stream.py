@@ -17,15 +17,15 @@ from results import samples
 
 
 def ends(*outcomes: Outcome, **changes: Any) -> list[MutantEnd]:
-    mutants = {one.id: one for one in samples.MUTANTS}
-    return [MutantEnd(mutants[one.mutant], one, **changes) for one in outcomes]
+    mutants = {mutant.id: mutant for mutant in samples.MUTANTS}
+    return [MutantEnd(mutants[outcome.mutant], outcome, **changes) for outcome in outcomes]
 
 
 def streamed(name: str, *found: MutantEnd, rounds: int = 2) -> list[str]:
     lines: list[str] = []
     stream = MutantStream(name, rounds, samples.VOCABULARY, "/nowhere", lines.append)
-    for one in found:
-        stream.add(one)
+    for end in found:
+        stream.add(end)
     return lines
 
 
@@ -44,7 +44,7 @@ def test_each_line_begins_with_the_state_and_has_tabs_between_its_cells(tmp_path
 
 def test_json_lines_say_the_same(tmp_path: Path) -> None:
     *mutants, end = map(json.loads, made("jsonl", stored(tmp_path)).splitlines())
-    assert [(one["event"], one["status"], one["number"]) for one in mutants] == [
+    assert [(mutant["event"], mutant["status"], mutant["number"]) for mutant in mutants] == [
         ("mutant", "killed", 1), ("mutant", "survived", 2), ("mutant", "timeout", 3),
         ("mutant", "survived", 4), ("mutant", "not covered", 5),
     ]  # fmt: skip
@@ -68,8 +68,8 @@ def test_an_accepted_survivor_is_told_as_such() -> None:
 def test_the_end_tells_of_mutants_that_changed_and_of_those_that_were_not_run(tmp_path: Path) -> None:
     lines: list[str] = []
     stream = MutantStream("lines", 2, samples.VOCABULARY, "/nowhere", lines.append)
-    for one in ends(Outcome(samples.REVERSE.id, 0, Verdict.SURVIVED), *samples.OUTCOMES[2:8]):
-        stream.add(one)
+    for mutant_end in ends(Outcome(samples.REVERSE.id, 0, Verdict.SURVIVED), *samples.OUTCOMES[2:8]):
+        stream.add(mutant_end)
     lines.clear()
     stream.finish(stored(tmp_path))
     assert [line.split("\t")[:2] for line in lines[:-1]] == [["KILLED", "1"], ["NOT-COVERED", "5"]]

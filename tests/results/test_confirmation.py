@@ -17,7 +17,7 @@ KILLED, SURVIVED, REFUSED = Verdict.KILLED, Verdict.SURVIVED, Verdict.REFUSED
 def some(count: int, confirmed: int, seed: int = 1) -> list[Outcome]:
     """Survivors, of which the first ones that are drawn are confirmed."""
     drawn = run_short((Outcome(f"m{n}", 0, SURVIVED, confirmed=False) for n in range(count)), seed)
-    return [Outcome(one.mutant, 0, SURVIVED, confirmed=n < confirmed) for n, one in enumerate(drawn)]
+    return [Outcome(outcome.mutant, 0, SURVIVED, confirmed=n < confirmed) for n, outcome in enumerate(drawn)]
 
 
 def test_nothing_is_said_where_no_test_was_left_out() -> None:

@@ -114,11 +114,11 @@ def test_the_change_is_that_of_the_test_whose_story_is_told() -> None:
         return Diverged(name, 1.0, "", "box ended 0.3 m off", example=(0.5, value), **details)
 
     lost = in_test("lost", 0.7, scatters="box by 0.5 m")
-    one = replace(FAR, example=(0.5, 0.9), diverged=(lost, in_test("told", 0.6)))
-    assert change_text(NEGATE, one) == "had 0.6 instead of 0.5"
-    assert MutantResult(NEGATE, (one,), None, "").change == "had 0.6 instead of 0.5"
-    assert "had 0.6 instead of 0.5" in explain(NEGATE, [one])
-    assert change_text(NEGATE, replace(one, diverged=())) == "had 0.9 instead of 0.5"
+    outcome = replace(FAR, example=(0.5, 0.9), diverged=(lost, in_test("told", 0.6)))
+    assert change_text(NEGATE, outcome) == "had 0.6 instead of 0.5"
+    assert MutantResult(NEGATE, (outcome,), None, "").change == "had 0.6 instead of 0.5"
+    assert "had 0.6 instead of 0.5" in explain(NEGATE, [outcome])
+    assert change_text(NEGATE, replace(outcome, diverged=())) == "had 0.9 instead of 0.5"
 
 
 def test_a_survivor_is_told_in_the_round_that_differs_in_a_stable_test() -> None:

@@ -29,11 +29,11 @@ def test_films_are_kept_by_mutant_and_a_later_one_takes_the_place_of_an_earlier(
     for mutant, text in (("a:1#../x", "first"), ("b", "other"), ("a:1#../x", "second")):
         keep_film(journal, META, mutant, film(tmp_path, text))
     found = kept_films(journal, META)
-    assert {mutant: one.file.read_text() for mutant, one in found.items()} == {
+    assert {mutant: value.file.read_text() for mutant, value in found.items()} == {
         "a:1#../x": "second", "b": "other",
     }  # fmt: skip
-    assert {(one.round, one.test) for one in found.values()} == {(1, "test_a.py::test_it")}
-    assert {one.file.parent.parent for one in found.values()} == {tmp_path}
+    assert {(kept_film.round, kept_film.test) for kept_film in found.values()} == {(1, "test_a.py::test_it")}
+    assert {kept_film.file.parent.parent for kept_film in found.values()} == {tmp_path}
 
 
 def test_films_of_an_earlier_campaign_are_not_shown_and_go_with_the_next_film(

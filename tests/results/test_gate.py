@@ -31,7 +31,7 @@ def test_a_journal_that_lacks_an_outcome_of_a_campaign_that_ended_is_never_fine(
     assert found.state == "incomplete"
     decision = decide(found)
     assert decision.exit_code == 4
-    numbers = ", ".join(str(one.mutant.number) for one in found.mutants if None in one.rounds)
+    numbers = ", ".join(str(result.mutant.number) for result in found.mutants if None in result.rounds)
     assert decision.lines[0].startswith(
         f"not all that was found could be written to the journal: mutants {numbers};"
     )
@@ -109,7 +109,7 @@ def test_a_campaign_that_still_runs_or_was_killed_says_which(tmp_path: Path) -> 
 
 
 def test_survivors_are_ranked_by_how_far_the_world_ended(tmp_path: Path) -> None:
-    assert [one.mutant.number for one in results(tmp_path, OUTCOMES).survivors] == [2, 5, 4]
+    assert [survivor.mutant.number for survivor in results(tmp_path, OUTCOMES).survivors] == [2, 5, 4]
 
 
 def test_outcomes_of_mutants_that_are_not_planned_do_not_count(tmp_path: Path) -> None:
@@ -154,6 +154,6 @@ def test_fail_on_untested_names_code_and_mutants_that_no_test_reaches(tmp_path: 
 
 
 def judged(folder: Path, outcomes: tuple[Outcome, ...], **changes: Any) -> Results:
-    mutants = tuple(one for one in MUTANTS if one.id in {end.mutant for end in outcomes})
+    mutants = tuple(mutant for mutant in MUTANTS if mutant.id in {end.mutant for end in outcomes})
     path = write_journal(folder / "j.sqlite", outcomes=outcomes, mutants=mutants, rounds=1, **changes)
     return Results.read(path)

@@ -70,8 +70,8 @@ def coverage(draw: Draw, effect: float, mutants: int, rounds: int, missing: floa
     [
         (bimodal, 0.5, 26, 5, 0.2),
         *(
-            pytest.param(*one, marks=pytest.mark.whole)
-            for one in (
+            pytest.param(*parameters, marks=pytest.mark.whole)
+            for parameters in (
                 (bimodal, 0.0, 26, 5, 0.0),
                 (bimodal, 0.5, 26, 5, 0.0),
                 (bimodal, 0.5, 50, 10, 0.0),
@@ -240,8 +240,8 @@ def sample_coverage(
     [
         (100, 0.5, 0.2, 5, 0.05, 0.0),
         *(
-            pytest.param(*one, marks=pytest.mark.whole)
-            for one in (
+            pytest.param(*parameters, marks=pytest.mark.whole)
+            for parameters in (
                 (40, 0.25, 0.8, 1, 0.0, 0.0),
                 (100, 0.1, 0.5, 1, 0.0, 0.0),
                 (100, 0.25, 0.95, 1, 0.0, 0.0),

@@ -20,9 +20,9 @@ def found(folder: Path, *outcomes: Outcome) -> list[str]:
 
 
 def test_one_kill_in_any_round_is_enough_to_be_looked_at(tmp_path: Path) -> None:
-    survived = [Outcome(one.id, 0, Verdict.SURVIVED) for one in (NEGATE, NOISE)]
-    (one,) = found(tmp_path / "a", *survived)
-    assert one.endswith(f"{NEGATE.operation} {NEGATE.quantity}: none of its 2 mutants was noticed")
+    survived = [Outcome(mutant.id, 0, Verdict.SURVIVED) for mutant in (NEGATE, NOISE)]
+    (line,) = found(tmp_path / "a", *survived)
+    assert line.endswith(f"{NEGATE.operation} {NEGATE.quantity}: none of its 2 mutants was noticed")
     killed = Outcome(NOISE.id, 1, Verdict.KILLED, By.CHECK, test="t")
     assert not found(tmp_path / "b", *survived, killed)
 

@@ -193,7 +193,7 @@ def mocks_as_ever() -> None:
 def _put_back(owner: Any, name: str, original: Any) -> None:
     wrapper = vars(owner).get(name)
     is_inherited = isinstance(owner, type) and any(
-        vars(one).get(name) is original for one in owner.__mro__[1:]
+        vars(base).get(name) is original for base in owner.__mro__[1:]
     )
     if is_inherited:
         delattr(owner, name)

@@ -88,7 +88,7 @@ def test_a_control_is_where_its_fault_is() -> None:
         FATAL_CONTROL, {"size": 1}, (Activation.at_time(3.0),), "mujoco"
     )
     text = Activation.of_text(7, 2)
-    assert [text.control(is_fatal=one).data for one in (False, True)] == [(7, -1), (7, -2)]
+    assert [text.control(is_fatal=is_fatal).data for is_fatal in (False, True)] == [(7, -1), (7, -2)]
 
 
 def test_keys_are_the_same_on_another_machine() -> None:

@@ -85,8 +85,10 @@ class Verdict:
             return False
         # where a file cannot be imported, or a class fails as a whole, pytest names that
         return not any(
-            self.test == one or (self.test or "").startswith(f"{one}::") or one.startswith(f"{self.test}::")
-            for one in self.plain.tests
+            self.test == test
+            or (self.test or "").startswith(f"{test}::")
+            or test.startswith(f"{self.test}::")
+            for test in self.plain.tests
         )
 
     @property
@@ -117,19 +119,23 @@ class Found:
     @property
     def compared(self) -> list[Verdict]:
         """Verdicts that were held against plain pytest."""
-        return [one for one in self.verdicts if one.compared]
+        return [judged for judged in self.verdicts if judged.compared]
 
     @property
     def disagreements(self) -> list[str]:
         """Everything that is not as it must be, one text each."""
-        return [*self.failed, *self.differing, *(one.line for one in self.compared if not one.agrees)]
+        return [
+            *self.failed,
+            *self.differing,
+            *(judged.line for judged in self.compared if not judged.agrees),
+        ]
 
     @property
     def differing(self) -> list[str]:
         """Mutants of which two campaigns say different things in the same round."""
         ends: dict[tuple[str, int], dict[str, str]] = {}
-        for one in self.verdicts:
-            ends.setdefault((one.mutant, one.round), {})[one.engine] = one.ours
+        for judged in self.verdicts:
+            ends.setdefault((judged.mutant, judged.round), {})[judged.engine] = judged.ours
         return [
             f"{self.project} [round {which}] {mutant}: {said}"
             for (mutant, which), said in ends.items()
@@ -195,10 +201,10 @@ def _compare(
     if "robot" not in only:
         for data in results.values():
             data["mutants"] += list(left_out(data))
-    mutants = {one["id"]: one for data in results.values() for one in data["mutants"]}
+    mutants = {mutant["id"]: mutant for data in results.values() for mutant in data["mutants"]}
     refusals = Facts.of(folder).refusals
     for which in range(1, rounds + 1):
-        ends = [(engine, one) for engine, data in results.items() for one in _ended(data, which)]
+        ends = [(engine, ended) for engine, data in results.items() for ended in _ended(data, which)]
         judge = Judge(folder, limit, seeds_of(results, which), cache)
         original = replace(judge, limit=10 * limit).original()
         if original.state != "passes":
@@ -207,17 +213,18 @@ def _compare(
             )
             return found
         judge = replace(judge, limit=max(limit, 3 * original.seconds))
-        refused = {one.id for _, one in ends if one.is_or_could_be_refused(refusals)}
-        noticed = {one.id: one.test for _, one in ends}
+        refused = {judged.id for _, judged in ends if judged.is_or_could_be_refused(refusals)}
+        noticed = {judged.id: judged.test for _, judged in ends}
         plain = _judged(judge, mutants, refused, noticed, jobs)
-        for _, one in ends:
+        for _, finished in ends:
             # what few draws say may be chance
-            explained = ("unwritable", *EXPECTED.get(one.verdict, ()))
-            rests_on_chance = is_drawn(mutants[one.id]) or is_raced(mutants[one.id])
-            if rests_on_chance and plain[one.id].state not in explained:
-                plain[one.id] = judge.mutant(mutants[one.id], draws=MORE_DRAWS, first=one.test)
+            explained = ("unwritable", *EXPECTED.get(finished.verdict, ()))
+            rests_on_chance = is_drawn(mutants[finished.id]) or is_raced(mutants[finished.id])
+            if rests_on_chance and plain[finished.id].state not in explained:
+                plain[finished.id] = judge.mutant(mutants[finished.id], draws=MORE_DRAWS, first=finished.test)
         found.verdicts += [
-            verdict(folder.name, engine, mutants[one.id], one, plain[one.id], which) for engine, one in ends
+            verdict(folder.name, engine, mutants[judged.id], judged, plain[judged.id], which)
+            for engine, judged in ends
         ]
     return found
 
@@ -248,7 +255,7 @@ def left_out(data: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
     The place is that of another mutant of the same call. Without one, and in text commands, it is not known.
     One call of the program may set up a publisher and publish: its description says which of them is meant.
     """
-    places = {one["id"].rpartition(":")[0].rpartition(":")[0]: one for one in data["mutants"]}
+    places = {mutant["id"].rpartition(":")[0].rpartition(":")[0]: mutant for mutant in data["mutants"]}
     for item in data["left_out"]:
         subject, _, operator = item["id"].rpartition(":")
         if operator.partition("=")[0] in GRADED_OPERATORS:
@@ -344,7 +351,7 @@ def campaign(request: Request) -> dict[str, Any]:
     with Journal.open(run_campaign(request, Silent())) as journal:
         data = document(read_results(journal))
     # of a ladder the search runs some magnitudes; reports hold them apart, the judge does not
-    ran = [one for one in data["graded"] if all(end.get("verdict") for end in one["rounds"])]
+    ran = [mutant for mutant in data["graded"] if all(end.get("verdict") for end in mutant["rounds"])]
     return {**data, "mutants": [*data["mutants"], *ran]}
 
 
@@ -355,16 +362,16 @@ def chosen(request: Request, only: Mapping[str, int]) -> list[str]:
         by_family.setdefault(mutant["family"], []).append(mutant["id"])
     draw = random.Random(1)
     return [
-        one
+        chosen_id
         for family, ids in by_family.items()
-        for one in sorted(draw.sample(ids, min(only.get(family, len(ids)), len(ids))))
+        for chosen_id in sorted(draw.sample(ids, min(only.get(family, len(ids)), len(ids))))
     ]
 
 
 def seeds_of(results: Mapping[str, Mapping[str, Any]], which: int = 1) -> dict[str, int]:
     """What the fixture ``mutabot_seed`` gives in a round, counted from 1, by test."""
     return {
-        one["test"]: derive(data["meta"]["seed"], which - 1, one["test"])
+        baseline_test["test"]: derive(data["meta"]["seed"], which - 1, baseline_test["test"])
         for data in results.values()
-        for one in data["baseline"]
+        for baseline_test in data["baseline"]
     }

@@ -61,10 +61,10 @@ class CatalogueEditor(CallEditor):
         side = self._written() if self._is_written else self._read()
         angles = [
             name
-            for name, one in side.items()
-            if one["kind"] in ("rotation", "orientation") and one.get("axis") in ("x", "z")
+            for name, quantity in side.items()
+            if quantity["kind"] in ("rotation", "orientation") and quantity.get("axis") in ("x", "z")
         ]
-        if any(one["kind"] in ("quaternion", "rotation_vector", "euler") for one in side.values()):
+        if any(quantity["kind"] in ("quaternion", "rotation_vector", "euler") for quantity in side.values()):
             raise CannotWriteError("a pose with an orientation as a whole")
         return self._together([self._name, *angles], f"{CATALOGUE}.negated")
 
@@ -74,7 +74,7 @@ class CatalogueEditor(CallEditor):
             raise CannotWriteError("judge.toml does not say how to ask how the tool is turned")
         receiver = self.source.text(self.call.func.value) if isinstance(self.call.func, ast.Attribute) else ""
         pose = told.replace("SELF", receiver)
-        moved = [name for name, one in self._written().items() if one["kind"] == "translation"]
+        moved = [name for name, quantity in self._written().items() if quantity["kind"] == "translation"]
         return self._together(moved, f"{CATALOGUE}.along_tool(lambda: {pose})")
 
     def _tcp_missing(self) -> Edit:
@@ -139,9 +139,9 @@ class CatalogueEditor(CallEditor):
     def _taken_back(self) -> str:
         """The text of what undoes a gripper command."""
         callee = self._callee()
-        for name, one in self._written().items():
-            if one["kind"] == "opening":
-                first, second = one.get("values") or one["range"]
+        for name, quantity in self._written().items():
+            if quantity["kind"] == "opening":
+                first, second = quantity.get("values") or quantity["range"]
                 other = f"{PLANTED}.partial({PLANTED}.other, { {first: second, second: first}!r})"
                 return f"lambda: {PLANTED}.with_argument({callee}, {name!r}, '', {other})(*given, **named)"
         if self.pattern is not None:
@@ -157,9 +157,12 @@ class CatalogueEditor(CallEditor):
     def _thens(self) -> list[Edit]:
         """After every other command of the program, what is due is done."""
         names = {
-            one["call"].rpartition(":")[2].rpartition(".")[2]
-            for one in self.facts.operations
-            if one.get("command", bool(one.get("arguments")) or "message" in one or "result" not in one)
+            operation["call"].rpartition(":")[2].rpartition(".")[2]
+            for operation in self.facts.operations
+            if operation.get(
+                "command",
+                bool(operation.get("arguments")) or "message" in operation or "result" not in operation,
+            )
         }
         found = []
         for file in self.facts.settings["program"]:
@@ -181,7 +184,9 @@ class CatalogueEditor(CallEditor):
     def _previous_target(self) -> list[Edit]:
         if self.pattern is not None or len(self.facts.settings["program"]) != 1:
             raise CannotWriteError("the text command before it, or several files")
-        paths = tuple(_split(name) for name, one in self._written().items() if one["kind"] in _MOTIONS)
+        paths = tuple(
+            _split(name) for name, quantity in self._written().items() if quantity["kind"] in _MOTIONS
+        )
         key = self.mutant["operation"]
         name = key.rpartition(".")[2].rpartition(":")[2]
         found = []
@@ -236,7 +241,7 @@ class CatalogueEditor(CallEditor):
 
     @staticmethod
     def _next_of(values: list[Any]) -> str:
-        pairs = {one: values[(index + 1) % len(values)] for index, one in enumerate(values)}
+        pairs = {value: values[(index + 1) % len(values)] for index, value in enumerate(values)}
         return f"{PLANTED}.partial({PLANTED}.other, {pairs!r})"
 
     # actuation
@@ -343,6 +348,6 @@ def _expanded(group: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
         axes = (
             [f"j{number}" for number in range(int(joints[1]), int(joints[2]) + 1)] if joints else list(axis)
         )
-        for index, one in zip(range(int(part[1]), int(part[2])), axes, strict=True):
-            found[f"{name[: part.start()]}[{index}]"] = {**quantity, "axis": one}
+        for index, name_of_axis in zip(range(int(part[1]), int(part[2])), axes, strict=True):
+            found[f"{name[: part.start()]}[{index}]"] = {**quantity, "axis": name_of_axis}
     return found

@@ -71,18 +71,18 @@ class Facts:
     def refusals(self) -> list[str]:
         """Names of the exceptions by which the robot refuses."""
         found = [name for file in self.vocabulary for name in file.get("refusals", [])]
-        return found + [name for one in self.operations for name in one.get("refusals", [])]
+        return found + [name for operation in self.operations for name in operation.get("refusals", [])]
 
     @property
     def operations(self) -> list[dict[str, Any]]:
         """All operations of all files."""
-        return [one for file in self.vocabulary for one in file.get("operation", [])]
+        return [operation for file in self.vocabulary for operation in file.get("operation", [])]
 
     def operation(self, target: str) -> dict[str, Any]:
         """The operation of this name."""
-        for one in self.operations:
-            if one.get("call") == target or f"*:*.{one.get('method')}" == target:
-                return one
+        for operation in self.operations:
+            if operation.get("call") == target or f"*:*.{operation.get('method')}" == target:
+                return operation
         raise CannotWriteError(f"no operation {target}")
 
     def definition(self, target: str) -> ast.FunctionDef | ast.AsyncFunctionDef | None:
@@ -190,7 +190,12 @@ class CallEditor:
         self.definition = facts.definition(mutant["operation"])
         self.is_async = isinstance(self.definition, ast.AsyncFunctionDef)
         self.pattern = next(
-            (one for one in self.operation.get("patterns", []) if one["text"] == mutant["pattern"]), None
+            (
+                pattern
+                for pattern in self.operation.get("patterns", [])
+                if pattern["text"] == mutant["pattern"]
+            ),
+            None,
         )
         if mutant["pattern"] is not None and self.pattern is None:
             raise CannotWriteError("an unknown pattern")
@@ -275,7 +280,7 @@ class CallEditor:
         quantity = self._quantity()
         values = quantity.get("values") or [False, True]
         shift = int(self.mutant["variant"] or "1")
-        pairs = {one: values[(index + shift) % len(values)] for index, one in enumerate(values)}
+        pairs = {value: values[(index + shift) % len(values)] for index, value in enumerate(values)}
         return self._result(f"{PLANTED}.partial({PLANTED}.other, {pairs!r})")
 
     def _noise(self) -> Edit:
@@ -321,7 +326,10 @@ class CallEditor:
         if self.definition is None:
             raise CannotWriteError("nobody says what is answered when it is left out")
         returns = [node for node in ast.walk(self.definition) if isinstance(node, ast.Return) and node.value]
-        if any(not (isinstance(one.value, ast.Constant) and one.value.value is None) for one in returns):
+        if any(
+            not (isinstance(returned.value, ast.Constant) and returned.value.value is None)
+            for returned in returns
+        ):
             raise CannotWriteError("judge.toml does not say what is answered when it is left out")
         return "None"
 
@@ -349,7 +357,7 @@ class CallEditor:
         """The operation itself, where the call does not make it but is given it: ``submit(arm.move, 1)``."""
         if _last_name(self.call.func) == self._called:
             return None
-        given = [*self.call.args, *(one.value for one in self.call.keywords)]
+        given = [*self.call.args, *(keyword.value for keyword in self.call.keywords)]
         also = self.facts.hints.get("handed", {}).get(self.mutant["operation"])
         found = [node for part in given for node in ast.walk(part)
                  if _last_name(node) == self._called or ast.unparse(node) == also]  # fmt: skip
@@ -367,11 +375,15 @@ class CallEditor:
     def _parameters(self) -> list[str]:
         if self.definition is None and "method" in self.operation:
             told = self.operation["signature"].strip("()").split(",")
-            return [one.partition("=")[0].strip() for one in told]
+            return [parameter.partition("=")[0].strip() for parameter in told]
         if self.definition is None:
             raise CannotWriteError("where the operation is defined cannot be found")
-        names = [one.arg for one in [*self.definition.args.posonlyargs, *self.definition.args.args]]
-        static = any(getattr(one, "id", "") == "staticmethod" for one in self.definition.decorator_list)
+        names = [
+            parameter.arg for parameter in [*self.definition.args.posonlyargs, *self.definition.args.args]
+        ]
+        static = any(
+            getattr(decorator, "id", "") == "staticmethod" for decorator in self.definition.decorator_list
+        )
         is_method = "." in self.mutant["operation"].partition(":")[2] and not static
         return names[1:] if is_method else names
 
@@ -383,7 +395,7 @@ class CallEditor:
         index = self._parameters().index(name) if name in self._parameters() else None
         if index is None or index >= len(self.call.args):
             raise CannotWriteError(f"the call does not give {name}")
-        if any(isinstance(one, ast.Starred) for one in self.call.args[: index + 1]):
+        if any(isinstance(argument, ast.Starred) for argument in self.call.args[: index + 1]):
             raise CannotWriteError("arguments with a star")
         return self.call.args[index]
 
@@ -401,8 +413,8 @@ class CallEditor:
         try:
             value = self._given(root)
         except CannotWriteError:
-            if any(isinstance(one, ast.Starred) for one in self.call.args) or any(
-                one.arg is None for one in self.call.keywords
+            if any(isinstance(argument, ast.Starred) for argument in self.call.args) or any(
+                keyword.arg is None for keyword in self.call.keywords
             ):
                 planted = f"{PLANTED}.with_argument({self._callee()}, {root!r}, {path!r}, {change})"
                 return self._with_callee(planted)

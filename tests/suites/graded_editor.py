@@ -44,7 +44,7 @@ def edit(editor: CallEditor, mutant: Mapping[str, Any]) -> Edit:
     if is_read:
         return editor._result(change)
     name = mutant["quantity"]
-    given = {one.arg for one in editor.call.keywords}
+    given = {keyword.arg for keyword in editor.call.keywords}
     if name.isidentifier() and editor.pattern is None and name in editor._parameters():
         place = editor._parameters().index(name)
         if name not in given and place >= len(

@@ -140,7 +140,7 @@ class Judge:
         if is_named(mutant):
             noting = [*edits, *noting_refusals(Facts.of(self.folder))]
             runs = [self._run(noting, noise=run) for run in range(1, (draws if is_raced(mutant) else 1) + 1)]
-            if len({one.state for one in runs}) > 1:
+            if len({run.state for run in runs}) > 1:
                 return Judgement("unwritable", text="equal runs end differently")
             return runs[0]
         found = self._run(edits, first=first)

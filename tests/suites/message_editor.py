@@ -87,7 +87,7 @@ class MessageEditor:
         below = f'{MESSAGES}.only_below("site", '
         return [
             self._replaced(self.source, call.func, f'{MESSAGES}.armed("site", ', ")"),
-            *(self._replaced(raw, one.func, below, f", {wrapper})") for one in found),
+            *(self._replaced(raw, wrapped.func, below, f", {wrapper})") for wrapped in found),
         ]
 
     def _definition(self) -> ast.FunctionDef | None:
@@ -137,7 +137,7 @@ class MessageEditor:
     def _misread(self) -> str:
         values = self._quantity().get("values") or [False, True]
         shift = int(self.variant or "1")
-        pairs = {one: values[(index + shift) % len(values)] for index, one in enumerate(values)}
+        pairs = {value: values[(index + shift) % len(values)] for index, value in enumerate(values)}
         return self._with(f"{VALUES}.partial({VALUES}.other, {pairs!r})")
 
     # those of the family middleware
@@ -213,10 +213,10 @@ class MessageEditor:
     def _quantity(self) -> dict[str, Any]:
         key, fields = _ENTRIES[self.form]
         for file in self.facts.vocabulary:
-            for one in file.get("operation", []):
-                is_this = key in one and fnmatchcase(self.name, one[key])
-                if is_this and one.get("direction", self.form) == self.form:
-                    found = one.get(fields, {}).get(self.mutant["quantity"])
+            for operation in file.get("operation", []):
+                is_this = key in operation and fnmatchcase(self.name, operation[key])
+                if is_this and operation.get("direction", self.form) == self.form:
+                    found = operation.get(fields, {}).get(self.mutant["quantity"])
                     if found is not None:
                         return dict(found)
         raise CannotWriteError(f"no field {self.mutant['quantity']} of {self.target}")

@@ -356,8 +356,8 @@ def then(function: Any) -> Any:
         result = function(*given, **named)
         due = state("due")
         waiting, due[:] = list(due), []
-        for one in waiting:
-            one()
+        for call in waiting:
+            call()
         return result
 
     return called

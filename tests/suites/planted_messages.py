@@ -421,12 +421,12 @@ def quality(**qualities: Any) -> Wrapper:
     return _with_qualities(lambda profile: qualities)
 
 
-def other_quality(name: str, one: str, another: str) -> Wrapper:
+def other_quality(name: str, usual: str, otherwise: str) -> Wrapper:
     """With the other of two qualities of ROS 2."""
 
     def change(profile: Any) -> dict[str, Any]:
         now = getattr(profile, name)
-        return {name: type(now)[another if now.name == one else one]}
+        return {name: type(now)[otherwise if now.name == usual else usual]}
 
     return _with_qualities(change)
 

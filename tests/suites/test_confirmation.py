@@ -163,7 +163,7 @@ def test_verdicts_are_those_of_plain_pytest(tmp_path: Path, engine: str, notices
     found = compare(project(tmp_path / "many", notices), engines=(engine,))
     assert found.disagreements == []
     assert len(found.compared) >= 18
-    assert {one.plain.state for one in found.compared} == {"passes", "fails"}
+    assert {verdict.plain.state for verdict in found.compared} == {"passes", "fails"}
 
 
 @pytest.mark.usefixtures("always")
@@ -172,9 +172,13 @@ def test_verdicts_are_those_of_plain_pytest(tmp_path: Path, engine: str, notices
 def test_fixtures_live_as_long_as_in_the_whole_suite(tmp_path: Path, engine: str) -> None:
     """Else what is run without some tests fails, and all would be run with the whole suite."""
     outcomes, _ = campaign(project(tmp_path), engine=engine)
-    waves = [one for one in outcomes if ":wave:" in one.mutant]
-    assert {one.verdict for one in waves} == {Verdict.SURVIVED}
-    assert {one.confirmed for one in waves} <= {True, False}
-    assert {one.tests for one in waves if not one.confirmed} <= {4}
-    others = {one.confirmed for one in outcomes if ":wave:" not in one.mutant and ":store:" not in one.mutant}
+    waves = [outcome for outcome in outcomes if ":wave:" in outcome.mutant]
+    assert {wave.verdict for wave in waves} == {Verdict.SURVIVED}
+    assert {wave.confirmed for wave in waves} <= {True, False}
+    assert {wave.tests for wave in waves if not wave.confirmed} <= {4}
+    others = {
+        outcome.confirmed
+        for outcome in outcomes
+        if ":wave:" not in outcome.mutant and ":store:" not in outcome.mutant
+    }
     assert others == {None}  # killed or let through by the whole suite

@@ -20,13 +20,13 @@ MUTANTS = 3
 
 
 @pytest.mark.parametrize(
-    "name", [HARDEST[0], *(pytest.param(one, marks=pytest.mark.whole) for one in HARDEST[1:])]
+    "name", [HARDEST[0], *(pytest.param(suite, marks=pytest.mark.whole) for suite in HARDEST[1:])]
 )
 def test_every_verdict_is_that_of_plain_pytest(name: str) -> None:
     found = compare(PROJECTS / name, only={"robot": MUTANTS}, jobs=len(os.sched_getaffinity(0)))
     assert found.disagreements == []
     assert len(found.compared) >= 2 * MUTANTS - 2  # by two engines; the judge may not know how to write one
-    assert "fails" in {one.plain.state for one in found.compared}
+    assert "fails" in {verdict.plain.state for verdict in found.compared}
 
 
 @pytest.mark.whole

@@ -303,7 +303,9 @@ def project(folder: Path, files: dict[str, str]) -> Path:
     return folder
 
 
-@pytest.mark.parametrize("suite", [first, *(pytest.param(one, marks=pytest.mark.whole) for one in others)])
+@pytest.mark.parametrize(
+    "suite", [first, *(pytest.param(other, marks=pytest.mark.whole) for other in others)]
+)
 def test_every_verdict_is_that_of_plain_pytest(tmp_path: Path, suite: str) -> None:
     folder = project(tmp_path / "imports", SUITES[suite])
     found = compare(
@@ -334,7 +336,7 @@ FACTS = ("verdict", "by", "test", "exception", "hits", "acted", "example", "kill
 def run(folder: Path, engine: str, only: tuple[str, ...] = ()) -> tuple[dict[str, Outcome], list[str]]:
     quiet = Quiet()
     request = request_for(folder, engine=engine, families=("conventional",), fresh=True, only=only)
-    return {one.mutant: one for one in outcomes(run_campaign(request, quiet))}, quiet.lines
+    return {outcome.mutant: outcome for outcome in outcomes(run_campaign(request, quiet))}, quiet.lines
 
 
 @pytest.mark.whole  # the first suite says of one engine what the judge says
@@ -347,11 +349,11 @@ def test_both_engines_say_the_same_of_programs_that_cannot_be_imported(
     only = ("program/table.py:<module>:*AOR*", "program/table.py:<module>:*ABS=abs")
     forked, _ = run(project(tmp_path / "forked", files), "auto", only)
     replayed, _ = run(project(tmp_path / "replayed", files), "replay", only)
-    assert {one.engine for one in forked.values()} == {"fork"}
-    assert {name: _facts(one) for name, one in forked.items()} == {
-        name: _facts(one) for name, one in replayed.items()
+    assert {outcome.engine for outcome in forked.values()} == {"fork"}
+    assert {name: _facts(value) for name, value in forked.items()} == {
+        name: _facts(value) for name, value in replayed.items()
     }
-    assert len({one.verdict for one in forked.values()}) >= 2
+    assert len({outcome.verdict for outcome in forked.values()}) >= 2
 
 
 def _facts(outcome: Outcome) -> dict[str, object]:
@@ -364,6 +366,6 @@ def test_what_cannot_be_forked_while_it_is_imported_runs_in_a_process_of_its_own
     tmp_path: Path, suite: str
 ) -> None:
     found, said = run(project(tmp_path, SUITES[suite]), "auto", ("program/table.py:<module>:* 4#1:A*",))
-    assert {one.engine for one in found.values()} == {"replay"}
+    assert {outcome.engine for outcome in found.values()} == {"replay"}
     why = f"no forks while the program is imported: {UNSAFE[suite]}; "
     assert any(line.startswith(why) for line in said)

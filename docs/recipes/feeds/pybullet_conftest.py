@@ -38,7 +38,7 @@ def cell(monkeypatch):
     feed.pose("tool", lambda: pose(*p.getLinkState(robot, HAND)[4:6]))
     feed.pose("cube", lambda: pose(*p.getBasePositionAndOrientation(cube)), size=(0.05, 0.05, 0.05))
     feed.value("finger", lambda: p.getJointState(robot, FINGER)[0], unit="m")
-    feed.contacts(lambda: {("cube", names[one[2]]) for one in p.getContactPoints(cube)})
+    feed.contacts(lambda: {("cube", names[contact[2]]) for contact in p.getContactPoints(cube)})
     feed.camera(picture, rate=10)
 
     def step_and_tell():

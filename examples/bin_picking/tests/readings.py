@@ -39,7 +39,7 @@ def in_trays(station: Station) -> dict[str, int]:
 def nearest(station: Station) -> float:
     """The smallest distance between the middles of two parts, m."""
     places = middles(station)
-    return min(math.dist(one, other) for at, one in enumerate(places) for other in places[:at])
+    return min(math.dist(place, other) for at, place in enumerate(places) for other in places[:at])
 
 
 def touch_of_bin(station: Station) -> Callable[[], float]:
@@ -79,7 +79,7 @@ def true_face(station: Station, place: Array, normal: Array) -> tuple[str, float
         Its name, how far the place is off the part's own face, m, and the angle between both, degrees.
     """
     data = station.cell.simulation.data
-    name = min(station.names, key=lambda one: math.dist(data.body(one).xpos, place))
+    name = min(station.names, key=lambda value: math.dist(data.body(value).xpos, place))
     body, best = data.body(name), (math.inf, math.inf)
     for axis, distance in drawn_faces(station.shape(name)):
         outward = body.xmat.reshape(3, 3) @ axis

@@ -72,9 +72,9 @@ def groove(corners: list[tuple[float, float]]) -> Array:
     points = [np.array(corner) for corner in corners]
     strokes, start = list[Array](), points[0]
     for before, corner, after in zip(points, points[1:], points[2:], strict=False):
-        one, other = (corner + ROUND * _unit(place - corner) for place in (before, after))
-        strokes += [_line(start, one), _arc(one, other, corner)]
-        start = other
+        first, second = (corner + ROUND * _unit(place - corner) for place in (before, after))
+        strokes += [_line(start, first), _arc(first, second, corner)]
+        start = second
     strokes.append(_line(start, points[-1]))
     raw = np.concatenate(strokes)
     ways = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(raw, axis=0), axis=1))))

@@ -17,9 +17,9 @@ def rectangle(slot: Slot) -> Rectangle:
     return (slot.x - x / 2, slot.x + x / 2, slot.y - y / 2, slot.y + y / 2)
 
 
-def overlap(one: Slot, other: Slot, gap: float = 0.0) -> bool:
+def overlap(first: Slot, second: Slot, gap: float = 0.0) -> bool:
     """Whether less than a gap is between them."""
-    (a, b, c, d), (e, f, g, h) = rectangle(one), rectangle(other)
+    (a, b, c, d), (e, f, g, h) = rectangle(first), rectangle(second)
     return a - gap < f and e - gap < b and c - gap < h and g - gap < d
 
 
@@ -30,8 +30,8 @@ def test_there_are_27_places_layer_by_layer_from_below() -> None:
 
 def test_boxes_of_a_layer_keep_the_gap() -> None:
     for number in range(LAYERS):
-        for one, other in combinations(layer(number), 2):
-            assert not overlap(one, other, GAP - 1e-9), (one, other)
+        for first, second in combinations(layer(number), 2):
+            assert not overlap(first, second, GAP - 1e-9), (first, second)
 
 
 def test_all_boxes_stand_on_the_deck_about_its_middle() -> None:

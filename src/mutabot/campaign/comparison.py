@@ -30,13 +30,19 @@ CommandName = tuple[str, str | None]
 
 def _angles_of(operations: Sequence[Operation]) -> dict[CommandName, dict[str, Quantity]]:
     """Return the orientations and angles among the values of each command, by name."""
-    owners: list[tuple[CommandName, Operation | Pattern]] = [((one.target, None), one) for one in operations]
-    owners += [((one.target, pattern.text), pattern) for one in operations for pattern in one.patterns]
+    owners: list[tuple[CommandName, Operation | Pattern]] = [
+        ((operation.target, None), operation) for operation in operations
+    ]
+    owners += [
+        ((operation.target, pattern.text), pattern)
+        for operation in operations
+        for pattern in operation.patterns
+    ]
     return {
         command: {
-            one.name: one
-            for one in (*owner.arguments, *owner.result)
-            if one.is_whole or one.full_turn is not None
+            argument.name: argument
+            for argument in (*owner.arguments, *owner.result)
+            if argument.is_whole or argument.full_turn is not None
         }
         for command, owner in owners
     }
@@ -148,7 +154,7 @@ def compare(
     """
     spread = spread or ProbeSpread()
     found = list(_probe_differences(original.readings, mutant.readings, probes))
-    found.sort(key=lambda one: one.rank(spread.ends))
+    found.sort(key=lambda difference: difference.rank(spread.ends))
     gaps = tuple(
         f"{_short(target)} cannot be read: {mutant.unread[target]}"
         for target in original.unread
@@ -159,13 +165,13 @@ def compare(
     tolerance = max((probe.tolerance for probe in probes), default=DEFAULT_TOLERANCE)
     trace_line = _first_difference(original, mutant, tolerance, _angles_of(operations))
     returned_line = _returned_difference(original, mutant, probes)
-    distances = [one.deviation(spread.ends) for one in found]
-    different = [one.text for one in found if one.distance > 1.0]
+    distances = [difference.deviation(spread.ends) for difference in found]
+    different = [difference.text for difference in found if difference.distance > 1.0]
 
     way, way_line, moments = _on_the_way(original, mutant, probes, spread)
     is_same_end = original.outcome == mutant.outcome
     end_line = "" if is_same_end else f"the test ended {mutant.outcome} instead of {original.outcome}"
-    lines = [one for one in (end_line, *different, way_line, returned_line, trace_line) if one]
+    lines = [line for line in (end_line, *different, way_line, returned_line, trace_line) if line]
     distance = max(distances, default=None)
     if gaps and not different:  # what cannot be read may be anywhere
         distance = None
@@ -183,28 +189,30 @@ def _on_the_way(
     """
     common = _common_moments(original, mutant)
     found = [
-        (one, call)
+        (difference, call)
         for call, before, after in common
         if before != after
-        for one in _probe_differences(_Readings(before), _Readings(after), probes)
+        for difference in _probe_differences(_Readings(before), _Readings(after), probes)
     ]
-    worst = max((one.deviation(spread.ways) for one, _ in found), default=0.0)
-    told = min(
+    worst = max((difference.deviation(spread.ways) for difference, _ in found), default=0.0)
+    farthest_pair = min(
         (pair for pair in found if pair[0].distance > 1.0),
         key=lambda pair: pair[0].rank(spread.ways),
         default=None,
     )
     line = ""
-    if told is not None:
-        place = _place_text(mutant.events[told[1] - 1].key)
-        line = f"on the way, after call {told[1]}, {place}: {told[0].text}"
+    if farthest_pair is not None:
+        place = _place_text(mutant.events[farthest_pair[1] - 1].key)
+        line = f"on the way, after call {farthest_pair[1]}, {place}: {farthest_pair[0].text}"
     return worst if common else None, line, len(common)
 
 
-def _common_moments(one: Observation, other: Observation) -> list[tuple[int, dict[str, Any], dict[str, Any]]]:
+def _common_moments(
+    first: Observation, second: Observation
+) -> list[tuple[int, dict[str, Any], dict[str, Any]]]:
     """Return the calls after which both runs were read, while they made the same calls, and the readings."""
-    before, after = _readings(one.moments or ()), _readings(other.moments or ())
-    same = _same_calls(one, other)
+    before, after = _readings(first.moments or ()), _readings(second.moments or ())
+    same = _same_calls(first, second)
     return [
         (call, before[call], after[call])
         for call in before
@@ -234,9 +242,9 @@ class ProbeSpread:
         for other in others:
             pairs = [(ways, before, after) for _, before, after in _common_moments(first, other)]
             for sizes, before, after in [(ends, first.probes, other.probes), *pairs]:
-                for one in _probe_differences(_Readings(before), _Readings(after), probes):
-                    if math.isfinite(one.size):
-                        sizes[one.key] = max(one.size, sizes.get(one.key, 0.0))
+                for difference in _probe_differences(_Readings(before), _Readings(after), probes):
+                    if math.isfinite(difference.size):
+                        sizes[difference.key] = max(difference.size, sizes.get(difference.key, 0.0))
         return cls(ends, ways)
 
 
@@ -244,7 +252,7 @@ def _same_calls(original: Observation, mutant: Observation) -> int:
     """Return the number of calls at the beginning that are the same."""
     pairs = zip(original.events, mutant.events, strict=False)
     shorter = min(len(original.events), len(mutant.events))
-    return next((number for number, (one, other) in enumerate(pairs) if one.key != other.key), shorter)
+    return next((number for number, (call, other) in enumerate(pairs) if call.key != other.key), shorter)
 
 
 def _readings(moments: Sequence[Any]) -> dict[int, dict[str, Any]]:
@@ -268,9 +276,13 @@ def as_steady(
     Without what the program returned, or probes along the way, if only that differs; None if more does.
     """
     for dropped in ({}, _NO_RETURNS, _NO_MOMENTS, {**_NO_RETURNS, **_NO_MOMENTS}):
-        one = replace(first, **dropped)
-        if compare(one, second, probes, operations).indistinguishable:
-            return one if one.moments is None or one.moments else replace(one, moments=second.moments)
+        observation = replace(first, **dropped)
+        if compare(observation, second, probes, operations).indistinguishable:
+            return (
+                observation
+                if observation.moments is None or observation.moments
+                else replace(observation, moments=second.moments)
+            )
     return None
 
 
@@ -279,17 +291,21 @@ def farthest(comparisons: Sequence[Difference]) -> Difference:
     if not comparisons:
         return Difference(True, None, ())
     ranked = sorted(
-        comparisons, key=lambda one: (one.distance or 0.0, not one.indistinguishable), reverse=True
+        comparisons,
+        key=lambda difference: (difference.distance or 0.0, not difference.indistinguishable),
+        reverse=True,
     )
-    distances = [one.distance for one in comparisons if one.distance is not None]
-    lines = dict.fromkeys(line for one in ranked for line in one.divergence)
-    together = all(one.indistinguishable for one in comparisons)
-    gaps = tuple(dict.fromkeys(gap for one in comparisons for gap in one.gaps))
+    distances = [comparison.distance for comparison in comparisons if comparison.distance is not None]
+    lines = dict.fromkeys(line for difference in ranked for line in difference.divergence)
+    together = all(comparison.indistinguishable for comparison in comparisons)
+    gaps = tuple(dict.fromkeys(gap for comparison in comparisons for gap in comparison.gaps))
     distance = max(distances, default=None)
     if gaps and (distance or 0.0) <= 1.0:
         distance = None
-    compared = Compared.together(one.compared for one in comparisons if one.compared is not None)
-    way = max((one.way for one in comparisons if one.way is not None), default=None)
+    compared = Compared.together(
+        comparison.compared for comparison in comparisons if comparison.compared is not None
+    )
+    way = max((comparison.way for comparison in comparisons if comparison.way is not None), default=None)
     return Difference(together, distance, tuple(lines), gaps, way, compared)
 
 
@@ -447,7 +463,7 @@ def _of_quantity(
     short = _short(f"{name}{''.join(map(step_text, quantity.path.steps))}")
     if quantity.kind is Kind.STAMP and is_number(before) and is_number(after):
         late = f"{value_text(abs(after - before), 3)} s {'later' if after > before else 'earlier'}"
-        times = [value_text(one) for one in (after, before)]
+        times = [value_text(moment) for moment in (after, before)]
         text = f"the clock {short}: {times[0]} s instead of {times[1]} s ({late})"
         return _ProbeDifference(part, abs(after - before), tolerance, "s", is_clock=True, text=text)
     angle = _angle_between(quantity, before, after)
@@ -467,7 +483,7 @@ def _parts(values: Mapping[str, Any], probes: Sequence[Probe]) -> Iterator[tuple
     for probe in probes:
         for name in readings_of(probe, values) if probe.result else ():
             for quantity in probe.result:
-                yield from ((name, one) for one in quantities_meant(name, quantity, values))
+                yield from ((name, part) for part in quantities_meant(name, quantity, values))
 
 
 def _readable(original: _Readings, mutant: _Readings, target: str) -> str:
@@ -555,10 +571,10 @@ def _first_part(before: Any, after: Any, tolerance: float) -> tuple[str, Any, An
         pairs = [(f"[{index}]", *pair) for index, pair in enumerate(zip(before, after, strict=True))]
     else:
         return "", before, after
-    for step, one, two in pairs:
-        if not _is_same(one, two, tolerance):
-            path, first, other = _first_part(one, two, tolerance)
-            return f"{step}{path}", first, other
+    for step, first_part, second_part in pairs:
+        if not _is_same(first_part, second_part, tolerance):
+            path, first, second = _first_part(first_part, second_part, tolerance)
+            return f"{step}{path}", first, second
     return "", before, after
 
 

@@ -72,13 +72,13 @@ def confirm(
     Raises ControlError for a control that ends wrongly.
     """
     by_id = {mutant.id: mutant for mutant in mutants}
-    found = [one for one in writer.journal.outcomes() if one.mutant in by_id]
+    found = [outcome for outcome in writer.journal.outcomes() if outcome.mutant in by_id]
     drawn = run_short(found, campaign.request.seed)
-    left = [one for one in drawn if not one.confirmed]
+    left = [outcome for outcome in drawn if not outcome.confirmed]
     again = list(campaign.again)
     campaign.again.clear()
     spent = _original_seconds(campaign)
-    spent += sum(one.wall for one in (*found, *again) if (one.mutant, one.round) not in done)
+    spent += sum(outcome.wall for outcome in (*found, *again) if (outcome.mutant, outcome.round) not in done)
     due = left if any(map(is_wrong, drawn)) else list(_affordable(campaign, by_id, left, spent))
     if left:
         campaign.progress.note(
@@ -88,8 +88,8 @@ def confirm(
 
     def run(some: Iterable[Outcome], let_through: Iterable[Outcome]) -> int:
         ended: list[Outcome] = []
-        confirmed = {(one.mutant, one.round) for one in let_through}
-        runs = [(by_id[one.mutant], one.round) for one in some]
+        confirmed = {(outcome.mutant, outcome.round) for outcome in let_through}
+        runs = [(by_id[outcome.mutant], outcome.round) for outcome in some]
         run_trials(campaign.whole, runs, writer, ended.append, confirmed)
         return sum(map(is_wrong, ended))
 
@@ -105,16 +105,16 @@ def _affordable(
     """Yield the first outcomes whose re-runs with the whole suite fit into the time; at least one."""
     baseline = campaign.baseline
     rounds: set[int] = set()
-    for number, one in enumerate(left):
-        is_fresh, suite = one.engine == REPLAY, baseline.suite(one.round)
-        tests = suite if is_fresh else baseline.tests_judging(one.round, mutants[one.mutant])
-        seconds -= baseline.seconds(one.round, tests) + (baseline.startup if is_fresh else 0.0)
-        if not is_fresh and one.round not in rounds:  # the original runs beside them
-            seconds -= baseline.seconds(one.round, suite)
-        rounds.add(one.round)
+    for number, outcome in enumerate(left):
+        is_fresh, suite = outcome.engine == REPLAY, baseline.suite(outcome.round)
+        tests = suite if is_fresh else baseline.tests_judging(outcome.round, mutants[outcome.mutant])
+        seconds -= baseline.seconds(outcome.round, tests) + (baseline.startup if is_fresh else 0.0)
+        if not is_fresh and outcome.round not in rounds:  # the original runs beside them
+            seconds -= baseline.seconds(outcome.round, suite)
+        rounds.add(outcome.round)
         if seconds < 0 and number:
             return
-        yield one
+        yield outcome
 
 
 def _original_seconds(campaign: Campaign) -> float:

@@ -49,7 +49,7 @@ def duration_of(campaign: Campaign, mutants: Sequence[Mutant]) -> Duration:
     A kill ends a run early: it is rather less. A mutant that waits until its time is up takes more.
     """
     request, baseline = campaign.request, campaign.baseline
-    alone = [one for one in mutants if not one.has_sizes]
+    alone = [candidate for candidate in mutants if not candidate.has_sizes]
     seconds = 0.0
     for round in range(request.rounds):
         for mutant in alone:

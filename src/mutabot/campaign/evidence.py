@@ -86,7 +86,7 @@ class CampaignEvidence:
         self._digests[round, end.test] = _digest(recording)
         self.recordings.add(ORIGINAL, round, end.test, Rank.ORIGINAL, data)
         found = from_bytes(data)
-        self.has_tracks |= any(one.kind is not TrackKind.LINE for one in found.tracks.values())
+        self.has_tracks |= any(track.kind is not TrackKind.LINE for track in found.tracks.values())
         if end.outcome == "passed":
             self._passed.setdefault(end.test, []).append(round)
         return found
@@ -123,13 +123,13 @@ class CampaignEvidence:
                 continue
             original, seen, data = changed
             noise, spread = self._noise.get((round, end.test)), self._spread(end.test)
-            one = diverged(end.test, original, seen, noise, spread, is_cut=end.outcome == "failed")
-            if one is not None:
-                one = replace(one, example=end.example)
+            divergence = diverged(end.test, original, seen, noise, spread, is_cut=end.outcome == "failed")
+            if divergence is not None:
+                divergence = replace(divergence, example=end.example)
                 rank = Rank.SURVIVOR if survived else Rank.OTHER
                 self.recordings.add(mutant, round, end.test, rank, data)
-                found.append(one)
-        return tuple(sorted(found, key=lambda one: one.rank, reverse=True))
+                found.append(divergence)
+        return tuple(sorted(found, key=lambda found_divergence: found_divergence.rank, reverse=True))
 
     def _changed(self, round: int, end: TestEnd) -> tuple[RecordedPaths, RecordedPaths, bytes] | None:
         """Return the original's recording of a test, this one, and its data; None if they are the same."""
@@ -148,7 +148,7 @@ class CampaignEvidence:
     def _spread_of(self, test: str) -> Spread:
         """Return how far the original's runs of a test with different seeds are apart."""
         runs = (self._original(round, test) for round in self._passed.get(test, ()))
-        return spread_between([one for one in runs if one is not None])
+        return spread_between([run for run in runs if run is not None])
 
     def _read_original(self, round: int, test: str) -> RecordedPaths | None:
         data = self.recordings.data(ORIGINAL, round, test)

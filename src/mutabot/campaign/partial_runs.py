@@ -60,7 +60,7 @@ class CampaignRun(Campaign):
         with preparation.open_executor(request, progress) as opened:
             texts = texts_of(request.project, progress.note)
             baseline, results = take_baseline(request, opened, progress, texts=texts, repetitions=1)
-            planned = {one.id: one for one in make_plan(baseline, request.project).mutants}
+            planned = {mutant.id: mutant for mutant in make_plan(baseline, request.project).mutants}
             yield cls(request, baseline, opened, progress, originals=tuple(results), planned=planned)
 
     @staticmethod
@@ -110,7 +110,9 @@ def replay_one(
     Raises what ``CampaignRun.open`` and ``CampaignRun.current`` raise.
     """
     rounds = sorted(set(rounds))
-    first = {(one.mutant, one.round): one for one in journal.outcomes()}
+    first = {
+        (known_outcome.mutant, known_outcome.round): known_outcome for known_outcome in journal.outcomes()
+    }
     with CampaignRun.open(replace(request, rounds=rounds[-1] + 1), progress) as campaign:
         now = campaign.current(mutant)
         campaign.prove([now])

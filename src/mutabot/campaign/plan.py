@@ -49,9 +49,9 @@ def draw(mutants: Sequence[Mutant], seed: int, sample: Sample) -> tuple[list[Mut
     for family in {family for family, _ in strata}:
         roles = {role: those for (name, role), those in strata.items() if name == family}
         for role, size in sample.sizes({role: len(those) for role, those in roles.items()}).items():
-            drawn.update(one.id for one in shuffled(roles[role], f"{seed}:sample")[:size])
+            drawn.update(drawn_mutant.id for drawn_mutant in shuffled(roles[role], f"{seed}:sample")[:size])
     described = (
-        Stratum(family, role, len(those), sum(one.id in drawn for one in those))
+        Stratum(family, role, len(those), sum(member.id in drawn for member in those))
         for (family, role), those in strata.items()
     )
     drawing = Drawing(sample.text, len(mutants), tuple(described))
@@ -60,7 +60,9 @@ def draw(mutants: Sequence[Mutant], seed: int, sample: Sample) -> tuple[list[Mut
 
 def shuffled(mutants: Iterable[Mutant], salt: str) -> list[Mutant]:
     """Shuffle mutants: the rank of each depends on its own id only."""
-    return sorted(mutants, key=lambda one: blake2b(f"{salt}:{one.id}".encode(), digest_size=16).digest())
+    return sorted(
+        mutants, key=lambda mutant: blake2b(f"{salt}:{mutant.id}".encode(), digest_size=16).digest()
+    )
 
 
 def make_plan(baseline: Baseline, project: Project) -> Plan:
@@ -70,32 +72,46 @@ def make_plan(baseline: Baseline, project: Project) -> Plan:
     for made in planned.values():
         made.reach_text(baseline)
     baseline.add_planned({provider.name: found for provider, found in planned.items()})
-    for _, together in groupby(planned, key=lambda one: one.numbered_with or one.name):
+    for _, together in groupby(
+        planned, key=lambda fault_provider: fault_provider.numbered_with or fault_provider.name
+    ):
         found = sorted(
-            (one for provider in together for one in planned[provider].mutants), key=lambda one: one.order
+            (planned_mutant for provider in together for planned_mutant in planned[provider].mutants),
+            key=lambda planned_mutant: planned_mutant.order,
         )
-        plan.left_out.extend(one.as_left_out for one in found if one.reason is not None)
+        plan.left_out.extend(
+            planned_mutant.as_left_out for planned_mutant in found if planned_mutant.reason is not None
+        )
         first = len(plan.mutants) + 1
-        kept = [one.mutant for one in found if one.reason is None]
-        plan.mutants.extend(replace(one, number=number) for number, one in enumerate(kept, start=first))
+        kept = [planned_mutant.mutant for planned_mutant in found if planned_mutant.reason is None]
+        plan.mutants.extend(replace(mutant, number=number) for number, mutant in enumerate(kept, start=first))
     return plan
 
 
 def summaries(mutants: Iterable[Mutant]) -> dict[str, str]:
     """Return the summary of each operator that made one of the mutants, by its name."""
     mutants = list(mutants)
-    providers = {one.provider: provider(one.provider) for one in mutants}
-    known = {(name, rule.name): rule.summary for name, one in providers.items() for rule in one.rules()}
-    used = sorted({(one.family, one.operator, one.provider) for one in mutants})
+    providers = {mutant.provider: provider(mutant.provider) for mutant in mutants}
+    known = {
+        (name, rule.name): rule.summary
+        for name, fault_provider in providers.items()
+        for rule in fault_provider.rules()
+    }
+    used = sorted({(mutant.family, mutant.operator, mutant.provider) for mutant in mutants})
     return {name: known[by, name] for _, name, by in used if (by, name) in known}
 
 
 def of_common(mutants: Iterable[Mutant]) -> list[Mutant]:
     """The mutants among them of operators that ``--operators common`` keeps."""
     mutants = list(mutants)
-    providers = {one.provider: provider(one.provider) for one in mutants}
-    common = {(name, rule.name) for name, one in providers.items() for rule in one.rules() if rule.is_common}
-    return [one for one in mutants if (one.provider, one.operator) in common]
+    providers = {mutant.provider: provider(mutant.provider) for mutant in mutants}
+    common = {
+        (name, rule.name)
+        for name, fault_provider in providers.items()
+        for rule in fault_provider.rules()
+        if rule.is_common
+    }
+    return [mutant for mutant in mutants if (mutant.provider, mutant.operator) in common]
 
 
 def drawing(mutants: Iterable[Mutant]) -> list[str]:
@@ -160,9 +176,9 @@ def listed_rules(families: Collection[str] = ()) -> list[dict[str, str]]:
     wanted = [family for family in known_families() if not families or family in families]
     rules = [rule for rule in rules_of(wanted) if rule.family in wanted]
     found = []
-    for rule in sorted(rules, key=lambda one: wanted.index(one.family)):
-        told = {name: getattr(rule, name) for name in ("name", "family", "summary", "where")}
+    for rule in sorted(rules, key=lambda known_rule: wanted.index(known_rule.family)):
+        facts = {name: getattr(rule, name) for name in ("name", "family", "summary", "where")}
         published = f"Published operators: {rule.published}." if rule.published else ""
         common = "yes" if rule.is_common else ""
-        found.append({**told, "source": rule.rationale or published, "common": common})
+        found.append({**facts, "source": rule.rationale or published, "common": common})
     return found

@@ -137,7 +137,7 @@ def selected(campaign: Campaign, plan: Plan) -> Plan:
     for remark in ignored:
         campaign.progress.note(str(remark))
     reached = {place for _, place in campaign.baseline.reaching}
-    if not any(Place.of(one) in reached for one in plan.mutants):
+    if not any(Place.of(mutant) in reached for mutant in plan.mutants):
         raise NothingToDoError(_why_no_mutants(request, plan, campaign.baseline))
     mutants = select(plan.mutants, request.only, request.skip, left_out=plan.left_out)
     mutants = of_common(mutants) if request.operators == COMMON else mutants
@@ -153,15 +153,18 @@ def _ignored(request: Request, plan: Plan) -> Iterator[Remark]:
     """Remark on settings of the configuration that have no effect on any provider of faults."""
     configuration, mutants = request.configuration, plan.mutants
     without = {rule.name for rule in rules_of(request.families) if not rule.has_moments}
-    others = sorted({one.family for one in mutants if one.operator in without})
+    others = sorted({mutant.family for mutant in mutants if mutant.operator in without})
     if request.moments != (None,) and others:
         text = f"mutants of {' and '.join(others)} act wherever they are reached: moments are those of calls"
         yield Remark(configuration.file or "configuration", "when", text)
     firsts = [ladder[0] for ladder in split_ladders(mutants)[1].values()]
-    kinds = {one.id: request.vocabulary.quantity(one.operation, one.pattern, one.quantity) for one in firsts}
+    kinds = {
+        mutant.id: request.vocabulary.quantity(mutant.operation, mutant.pattern, mutant.quantity)
+        for mutant in firsts
+    }
     for demand in configuration.demands:
-        known = ((one, kinds[one.id]) for one in firsts)
-        if not any(demand.is_about(one, of.kind if of is not None else None) for one, of in known):
+        known = ((mutant, kinds[mutant.id]) for mutant in firsts)
+        if not any(demand.is_about(mutant, of.kind if of is not None else None) for mutant, of in known):
             family = family_of(f":{demand.operator}")
             text = (
                 f"no mutant of {demand.operator} is what it speaks of, so it demands nothing; "
@@ -172,12 +175,12 @@ def _ignored(request: Request, plan: Plan) -> Iterator[Remark]:
 
 def _why_no_mutants(request: Request, plan: Plan, baseline: Baseline) -> str:
     files = ", ".join((*request.configuration.program, *request.configuration.oracle))
-    if any(not one.operation for one in plan.mutants):
+    if any(not mutant.operation for mutant in plan.mutants):
         return f"no test reaches any of the {len(plan.mutants)} mutants of {files}"
     reasons = by_heading(plan.left_out) if not plan.mutants else {}
     if reasons:
-        told = "; ".join(f"{len(those)} {heading}" for heading, those in reasons.items())
-        return f"no mutants: all {len(plan.left_out)} are left out: {told}"
+        reasons_text = "; ".join(f"{len(those)} {heading}" for heading, those in reasons.items())
+        return f"no mutants: all {len(plan.left_out)} are left out: {reasons_text}"
     if baseline.hits and not plan.mutants:
         families = ", ".join(request.families)
         return f"no mutants: no operator of the families asked for ({families}) acts on what is called"
@@ -222,7 +225,9 @@ def check(request: Request, progress: Progress) -> CheckReport:
     refuse_tracked(request.journal_path)
     previews = dict(_previews(request))
     with locked_executor(request, progress) as opened, ExitStack() as stack:
-        folders = {folder for one in previews.values() for folder in one.folders_left_out}
+        folders = {
+            folder for program_preview in previews.values() for folder in program_preview.folders_left_out
+        }
         # files that the first reads itself are not opened by tests: it begins before the second
         with OriginalRuns(request, None, progress) as original, OpenedFiles(request.root, folders) as watch:
             campaign, _ = begin(request, opened, progress, original=original, stack=stack)
@@ -263,7 +268,9 @@ def _report(
     selected = f" selected of {len(plan.mutants)}" if len(mutants) != len(plan.mutants) else ""
     reasons = by_heading(plan.left_out)
     reached = {place.operation for place in baseline.hits}
-    unused = [one.target for one in request.vocabulary.operations if one.target not in reached]
+    unused = [
+        operation.target for operation in request.vocabulary.operations if operation.target not in reached
+    ]
     flaky, nondeterministic = baseline.unstable, sorted(baseline.nondeterministic)
     clock = request.vocabulary.clock
     never_ticks = clock is not None and all(end.simulated is None for end in baseline.ends.values())

@@ -29,10 +29,10 @@ def value_of(quantity: Quantity, keys: Sequence[str], values: Mapping[str, Any])
 
 def parts_of(name: str, quantity: Quantity, values: Mapping[str, Any]) -> Iterator[Any]:
     """Return the values of a quantity that a reading of a probe contains."""
-    for one in quantities_meant(name, quantity, values):
-        keys = keys_of(name, one, values)
+    for part in quantities_meant(name, quantity, values):
+        keys = keys_of(name, part, values)
         if keys and all(key in values for key in keys):
-            yield value_of(one, keys, values)
+            yield value_of(part, keys, values)
 
 
 def is_pattern(quantity: Quantity) -> bool:
@@ -107,8 +107,10 @@ def probe_intervals_of(ends: Mapping[tuple[int, str], TestEnd]) -> dict[int, dic
     found: dict[int, dict[str, int]] = {}
     for (round, test), end in ends.items():
         may_take = max(_LEAST, _SHARE * end.cpu)
-        possible = [one for one in _STRIDES if one <= end.commands]
-        fitting = [one for one in possible if _readings_at(end.commands, one) * seconds <= may_take]
+        possible = [interval for interval in _STRIDES if interval <= end.commands]
+        fitting = [
+            interval for interval in possible if _readings_at(end.commands, interval) * seconds <= may_take
+        ]
         if fitting:
             found.setdefault(round, {})[test] = fitting[0]
     return found

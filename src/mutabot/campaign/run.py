@@ -58,7 +58,7 @@ def run_campaign(request: Request, progress: Progress) -> Path:
                 recorded(request, progress) as evidence,
                 ExitStack() as stack,
             ):
-                others = [stack.enter_context(one) for one in open_others(request, progress)]
+                others = [stack.enter_context(other) for other in open_others(request, progress)]
                 try:
                     end = _run(request, opened, progress, journal, others, evidence, stack)
                 finally:
@@ -105,7 +105,7 @@ def _run(
     if request.fresh:
         journal.forget(mutant.id for mutant in part.mutants)
     if evidence is not None:
-        evidence.begin([(*one.task.key, one.ends) for one in results], whole.mutants)
+        evidence.begin([(*result.task.key, result.ends) for result in results], whole.mutants)
     for (round, test), reason in baseline.unstable.items():
         progress.note(f"excluded in round {round + 1}: {test} ({reason})")
     refuse_flaky(request, baseline)
@@ -168,15 +168,17 @@ def _note_lacking(request: Request, original: OriginalRuns, progress: Progress) 
 
 def _tidy(journal: Journal, request: Request, whole: Plan) -> None:
     """Forget mutants that the program no longer has; families that were not planned are kept."""
-    there = {one.id for one, _ in journal.known()} | {one.id for one in whole.mutants}
-    rest = {one for one, _ in journal.kept()} - there
-    journal.tidy([*there, *(one for one in rest if family_of(one) not in request.families)])
+    there = {mutant.id for mutant, _ in journal.known()} | {mutant.id for mutant in whole.mutants}
+    rest = {kept_mutant for kept_mutant, _ in journal.kept()} - there
+    journal.tidy(
+        [*there, *(kept_mutant for kept_mutant in rest if family_of(kept_mutant) not in request.families)]
+    )
 
 
 def _end(journal: Journal, part: Plan, rounds: int) -> str:
     """Return how a campaign that ran everything has ended, by its journal; ladders may skip mutants."""
     known = journal.rounds_known()
-    is_known = all(known.get(one.id, 0) >= rounds for one in part.mutants if not one.ladder)
+    is_known = all(known.get(mutant.id, 0) >= rounds for mutant in part.mutants if not mutant.ladder)
     return "complete" if is_known else records.INCOMPLETE
 
 
@@ -238,7 +240,7 @@ def _write_beginning(
     for result in results:
         round, repetition = result.task.key
         journal.add_tests(records.BaselineTest.of(round, repetition, end) for end in result.ends)
-    carried = carry([one for one, _ in journal.known()], request, plan.mutants, whole.mutants)
+    carried = carry([mutant for mutant, _ in journal.known()], request, plan.mutants, whole.mutants)
     files = {span.file for mutant in (*plan.mutants, *carried) for span in mutant.site.spans}
     sources = {file: text_of(path) for file in files if (path := request.root / file).is_file()}
     journal.set_plan(plan.mutants, plan.left_out, sources=sources)

@@ -57,10 +57,16 @@ def run_planned(
     is_whole, rounds = False, range(request.rounds)
     with suppress(OutOfTimeError), limited(until, request.clock) if until is not None else nullcontext():
         record_more_seeds(
-            campaign, [one for one in alone if any((one.id, round) not in found.done for round in rounds)]
+            campaign,
+            [mutant for mutant in alone if any((mutant.id, round) not in found.done for round in rounds)],
         )
         if until is None:
-            runs = [(one, round) for round in rounds for one in alone if (one.id, round) not in found.done]
+            runs = [
+                (mutant, round)
+                for round in rounds
+                for mutant in alone
+                if (mutant.id, round) not in found.done
+            ]
             run_trials(campaign, runs, writer)
         else:
             _run_batches(campaign, alone, writer, found, until)
@@ -114,7 +120,9 @@ def _run_ladders(
         return
     request = campaign.request
     kept = {
-        (one.mutant, one.round): one for one in writer.journal.outcomes() if (one.mutant, one.round) in done
+        (outcome.mutant, outcome.round): outcome
+        for outcome in writer.journal.outcomes()
+        if (outcome.mutant, outcome.round) in done
     }
 
     def run(runs: Sequence[MutantRun]) -> list[Outcome]:
@@ -125,7 +133,9 @@ def _run_ladders(
 
     always = demanded_of(ladders, request.configuration.demands, request.vocabulary)
     whole_ladders = {name: those for name, those in ladders.items() if _is_whole(those)}
-    always |= {name: tuple(one.magnitude or 0.0 for one in those) for name, those in whole_ladders.items()}
+    always |= {
+        name: tuple(mutant.magnitude or 0.0 for mutant in those) for name, those in whole_ladders.items()
+    }
     count = search_ladders(ladders, run, rounds=request.rounds, seed=request.seed, always=always)
     whole = request.rounds * sum(map(len, ladders.values()))
     campaign.progress.note(
@@ -168,6 +178,9 @@ def in_order(
     return [
         run
         for round in range(rounds)
-        for run in sorted(((one, round) for one in shuffled(mutants, f"{seed}:budget:{round}")), key=rank)
+        for run in sorted(
+            ((shuffled_mutant, round) for shuffled_mutant in shuffled(mutants, f"{seed}:budget:{round}")),
+            key=rank,
+        )
         if (run[0].id, round) not in done
     ]

@@ -179,13 +179,15 @@ def _difference(real: Campaign, results: Sequence[Result], tried: Tried) -> str 
         if repetition:
             continue
         of_round = (runs[round, 0], runs[round, 1], result)
-        ends = [{end.test: end.lasting for end in one.ends} for one in of_round]
+        ends = [{end.test: end.lasting for end in round_result.ends} for round_result in of_round]
         seen = [
-            {end.test: observation(end, places) for end in one.ends}
-            for one, places in ((one, sources.places(one.sites)) for one in of_round)
+            {end.test: observation(end, places) for end in round_result.ends}
+            for round_result, places in (
+                (round_result, sources.places(round_result.sites)) for round_result in of_round
+            )
         ]
         for test in dict.fromkeys([*ends[0], *ends[2]]):
-            was, again, now = (one.get(test, "not run") for one in ends)
+            was, again, now = (end_by_test.get(test, "not run") for end_by_test in ends)
             line = None
             if now not in {was, again}:
                 line = f"{test} is {was} in round {round + 1}, and {now} in the simulation"
@@ -200,24 +202,24 @@ def _difference(real: Campaign, results: Sequence[Result], tried: Tried) -> str 
     return None
 
 
-def _value(first: Observation, second: Observation, other: Observation, words: Vocabulary) -> str | None:
+def _value(first: Observation, second: Observation, other: Observation, vocabulary: Vocabulary) -> str | None:
     """Describe the first difference in probes, returned values or calls of a site that real runs share.
 
     In which order nodes come to their sites is a matter of chance.
     """
     runs = (first, second, other)
     parts = [
-        [Observation(probes=one.probes, unread=one.unread) for one in runs],
-        [Observation(returned=one.returned, prepared=one.prepared) for one in runs],
+        [Observation(probes=observed.probes, unread=observed.unread) for observed in runs],
+        [Observation(returned=observed.returned, prepared=observed.prepared) for observed in runs],
         *(
             _at(site, runs)
-            for site in dict.fromkeys(call.key for one in (first, other) for call in one.events)
+            for site in dict.fromkeys(call.key for observed in (first, other) for call in observed.events)
         ),
     ]
-    for one, two, three in parts:
-        found = compare(one, three, words.probes, words.operations).divergence
-        if found and not compare(one, two, words.probes, words.operations).divergence:
-            site = next((f"{call.key}: " for call in (*one.events, *three.events)), "")
+    for first_run, second_run, third_run in parts:
+        found = compare(first_run, third_run, vocabulary.probes, vocabulary.operations).divergence
+        if found and not compare(first_run, second_run, vocabulary.probes, vocabulary.operations).divergence:
+            site = next((f"{call.key}: " for call in (*first_run.events, *third_run.events)), "")
             return f"{site}{found[0]}"
     return None
 
@@ -227,7 +229,7 @@ def _at(site: str, runs: Sequence[Observation]) -> list[Observation]:
 
     How often it is reached, and whether an answer comes before the test has ended, is a matter of moments.
     """
-    first = [[call for call in one.events if call.key == site][:1] for one in runs]
+    first = [[call for call in run.events if call.key == site][:1] for run in runs]
     calls = [call for found in first for call in found]
     if len(calls) < len(runs) or not all(isinstance(call.read, Mapping) for call in calls):
         return [Observation(found) for found in first]

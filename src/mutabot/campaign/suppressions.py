@@ -61,12 +61,16 @@ def text_of(file: Path) -> str:
 
 
 def _unknown_operators(found: Iterable[Suppression]) -> Iterator[ConfigurationError]:
-    for one in found:
-        if one.operator and not {"*", "?"} & {*one.operator} and one.operator not in registry.names():
+    for suppression in found:
+        if (
+            suppression.operator
+            and not {"*", "?"} & {*suppression.operator}
+            and suppression.operator not in registry.names()
+        ):
             known = [*registry.names(), *operators_of_packages()]
-            if one.operator not in known:
-                file, _, line = one.source.rpartition(":")
-                text = unknown_name_text("operator", one.operator, known)
+            if suppression.operator not in known:
+                file, _, line = suppression.source.rpartition(":")
+                text = unknown_name_text("operator", suppression.operator, known)
                 yield UnknownNameError(text, file=file, line=int(line))
 
 
@@ -87,10 +91,10 @@ def comments_in(file: str, text: str) -> list[Suppression]:
             errors.append(ConfigurationError(f"{problem}; {_USAGE}", file=file, line=number))
             continue
         at = _next_code(lines, number) if is_alone else number
-        one = Suppression(
+        suppression = Suppression(
             Action(action), why, f"{file}:{number}", file=file, numbers=(at, at), in_source=True
         )
-        found += [replace(one, operator=operator) for operator in operators]
+        found += [replace(suppression, operator=operator) for operator in operators]
     raise_errors(errors)
     return found
 
@@ -124,7 +128,7 @@ def divided(campaign: Campaign, plan: Plan) -> tuple[Plan, tuple[str, ...]]:
     if not campaign.suppressions:
         return plan, ()
     lines, left_out = _SourceLines(campaign.request.root), list(plan.left_out)
-    excluding = [one for one in campaign.suppressions if one.action is Action.EXCLUDE]
+    excluding = [suppression for suppression in campaign.suppressions if suppression.action is Action.EXCLUDE]
     kept = []
     for mutant in plan.mutants:
         found = first_fitting(excluding, mutant, lines.of)
@@ -140,34 +144,39 @@ def divided(campaign: Campaign, plan: Plan) -> tuple[Plan, tuple[str, ...]]:
 
 def _unmatched(campaign: Campaign, plan: Plan, lines: _SourceLines) -> Iterator[str]:
     """Describe the decisions that match no mutant of this campaign's families."""
-    ids = {one.id for one in plan.left_out}
-    for one in campaign.suppressions:
-        named = [mutant for mutant in plan.mutants if one.names(mutant)]
-        if one.id in ids or any(one.fits(mutant, lines.of) for mutant in named):
+    ids = {omission.id for omission in plan.left_out}
+    for suppression in campaign.suppressions:
+        named = [mutant for mutant in plan.mutants if suppression.names(mutant)]
+        if suppression.id in ids or any(suppression.fits(mutant, lines.of) for mutant in named):
             continue
-        if one.id and named:
+        if suppression.id and named:
             now = line_at(lines.of, named[0])
-            yield f"{one.source}: the line of {one.id} has changed from {one.line!r} to {now!r}: decide again"
-        elif _is_of(one, campaign.request.families):
-            yield f"{one.source}: no mutant is {one.words}: the decision has no effect"
+            change = f"the line of {suppression.id} has changed from {suppression.line!r} to {now!r}"
+            yield f"{suppression.source}: {change}: decide again"
+        elif _is_of(suppression, campaign.request.families):
+            yield f"{suppression.source}: no mutant is {suppression.words}: the decision has no effect"
 
 
-def _is_of(one: Suppression, families: Collection[str]) -> bool:
+def _is_of(suppression: Suppression, families: Collection[str]) -> bool:
     """Return whether a decision may be about mutants of these families."""
-    if not one.id and (not one.operator or {"*", "?"} & {*one.operator}):
+    if not suppression.id and (not suppression.operator or {"*", "?"} & {*suppression.operator}):
         return True
-    return family_of(one.id or one.operator) in families
+    return family_of(suppression.id or suppression.operator) in families
 
 
 def note_accepted(journal: Journal, suppressions: Iterable[Suppression], unmatched: Sequence[str]) -> None:
     """Record in a journal which mutants are accepted if they survive, and which decisions match none."""
-    accepting = [one for one in suppressions if one.action is Action.ACCEPT]
+    accepting = [candidate for candidate in suppressions if candidate.action is Action.ACCEPT]
     lines = cache(lambda file: (journal.source(file) or "").split("\n"))
     found = {}
-    for mutant in (*journal.mutants(), *(one for one, _ in journal.known())) if accepting else ():
-        one = first_fitting(accepting, mutant, lines)
-        if one is not None:
-            found[mutant.id] = Acceptance(one.why, one.source, one.date, one.in_source)
+    for mutant in (
+        (*journal.mutants(), *(known_mutant for known_mutant, _ in journal.known())) if accepting else ()
+    ):
+        suppression = first_fitting(accepting, mutant, lines)
+        if suppression is not None:
+            found[mutant.id] = Acceptance(
+                suppression.why, suppression.source, suppression.date, suppression.in_source
+            )
     journal.set_meta(records.ACCEPTED, Accepted(found, tuple(unmatched)))
 
 

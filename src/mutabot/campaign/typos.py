@@ -52,7 +52,7 @@ def _may_fit(word: str, files: Sequence[str], names: Collection[str], root: Path
         return True
     meant = [known for known in files if _is_file(file, known)]
     lines = line_of(word)
-    return bool(meant) and (lines is None or any(lines[1].start <= _length(root / one) for one in meant))
+    return bool(meant) and (lines is None or any(lines[1].start <= _length(root / path) for path in meant))
 
 
 def _length(file: Path) -> int:

@@ -200,7 +200,7 @@ def _judged(campaign: Campaign, run: Run) -> Outcome:
     ends = [end for end in run.ends if (run.round, end.test) not in nondeterministic]
     survived = outcome.verdict is Verdict.SURVIVED
     found = campaign.evidence.take(run.mutant.id, run.round, ends, survived=survived)[:_MOST_DIVERGED]
-    is_elsewhere = any(one.apart for one in found)
+    is_elsewhere = any(divergence.apart for divergence in found)
     same = False if is_elsewhere and outcome.indistinguishable else outcome.indistinguishable
     return replace(outcome, diverged=found, indistinguishable=same)
 
@@ -257,7 +257,7 @@ def _executed(run: Run, decided: TestEnd | None, baseline: Baseline, *, is_of_su
     if run.death is not None or run.problem is not None or is_of_suite or run.gone:
         return None
     reaching = set(baseline.tests_reaching(run.round, run.mutant))
-    asked = [n for n, one in enumerate(run.ends) if one is decided or one.hits or one.test in reaching]
+    asked = [n for n, end in enumerate(run.ends) if end is decided or end.hits or end.test in reaching]
     # what these tell is what none before them has told
     whole = max((n for n in asked if run.ends[n].hits or run.ends[n].outcome == "failed"), default=-1)
     ends = [*run.ends[: whole + 1], *(run.ends[n] for n in asked if n > whole)]
@@ -282,7 +282,7 @@ def _looked(run: Run, baseline: Baseline) -> tuple[Looked, ...]:
     reaching = set(baseline.tests_reaching(run.round, run.mutant))
     ends = (end for end in run.ends if end.test in reaching)
     found = [Looked(end.test, end.acted > 0, end.checks, end.more_checks) for end in ends]
-    return tuple(sorted(found, key=lambda one: not one.acted)[:_MOST_LOOKED])
+    return tuple(sorted(found, key=lambda test: not test.acted)[:_MOST_LOOKED])
 
 
 def _ruling(run: Run, usual: int) -> Ruling:
@@ -374,27 +374,28 @@ def _ruling_on_exit(code: int | None, usual: int, acted: bool) -> Ruling:
 def _collected_otherwise(run: Run) -> tuple[str, ...]:
     """Describe how the collected tests differ from the original's."""
     new = [end.test for end in run.ends if end.test not in run.tests]
-    told = [f"{in_short(run.gone, 1)} not collected"] if run.gone else []
-    told += [f"collected beside the original's tests: {in_short(new, 1)}"] if new else []
-    return tuple(told)
+    differences = [f"{in_short(run.gone, 1)} not collected"] if run.gone else []
+    differences += [f"collected beside the original's tests: {in_short(new, 1)}"] if new else []
+    return tuple(differences)
 
 
 def _with_tests(comparisons: Mapping[str, Difference]) -> Mapping[str, Difference]:
     """Return what differs in each test; if that is several, each line names its test."""
-    if sum(bool(one.divergence) for one in comparisons.values()) < 2:
+    if sum(bool(comparison.divergence) for comparison in comparisons.values()) < 2:
         return comparisons
     return {
         test: replace(
-            one, divergence=tuple(f"{line} (in {test.rpartition('::')[2]})" for line in one.divergence)
+            difference,
+            divergence=tuple(f"{line} (in {test.rpartition('::')[2]})" for line in difference.divergence),
         )
-        for test, one in comparisons.items()
+        for test, difference in comparisons.items()
     }
 
 
 def stable_first(comparisons: Mapping[str, Difference], scattering: Collection[str]) -> Difference:
     """Merge the comparisons of all tests; tests whose end varies in the original come last."""
     whole = farthest([*comparisons.values()])
-    stable = farthest([one for test, one in comparisons.items() if test not in scattering])
+    stable = farthest([difference for test, difference in comparisons.items() if test not in scattering])
     if not scattering or not stable.divergence:
         return whole
     others = tuple(line for line in whole.divergence if line not in stable.divergence)

@@ -43,12 +43,12 @@ def accept(context: CommandContext, mutant: _Mutants = None, why: _Why = "", jso
     if why and not names:
         raise UsageError("--why needs a mutant: `mutabot accept 5 --why …`")
     results = context.results(earlier=True)
-    chosen = list({one.mutant.id: one for one in _named(results, names)}.values())
+    chosen = list({result.mutant.id: result for result in _named(results, names)}.values())
     _refuse_others(chosen)
     read_suppressions(root)  # a file with a mistake is not added to
     if chosen:
         lines = cache(lambda file: (results.source(file) or "").split("\n"))
-        entries = [(one.mutant.id, line_at(lines, one.mutant)) for one in chosen]
+        entries = [(result.mutant.id, line_at(lines, result.mutant)) for result in chosen]
         add_acceptances(root, entries, why.strip(), datetime.date.today())
     if is_written(path):
         context.tell(
@@ -64,7 +64,7 @@ def accept(context: CommandContext, mutant: _Mutants = None, why: _Why = "", jso
     for section in shown:
         print_section(make_console(), section)
     if chosen:
-        context.tell([f"\naccepted {numbered([one.mutant.number for one in chosen])}; commit {FILE}"])
+        context.tell([f"\naccepted {numbered([result.mutant.number for result in chosen])}; commit {FILE}"])
 
 
 def _named(results: Results, names: Sequence[str]) -> Iterator[MutantResult]:
@@ -77,14 +77,16 @@ def _named(results: Results, names: Sequence[str]) -> Iterator[MutantResult]:
 def _refuse_others(chosen: Sequence[MutantResult]) -> None:
     """Raise SelectionError for mutants that cannot be accepted."""
     wrong = []
-    for one in chosen:
-        name = f"mutant {one.mutant.number}"
-        if one.is_accepted:
-            wrong.append(f"{name} is {acceptance_text(one)} ({one.acceptance and one.acceptance.source})")
-        elif one.mutant.has_sizes:
+    for result in chosen:
+        name = f"mutant {result.mutant.number}"
+        if result.is_accepted:
+            wrong.append(
+                f"{name} is {acceptance_text(result)} ({result.acceptance and result.acceptance.source})"
+            )
+        elif result.mutant.has_sizes:
             wrong.append(f"{name} is a magnitude of a graded fault, which is in no score: nothing to accept")
-        elif not one.is_survivor:
-            wrong.append(f"{name} is not a survivor ({state_of(one)}): only survivors can be accepted")
+        elif not result.is_survivor:
+            wrong.append(f"{name} is not a survivor ({state_of(result)}): only survivors can be accepted")
     if wrong:
         raise SelectionError("\n".join(wrong))
 
@@ -94,7 +96,7 @@ def _apply(path: Path, root: Path, results: Results) -> None:
     suppressions = [*read_suppressions(root)]
     for file, text in results.sources.items():
         suppressions += comments_in(file, text)
-    sources = {one.source for one in suppressions}
-    unmatched = [one for one in results.accepting.unmatched if one.partition(": ")[0] in sources]
+    sources = {suppression.source for suppression in suppressions}
+    unmatched = [place for place in results.accepting.unmatched if place.partition(": ")[0] in sources]
     with Journal.amend(path) as journal:
         note_accepted(journal, suppressions, unmatched)

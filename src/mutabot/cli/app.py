@@ -143,9 +143,9 @@ def function_of(name: str) -> Callable[..., object]:
 
 
 def _command(name: str, function: Callable[..., object], help: str | None = None) -> Any:
-    one = typer.Typer(add_completion=False, **SETTINGS)
-    one.command(name, help=help)(function)
-    return typer.main.get_command(one)
+    application = typer.Typer(add_completion=False, **SETTINGS)
+    application.command(name, help=help)(function)
+    return typer.main.get_command(application)
 
 
 @contextmanager
@@ -207,7 +207,7 @@ def options(
 
 def project_of(folder: Path) -> Path:
     """Return the nearest project from this folder upwards, relative to it; this folder if there is none."""
-    above = (one for one in (folder, *folder.parents) if _is_project(one))
+    above = (path for path in (folder, *folder.parents) if _is_project(path))
     return Path(os.path.relpath(next(above, folder), folder))
 
 

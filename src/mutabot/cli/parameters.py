@@ -64,7 +64,7 @@ def with_options(function: Callable[..., object]) -> Callable[..., object]:
     parameters = [*_parameters(own.parameters, settings), *_options(parts)]
     changed: Any = command
     changed.__signature__ = own.replace(parameters=parameters)
-    changed.__annotations__ = {one.name: one.annotation for one in parameters}
+    changed.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
     return command
 
 
@@ -78,11 +78,15 @@ def _settings_of(asked: Parameter | None) -> Any:
 def _parameters(own: Mapping[str, Parameter], settings: Any) -> Iterator[Parameter]:
     yield Parameter("context", Parameter.KEYWORD_ONLY, annotation=typer.Context)
     shared = get_type_hints(Shared, include_extras=True)
-    for name, one in own.items():
+    for name, parameter in own.items():
         if name in ("context", "request", "template"):
             continue
-        hint = one.annotation if get_origin(one.annotation) is Annotated else shared.get(name, one.annotation)
-        yield one.replace(kind=one.KEYWORD_ONLY, annotation=hint)
+        hint = (
+            parameter.annotation
+            if get_origin(parameter.annotation) is Annotated
+            else shared.get(name, parameter.annotation)
+        )
+        yield parameter.replace(kind=parameter.KEYWORD_ONLY, annotation=hint)
     for name, hint in get_type_hints(settings, include_extras=True).items() if settings is not None else ():
         yield Parameter(name, Parameter.KEYWORD_ONLY, default=_DEFAULTS.get(name), annotation=hint)
 

@@ -74,7 +74,7 @@ def request_of(
         families=families,
         sample=size,
         every_test=every_test,
-        moments=tuple({one and one.text: one for one in moments}.values()),
+        moments=tuple({moment and moment.text: moment for moment in moments}.values()),
         shard=Shard.parse(shard) if shard is not None else None,
         evidence=evidence and configuration.evidence > 0,
         since=given.get("since"),

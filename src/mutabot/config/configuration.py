@@ -251,8 +251,8 @@ def load_configuration(
         return found
     # the file is without a mistake, so what is wrong now is wrong with what the command line says
     flags = " ".join(f"-o {text}" for text in overrides)
-    said = DocumentPlace(Document(flags, place.document.data, {}, ConfigurationError), path=place.path)
-    return _checked(said, folder, families, overrides).model_copy(update={"file": found.file})
+    stated = DocumentPlace(Document(flags, place.document.data, {}, ConfigurationError), path=place.path)
+    return _checked(stated, folder, families, overrides).model_copy(update={"file": found.file})
 
 
 def _checked(
@@ -425,8 +425,8 @@ class _Paths:
 def _refuse_overlap(place: DocumentPlace, program: tuple[str, ...], oracle: tuple[str, ...]) -> None:
     """Note each part of the oracle that belongs to the program as well."""
     for path, other in product(oracle, program):
-        one, two = PurePosixPath(path), PurePosixPath(other)
-        if one.is_relative_to(two) or two.is_relative_to(one):
+        oracle_part, program_part = PurePosixPath(path), PurePosixPath(other)
+        if oracle_part.is_relative_to(program_part) or program_part.is_relative_to(oracle_part):
             place.error(f"{path!r} overlaps program ({other!r}); a call is the program's or the tests'")
 
 

@@ -40,7 +40,7 @@ class DemandTable(Table):
 def check_demands(place: DocumentPlace, tables: Sequence[Mapping[str, Any]]) -> tuple[Demand, ...]:
     """Return the demands in these tables; mistakes are noted."""
     found = (_demand(place / index, raw) for index, raw in enumerate(tables))
-    return tuple(one for one in found if one is not None)
+    return tuple(demand for demand in found if demand is not None)
 
 
 def _demand(place: DocumentPlace, raw: Mapping[str, Any]) -> Demand | None:
@@ -78,7 +78,7 @@ def _check_operator(place: DocumentPlace, name: str) -> None:
     from mutabot.faults import brought_providers  # noqa: PLC0415  # few configurations name one
     from mutabot.operators import load_all  # noqa: PLC0415  # as above
 
-    rules = chain(load_all(), (rule for one in brought_providers() for rule in one.rules()))
+    rules = chain(load_all(), (rule for provider in brought_providers() for rule in provider.rules()))
     known = [rule.name for rule in rules if rule.has_sizes]
     if name not in known:
         place.error(unknown_name_text("graded operator", name, [*known, OFFSET]))

@@ -148,8 +148,8 @@ def explained(detail: ErrorDetails) -> str:
     if (wanted := _EXPECTED.get(kind.partition("_")[0])) is not None:
         return f"expected {wanted}, got {shown(value)}{_list_hint(detail)}"
     if kind in _BOUNDS:
-        bound, words = _BOUNDS[kind]
-        return f"must be {words} {detail['ctx'][bound]}, got {shown(value)}"
+        bound, condition = _BOUNDS[kind]
+        return f"must be {condition} {detail['ctx'][bound]}, got {shown(value)}"
     if kind in _LENGTHS:
         found, (wanted, bound) = detail["ctx"]["actual_length"], _LENGTHS[kind]
         return f"needs {wanted} {detail['ctx'][bound]} entries, got {found}" if found else "must not be empty"

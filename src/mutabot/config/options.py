@@ -118,7 +118,7 @@ class Sample:
         for role in by_remainder[: wanted - sum(sizes.values())]:
             sizes[role] += 1
         for role in [role for role, size in sizes.items() if size == 0]:
-            richest = max(sizes, key=lambda one: sizes[one])
+            richest = max(sizes, key=lambda size: sizes[size])
             if sizes[richest] > 1:
                 sizes[richest] -= 1
                 sizes[role] += 1

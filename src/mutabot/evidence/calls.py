@@ -19,28 +19,28 @@ def first_difference(
     original: Sequence[RecordedCall], mutant: Sequence[RecordedCall]
 ) -> tuple[str, float | None] | None:
     """Describe the first call that differs, and when it began; None if all calls are the same."""
-    for one, other in zip(original, mutant, strict=False):
-        found = _difference(one, other)
+    for first, second in zip(original, mutant, strict=False):
+        found = _difference(first, second)
         if found:
-            return found, other.began
+            return found, second.began
     if len(mutant) < len(original):
-        one = original[len(mutant)]
-        return f"{_name(one)} is no longer called", one.began
+        first = original[len(mutant)]
+        return f"{_name(first)} is no longer called", first.began
     if len(original) < len(mutant):
-        other = mutant[len(original)]
-        return f"{_name(other)} is called once more", other.began
+        second = mutant[len(original)]
+        return f"{_name(second)} is called once more", second.began
     return None
 
 
-def _difference(one: RecordedCall, other: RecordedCall) -> str:
+def _difference(first: RecordedCall, second: RecordedCall) -> str:
     """Describe how a call differs from the original's; empty if it does not."""
-    if (one.operation, one.place, one.pattern) != (other.operation, other.place, other.pattern):
-        return f"{_name(other)} is called instead of {_name(one)}"
-    for before, after, verb in ((one.written, other.written, "sends"), (one.read, other.read, "reads")):
+    if (first.operation, first.place, first.pattern) != (second.operation, second.place, second.pattern):
+        return f"{_name(second)} is called instead of {_name(first)}"
+    for before, after, verb in ((first.written, second.written, "sends"), (first.read, second.read, "reads")):
         for name in {**before, **after}:
             if not _are_equal(before.get(name), after.get(name)):
                 usual, found = distinct_texts(before.get(name), after.get(name), value_text, 4)
-                return f"{_name(other)} {verb} {name} {found} instead of {usual}"
+                return f"{_name(second)} {verb} {name} {found} instead of {usual}"
     return ""
 
 

@@ -28,12 +28,12 @@ _FLICKER = 0.25
 def intervals_of(recording: Recording) -> dict[BodyPair, list[ContactSpan]]:
     """Return when each pair of bodies touches, in order."""
     found: dict[BodyPair, list[ContactSpan]] = {}
-    for one in recording.moments:
-        pair = tuple(one.text.split(", ", 1))
-        if one.what == "touch":
-            found.setdefault(pair, []).append((one.time, inf))
-        elif one.what == "part" and pair in found:
-            found[pair][-1] = (found[pair][-1][0], one.time)
+    for moment in recording.moments:
+        pair = tuple(moment.text.split(", ", 1))
+        if moment.what == "touch":
+            found.setdefault(pair, []).append((moment.time, inf))
+        elif moment.what == "part" and pair in found:
+            found[pair][-1] = (found[pair][-1][0], moment.time)
     return found
 
 
@@ -101,8 +101,8 @@ class RecordedContacts:
     def _moves(self, thing: str, lies: list[ContactSpan], held: list[ContactSpan]) -> bool:
         """Return whether a thing moves over the ground while it lies on something and is not held."""
         path = self.seen.paths[thing]
-        for (before, one), (after, other) in pairwise(zip(path.when, path.points, strict=True)):
-            way = hypot(other[0] - one[0], other[1] - one[1])
+        for (before, previous_point), (after, point) in pairwise(zip(path.when, path.points, strict=True)):
+            way = hypot(point[0] - previous_point[0], point[1] - previous_point[1])
             if after - before <= STEP or way <= _CARRYING * (after - before):
                 continue
             is_held = is_within(before, held) or is_within(after, held)
@@ -113,10 +113,10 @@ class RecordedContacts:
     def holds(self, thing: str) -> list[ContactSpan]:
         """Return the intervals in which any robot touches a thing."""
         return joined(
-            one
+            interval
             for pair, found in self.intervals.items()
             if thing in pair and self.robots & {*pair}
-            for one in found
+            for interval in found
         )
 
     def supports(self, thing: str) -> dict[str, list[ContactSpan]]:

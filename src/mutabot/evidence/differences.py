@@ -44,17 +44,20 @@ def measures_of(path: TrackPath) -> Iterator[Measure]:
         values = [row[0] for row in path.rows]
         tolerance = SHARE * (max(values) - min(values)) or 1e-6
         yield Measure(
-            track.name, track.unit, tolerance, lambda one, other: difference_of(one[0], other[0], track.unit)
+            track.name,
+            track.unit,
+            tolerance,
+            lambda first, second: difference_of(first[0], second[0], track.unit),
         )
         return
-    yield Measure(track.name, "m", LENGTH, lambda one, other: dist(one[:3], other[:3]))
+    yield Measure(track.name, "m", LENGTH, lambda first, second: dist(first[:3], second[:3]))
     if track.kind is TrackKind.POSE:
         yield Measure(f"{track.name}{TURNED}", "deg", TOLERANCES["deg"], turned)
 
 
-def turned(one: Row, other: Row) -> float:
+def turned(first: Row, second: Row) -> float:
     """Return the angle between two orientations, deg."""
-    dot = abs(sum(a * b for a, b in zip(one[3:7], other[3:7], strict=True)))
+    dot = abs(sum(a * b for a, b in zip(first[3:7], second[3:7], strict=True)))
     return degrees(2.0 * acos(min(1.0, dot)))
 
 
@@ -98,19 +101,19 @@ def differences(
         before, after = original[name], mutant[name]
         if before.track.kind is not after.track.kind:
             continue
-        rows = [(time, one, other) for time, one, other in _paired_rows(before, after) if time <= until]
-        if any(one != other for _, one, other in rows):
+        rows = [(time, first, second) for time, first, second in _paired_rows(before, after) if time <= until]
+        if any(first != second for _, first, second in rows):
             apart = (_apart(measure, before, after, rows, noise, spread) for measure in measures_of(before))
-            found += [one for one in apart if one is not None]
-    return sorted(found, key=lambda one: (-one.deviation, one.name))
+            found += [deviation for deviation in apart if deviation is not None]
+    return sorted(found, key=lambda deviation: (-deviation.deviation, deviation.name))
 
 
-def noise_between(one: RecordedPaths, other: RecordedPaths) -> dict[str, float]:
+def noise_between(left: RecordedPaths, right: RecordedPaths) -> dict[str, float]:
     """Return by how much each thing differs between two equal runs of the original."""
     found = {}
-    for name in one.paths.keys() & other.paths.keys():
-        rows = list(_paired_rows(one.paths[name], other.paths[name]))
-        for measure in measures_of(one.paths[name]):
+    for name in left.paths.keys() & right.paths.keys():
+        rows = list(_paired_rows(left.paths[name], right.paths[name]))
+        for measure in measures_of(left.paths[name]):
             gaps = (measure.between(first, second) for _, first, second in rows if first != second)
             found[measure.name] = max(gaps, default=0.0)
     return found
@@ -135,11 +138,11 @@ def _apart(
 ) -> Apart | None:
     """Return how far apart a thing was; None if within the tolerance."""
     tolerance = max(measure.tolerance, 2.0 * noise.get(measure.name, 0.0))
-    gaps = [(time, measure.between(one, other) if one != other else 0.0) for time, one, other in rows]
+    gaps = [(time, measure.between(left, right) if left != right else 0.0) for time, left, right in rows]
     first = next((time for time, gap in gaps if gap > tolerance), None)
     if first is None:
         return None
-    at, largest = max(gaps, key=lambda one: one[1])
+    at, largest = max(gaps, key=lambda gap: gap[1])
     name, beside = measure.name, aside_of(measure, before, after)
     spreads = spread.ends.get(name, 0.0), spread.paths.get(name, 0.0)
     is_value = before.track.kind is TrackKind.VALUE

@@ -39,9 +39,13 @@ def measurements_of(
     ``is_cut``: whether the mutant's test ended early, so that only what exceeds the original counts.
     """
     found = list(_measured(original, mutant, spread, is_cut=is_cut))
-    heights = {one.thing for one in found if one.name == RELEASE}
-    found = [one for one in found if one.name != IMPACT or one.thing in heights]
-    return sorted(found, key=lambda one: (-one.deviation, one.name, one.thing))
+    heights = {measurement.thing for measurement in found if measurement.name == RELEASE}
+    found = [
+        measurement for measurement in found if measurement.name != IMPACT or measurement.thing in heights
+    ]
+    return sorted(
+        found, key=lambda measurement: (-measurement.deviation, measurement.name, measurement.thing)
+    )
 
 
 def _measured(

@@ -64,7 +64,7 @@ def aside(points: Iterable[Point], path: Sequence[Point], bows: Sequence[float] 
 
     ``bows``: how far the path may be from each of its lines, m; points that are no farther lie on it.
     """
-    segments = [_segment(one, other) for one, other in pairwise(path)] or [_segment(path[0], path[0])]
+    segments = [_segment(first, second) for first, second in pairwise(path)] or [_segment(path[0], path[0])]
     squares = [bow * bow for bow in bows] or [0.0] * len(segments)
     worst = 0.0
     for point in points:
@@ -88,10 +88,10 @@ def turned_aside(rows: Sequence[Row], path: Sequence[Row]) -> float:
     """
     chords = _chords(_turns(path))
     worst = 0.0
-    for one in _without_repetitions(_turns(rows)):
+    for turn in _without_repetitions(_turns(rows)):
         least = inf
         for start, end, unseen in chords:
-            square = min(_chord(one, start, end), _chord([-part for part in one], start, end))
+            square = min(_chord(turn, start, end), _chord([-part for part in turn], start, end))
             least = min(least, sqrt(square) - unseen)
             if least <= worst:
                 break
@@ -103,18 +103,18 @@ def _turns(rows: Sequence[Row]) -> list[list[float]]:
     """Return the quaternions, each with the sign nearer to its predecessor."""
     found: list[list[float]] = []
     for row in rows[:: len(rows) // _MOST_TURNS + 1]:
-        one = list(row[3:7])
-        if found and sum(a * b for a, b in zip(one, found[-1], strict=True)) < 0.0:
-            one = [-part for part in one]
-        found.append(one)
+        turn = list(row[3:7])
+        if found and sum(a * b for a, b in zip(turn, found[-1], strict=True)) < 0.0:
+            turn = [-part for part in turn]
+        found.append(turn)
     return found
 
 
 def _without_repetitions(turns: Sequence[list[float]]) -> list[list[float]]:
     found: list[list[float]] = []
-    for one in turns:
-        if not found or dist(one, found[-1]) > _SAME_TURN:
-            found.append(one)
+    for turn in turns:
+        if not found or dist(turn, found[-1]) > _SAME_TURN:
+            found.append(turn)
     return found
 
 
@@ -152,10 +152,10 @@ def _share(point: Sequence[float], start: Sequence[float], end: Sequence[float])
     return min(1.0, max(0.0, way / length)) if length else 0.0
 
 
-def _segment(one: Point, other: Point) -> tuple[float, ...]:
+def _segment(start: Point, end: Point) -> tuple[float, ...]:
     """Return the start of a segment, its direction, and the square of its length."""
-    x, y, z = one
-    dx, dy, dz = other[0] - x, other[1] - y, other[2] - z
+    x, y, z = start
+    dx, dy, dz = end[0] - x, end[1] - y, end[2] - z
     return x, y, z, dx, dy, dz, dx * dx + dy * dy + dz * dz
 
 
@@ -216,7 +216,8 @@ class TrackPath:
         swerves = [0.0, *(self._swerve(number) for number in range(len(self.points))), 0.0]
         beside = zip(swerves, swerves[1:], swerves[2:], swerves[3:], strict=False)
         bends = [
-            _CORNER * max(one, other) - _ARC * min(before, after) for before, one, other, after in beside
+            _CORNER * max(first, second) - _ARC * min(before, after)
+            for before, first, second, after in beside
         ]
         return [max(0.0, *bends[first:last]) for first, last in pairwise(self._corners)]
 
@@ -234,10 +235,10 @@ class TrackPath:
         if not 0 < number < len(self.points) - 1:
             return 0.0
         before, now, after = self.when[number - 1 : number + 2]
-        one, point, other = self.points[number - 1 : number + 2]
+        previous, point, following = self.points[number - 1 : number + 2]
         if min(now - before, after - now) <= STEP:  # another world begins
             return 0.0
-        return sqrt(_square(point, _segment(one, other)))
+        return sqrt(_square(point, _segment(previous, following)))
 
     def at(self, time: float) -> int:
         """Return the number of the row that holds at a time: the last one before or at it, else the first."""
@@ -268,6 +269,8 @@ class RecordedPaths:
     def _those(self, *, is_drawn: bool) -> dict[str, TrackPath]:
         times, tracks = self.recording.times, self.recording.tracks.items()
         found = {
-            name: TrackPath(one, times) for name, one in tracks if (one.kind is TrackKind.LINE) is is_drawn
+            name: TrackPath(track, times)
+            for name, track in tracks
+            if (track.kind is TrackKind.LINE) is is_drawn
         }
         return {name: path for name, path in found.items() if path.rows}

@@ -57,10 +57,10 @@ def facts_of(seen: RecordedPaths) -> dict[tuple[str, str], Fact]:
     """Return the largest value of each kind, by name and thing."""
     contacts = RecordedContacts(seen)
     found: dict[tuple[str, str], Fact] = {}
-    for one in _facts(contacts):
-        key = one.name, one.thing
-        if key not in found or one.value > found[key].value:
-            found[key] = one
+    for fact in _facts(contacts):
+        key = fact.name, fact.thing
+        if key not in found or fact.value > found[key].value:
+            found[key] = fact
     for thing in contacts.things:  # the impact that belongs to the release
         release = found.get((RELEASE, thing))
         if release is not None:
@@ -89,9 +89,9 @@ def _facts(contacts: RecordedContacts) -> Iterator[Fact]:
 
 def _speeds(path: TrackPath) -> Iterator[tuple[float, float]]:
     """Yield the speed of a thing at each moment, m/s."""
-    for (before, one), (after, other) in pairwise(zip(path.when, path.points, strict=True)):
+    for (before, previous_point), (after, point) in pairwise(zip(path.when, path.points, strict=True)):
         if after - before > STEP:
-            yield after, dist(one, other) / (after - before)
+            yield after, dist(previous_point, point) / (after - before)
 
 
 def _releases(contacts: RecordedContacts, thing: str) -> Iterator[Fact]:
@@ -159,7 +159,7 @@ def _upward(row: Row) -> tuple[float, float, float]:
 def _slips(contacts: RecordedContacts, thing: str) -> Iterator[Fact]:
     """Yield how far a thing moved in a robot's grip while nothing else touched it."""
     path = contacts.seen.paths[thing]
-    supports = [one for found in contacts.supports(thing).values() for one in found]
+    supports = [interval for found in contacts.supports(thing).values() for interval in found]
     for hold in contacts.holds(thing):
         free = [
             number for number, time in enumerate(path.when)
@@ -169,9 +169,11 @@ def _slips(contacts: RecordedContacts, thing: str) -> Iterator[Fact]:
             continue
         tool = min(
             (contacts.seen.paths[name] for name in contacts.tools),
-            key=lambda one: dist(one.points[one.at(path.when[free[0]])], path.points[free[0]]),
+            key=lambda track_path: dist(
+                track_path.points[track_path.at(path.when[free[0]])], path.points[free[0]]
+            ),
         )
-        places = [_in_frame(tool.rows[tool.at(path.when[one])], path.points[one]) for one in free]
+        places = [_in_frame(tool.rows[tool.at(path.when[index])], path.points[index]) for index in free]
         ways = [dist(places[0], place) for place in places]
         worst = max(range(len(ways)), key=ways.__getitem__)
         yield Fact(SLIP, thing, ways[worst], path.when[free[worst]])
@@ -194,18 +196,18 @@ def _in_frame(frame: Row, point: Sequence[float]) -> tuple[float, ...]:
 def _drags(contacts: RecordedContacts, thing: str) -> Iterator[Fact]:
     """Yield how far a robot moved a thing over its support; supports that move things are left out."""
     path, holds = contacts.seen.paths[thing], contacts.holds(thing)
-    for other, found in contacts.supports(thing).items():
+    for support, found in contacts.supports(thing).items():
         together = [(begin, end) for begin, end in found if any(a < end and begin < b for a, b in holds)]
-        if not together or other in contacts.carriers:
+        if not together or support in contacts.carriers:
             continue
         way, at = 0.0, None
-        for (before, one), (after, next_one) in pairwise(zip(path.when, path.points, strict=True)):
+        for (before, point), (after, next_one) in pairwise(zip(path.when, path.points, strict=True)):
             both = all(is_within(time, holds) and is_within(time, together) for time in (before, after))
             if both and after - before > STEP:
-                way += hypot(next_one[0] - one[0], next_one[1] - one[1])
+                way += hypot(next_one[0] - point[0], next_one[1] - point[1])
                 at = before if at is None else at
         if at is not None:
-            yield Fact(DRAG, thing, way, at, other)
+            yield Fact(DRAG, thing, way, at, support)
 
 
 def _collisions(contacts: RecordedContacts) -> Iterator[Fact]:

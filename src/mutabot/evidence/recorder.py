@@ -78,8 +78,8 @@ class WorldRecorder:
         Nobody knows before whether anything will tell the simulated time. Until something does, it is that of
         the wall clock, below zero so that it is known for what it is.
         """
-        told = self._clock_time()
-        return self.at_wall(monotonic()) if told is None else told
+        time = self._clock_time()
+        return self.at_wall(monotonic()) if time is None else time
 
     def at_wall(self, moment: float) -> float:
         """Return a moment of ``time.monotonic`` as a time of the recorder."""
@@ -187,9 +187,9 @@ class WorldRecorder:
             track.values = array(
                 "f",
                 (
-                    one
+                    value
                     for number in range(0, len(values), 2 * width)
-                    for one in values[number : number + width]
+                    for value in values[number : number + width]
                 ),
             )
 

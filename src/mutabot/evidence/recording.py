@@ -154,10 +154,10 @@ def to_bytes(recording: Recording) -> bytes:
     """Return the recording as compressed bytes, to be stored; numbers are in this machine's byte order."""
     tracks = recording.tracks.values()
     fields = {name: getattr(recording, name) for name in _PLAIN_FIELDS}
-    fields["tracks"] = [(one.name, one.kind, one.unit, one.size, one.radii) for one in tracks]
+    fields["tracks"] = [(track.name, track.kind, track.unit, track.size, track.radii) for track in tracks]
     fields["count"] = len(recording.times)
     head = json.dumps(fields, default=_plain, separators=(",", ":")).encode()
-    numbers = [one.tobytes() for one in (recording.times, *(track.values for track in tracks))]
+    numbers = [values.tobytes() for values in (recording.times, *(track.values for track in tracks))]
     return _compressed(b"".join([len(head).to_bytes(4, "little"), head, *numbers]))
 
 
@@ -183,9 +183,12 @@ def from_bytes(data: bytes) -> Recording:
         head.setdefault("robots", ())  # recordings of earlier versions do not say
         fields = {name: head[name] for name in _PLAIN_FIELDS}
         fields["robots"] = tuple(fields["robots"])
-        fields["blocks"] = tuple(Block(one[0], *map(_tuple, one[1:])) for one in fields["blocks"])
-        fields["moments"] = [RecordedMoment(*one) for one in fields["moments"]]
-        fields["calls"] = [RecordedCall(*one) for one in fields["calls"]]
+        fields["blocks"] = tuple(
+            Block(fields_of_block[0], *map(_tuple, fields_of_block[1:]))
+            for fields_of_block in fields["blocks"]
+        )
+        fields["moments"] = [RecordedMoment(*fields_of_moment) for fields_of_moment in fields["moments"]]
+        fields["calls"] = [RecordedCall(*fields_of_call) for fields_of_call in fields["calls"]]
         return Recording(times, tracks, **fields)
     except (zlib.error, LookupError, TypeError) as error:
         raise ValueError(f"no recording: {error}") from error

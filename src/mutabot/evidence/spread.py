@@ -26,15 +26,15 @@ def spread_between(runs: Sequence[RecordedPaths]) -> Spread:
         return Spread()
     ends: dict[str, float] = {}
     paths: dict[str, float] = {}
-    for one, other in combinations(runs, 2):
-        for name in one.paths.keys() & other.paths.keys():
-            before, after = one.paths[name], other.paths[name]
+    for first, second in combinations(runs, 2):
+        for name in first.paths.keys() & second.paths.keys():
+            before, after = first.paths[name], second.paths[name]
             for measure in measures_of(before) if before.track.kind is after.track.kind else ():
                 far = _end_distance(measure, before, after)
                 ends[measure.name] = max(far, ends.get(measure.name, 0.0))
                 beside = (aside_of(measure, *pair) or 0.0 for pair in ((before, after), (after, before)))
                 paths[measure.name] = max(*beside, paths.get(measure.name, 0.0))
-    touched = [intervals_of(one.recording).keys() for one in runs]
+    touched = [intervals_of(run.recording).keys() for run in runs]
     return Spread(
         ends,
         paths,
@@ -57,15 +57,15 @@ def _moved(path: TrackPath) -> Row:
 
 def _measured(runs: Sequence[RecordedPaths]) -> dict[tuple[str, str], float]:
     found: dict[tuple[str, str], list[float]] = {}
-    for one in runs:
-        for key, fact in facts_of(one).items():
+    for run in runs:
+        for key, fact in facts_of(run).items():
             found.setdefault(key, []).append(fact.value)
     return {key: spread_of(values) for key, values in found.items()}
 
 
 def _scatters(runs: Sequence[RecordedPaths], ends: dict[str, float]) -> str:
     """Describe the thing whose end is least stable."""
-    kinds = {name: path.track.kind for one in runs for name, path in one.paths.items()}
+    kinds = {name: path.track.kind for run in runs for name, path in run.paths.items()}
     places = (name for name, kind in kinds.items() if kind is not TrackKind.VALUE and name in ends)
     far, name = max(((ends[name], name) for name in places), default=(0.0, ""))
     return f"{name} by {far:.2g} m" if far > _STABLE else ""

@@ -68,7 +68,7 @@ def diverged(
     """
     both = _ComparedRuns(original, mutant, spread or Spread(), is_cut)
     apart = differences(original.paths, mutant.paths, noise or {}, both.spread, both.until)
-    found = [(one.first, _first_text(one)) for one in apart]
+    found = [(deviation.first, _first_text(deviation)) for deviation in apart]
     call = first_difference(original.recording.calls, mutant.recording.calls)
     if call is not None and call[1] is not None:
         found.append((call[1], call[0]))
@@ -91,12 +91,12 @@ def diverged(
     )
 
 
-def _first_text(one: Apart) -> str:
+def _first_text(deviation: Apart) -> str:
     """Return the first difference: a place, an orientation, or a value."""
-    thing = one.name.removesuffix(TURNED)
-    if thing != one.name:
+    thing = deviation.name.removesuffix(TURNED)
+    if thing != deviation.name:
         return f"{thing} is turned otherwise than in the original run"
-    if one.unit == "m" and one.aside is not None and not one.is_value:
+    if deviation.unit == "m" and deviation.aside is not None and not deviation.is_value:
         return f"{thing} is at a different position than in the original run"
     return f"{thing} has a different value than in the original run"
 
@@ -136,19 +136,21 @@ class _ComparedRuns:
         """What was measured and differs; times of the wall clock are no duration."""
         found = measurements_of(self.usual, self.facts, self.spread, is_cut=self.is_cut)
         are_simulated = self.original.recording.is_simulated and self.mutant.recording.is_simulated
-        return [one for one in found if one.name != DURATION or are_simulated]
+        return [measurement for measurement in found if measurement.name != DURATION or are_simulated]
 
     def story(self, apart: Sequence[Apart], measured: Sequence[Measurement]) -> str:
         """Return the sentence, most important part first; empty if the world was the same."""
         parts = [*self._cut(), *list(self._contacts(measured))[:_MOST_CONTACTS]]
-        others = [(one.deviation, self._motion(one)) for one in measured]
-        told = [one for one in apart if _is_significant(one)]
-        others += [(one.deviation, _strayed(one, is_whole=not self.is_cut)) for one in told]
-        others += _detours(told, is_whole=not self.is_cut)
-        parts += [text for _, text in sorted(others, key=lambda one: -one[0]) if text]
+        others = [(measurement.deviation, self._motion(measurement)) for measurement in measured]
+        significant = [deviation for deviation in apart if _is_significant(deviation)]
+        others += [
+            (deviation.deviation, _strayed(deviation, is_whole=not self.is_cut)) for deviation in significant
+        ]
+        others += _detours(significant, is_whole=not self.is_cut)
+        parts += [text for _, text in sorted(others, key=lambda weighted_text: -weighted_text[0]) if text]
         parts = parts or [self._delay()] if apart else parts
-        late = next((one for one in measured if one.name == DURATION), None)
-        if late is not None and any(not one.is_delay for one in apart):  # else the delay says so
+        late = next((measurement for measurement in measured if measurement.name == DURATION), None)
+        if late is not None and any(not deviation.is_delay for deviation in apart):  # else the delay says so
             parts.append(f"the test took {_beside(late, 3)}")
         text = "; ".join(list(dict.fromkeys(parts))[:_MOST_PARTS])
         if text and self.spread.scatters:
@@ -168,8 +170,8 @@ class _ComparedRuns:
         for pair in sorted(usual.intervals.keys() - contacts.intervals.keys()):
             begin = usual.intervals[pair][0][0]
             if begin < self.end and (always is None or pair in always):
-                one, other = sorted(pair, key=lambda name: name not in usual.robots)
-                yield f"{one} never touched {other} (original: at {begin:.1f} s)"
+                robot, touched = sorted(pair, key=lambda name: name not in usual.robots)
+                yield f"{robot} never touched {touched} (original: at {begin:.1f} s)"
         for thing in contacts.things:
             text = self._release(thing, usual, contacts, measured)
             if text:
@@ -180,17 +182,21 @@ class _ComparedRuns:
         self, usual: RecordedContacts, contacts: RecordedContacts, measured: Sequence[Measurement]
     ) -> Iterator[str]:
         """Yield contacts that no run of the original has, except those of released things."""
-        onto = {_pair(one.thing, one.other) for one in self.facts.values() if one.name == RELEASE}
-        speeds = {one.thing: one.value or 0.0 for one in measured if one.name == COLLISION}
+        onto = {_pair(fact.thing, fact.other) for fact in self.facts.values() if fact.name == RELEASE}
+        speeds = {
+            measurement.thing: measurement.value or 0.0
+            for measurement in measured
+            if measurement.name == COLLISION
+        }
         new = contacts.intervals.keys() - usual.intervals.keys() - self.spread.ever - onto
-        for pair in sorted(new, key=lambda one: contacts.intervals[one][0][0]):
+        for pair in sorted(new, key=lambda new_pair: contacts.intervals[new_pair][0][0]):
             order = [*contacts.robots, *contacts.things, *pair]
-            one, other = sorted(pair, key=order.index)
-            at, speed = contacts.intervals[pair][0][0], speeds.get(f"{one}, {other}")
+            body, touched = sorted(pair, key=order.index)
+            at, speed = contacts.intervals[pair][0][0], speeds.get(f"{body}, {touched}")
             if speed is None:
-                yield f"{one} touched the {other} at {at:.1f} s (original: never)"
+                yield f"{body} touched the {touched} at {at:.1f} s (original: never)"
             else:
-                yield f"{one} hit the {other} at {at:.1f} s with {_amount(speed, 'm/s')} (original: never)"
+                yield f"{body} hit the {touched} at {at:.1f} s with {_amount(speed, 'm/s')} (original: never)"
 
     def _release(
         self, thing: str, usual: RecordedContacts, contacts: RecordedContacts, measured: Sequence[Measurement]
@@ -204,16 +210,18 @@ class _ComparedRuns:
             is_told = usual.holds(thing) and after.value > SET_DOWN
             return f"{self._verb(thing, after)} {_height(after)} (original: never){impact}" if is_told else ""
         is_other = before.other != after.other
-        if not is_other and not any((one.name, one.thing) == (RELEASE, thing) for one in measured):
+        if not is_other and not any(
+            (measurement.name, measurement.thing) == (RELEASE, thing) for measurement in measured
+        ):
             return ""
         is_other_time = abs(after.at - before.at) > _OTHER_TIME
-        now, then = (f"at {one.at:.1f} s, " if is_other_time else "" for one in (after, before))
+        now, then = (f"at {fact.at:.1f} s, " if is_other_time else "" for fact in (after, before))
         known = _height(before) if is_other or before.value <= SET_DOWN else _amount(before.value)
         return f"{self._verb(thing, after)} {now}{_height(after)} (original: {then}{known}){impact}"
 
     def _not_landed(self, thing: str, usual: RecordedContacts, contacts: RecordedContacts) -> str:
         """Describe the release of a thing that touched nothing afterwards, or that was never released."""
-        ends = [found[-1][1] for one in (usual, contacts) if (found := one.holds(thing))]
+        ends = [found[-1][1] for recorded in (usual, contacts) if (found := recorded.holds(thing))]
         if len(ends) < 2 or ends[0] >= self.end:
             return ""
         if ends[1] == inf:
@@ -226,8 +234,16 @@ class _ComparedRuns:
         """Return the verb of a release: whether fingers opened, if they are recorded."""
         if release.value <= SET_DOWN:
             return f"{thing} was set down"
-        paths = [one for one in self.mutant.paths.values() if one.track.kind is TrackKind.VALUE]
-        fingers = [one for one in paths if "finger" in one.track.name or "gripper" in one.track.name]
+        paths = [
+            track_path
+            for track_path in self.mutant.paths.values()
+            if track_path.track.kind is TrackKind.VALUE
+        ]
+        fingers = [
+            track_path
+            for track_path in paths
+            if "finger" in track_path.track.name or "gripper" in track_path.track.name
+        ]
         for path in fingers:
             values = [row[0] for row in path.rows]
             moved = values[path.at(release.at + _AFTER)] - values[path.at(release.at - _BEFORE)]
@@ -237,23 +253,24 @@ class _ComparedRuns:
 
     def _impact(self, thing: str) -> str:
         """Describe the speed at which it hit what it fell onto."""
-        now, then = (one.get((IMPACT, thing)) for one in (self.facts, self.usual))
+        now, then = (facts.get((IMPACT, thing)) for facts in (self.facts, self.usual))
         if now is None or now.value < _SLOW:
             return ""
         is_known = then is not None and then.value >= _SLOW
         usual = f" (original: {_amount(then.value, 'm/s')})" if then is not None and is_known else ""
         return f" and hit it with {_amount(now.value, 'm/s')}{usual}"
 
-    def _motion(self, one: Measurement) -> str:
+    def _motion(self, measurement: Measurement) -> str:
         """Describe what slipped, was dragged or was faster."""
-        if one.name == SLIP:
-            return f"{one.thing} slipped {_beside(one)} in the grip"
-        if one.name == DRAG:
-            return f"{one.thing} was dragged {_beside(one)} over the {self.facts[DRAG, one.thing].other}"
-        if one.name == SPEED:
-            return f"{one.thing} moved at up to {_beside(one)}"
-        if one.name == MARGIN:
-            return f"{one.thing} fell to {_beside(one)}"
+        if measurement.name == SLIP:
+            return f"{measurement.thing} slipped {_beside(measurement)} in the grip"
+        if measurement.name == DRAG:
+            surface = self.facts[DRAG, measurement.thing].other
+            return f"{measurement.thing} was dragged {_beside(measurement)} over the {surface}"
+        if measurement.name == SPEED:
+            return f"{measurement.thing} moved at up to {_beside(measurement)}"
+        if measurement.name == MARGIN:
+            return f"{measurement.thing} fell to {_beside(measurement)}"
         return ""
 
     def _delay(self) -> str:
@@ -269,17 +286,17 @@ class _ComparedRuns:
     def _same_moments(self) -> Iterator[tuple[float, float]]:
         """Yield when the same calls began and the same bodies touched, in the original and in the mutant."""
         original, mutant = self.original.recording, self.mutant.recording
-        for one, other in zip(original.calls, mutant.calls, strict=False):
-            if one.operation != other.operation:
+        for first, second in zip(original.calls, mutant.calls, strict=False):
+            if first.operation != second.operation:
                 break
-            if one.began is not None and other.began is not None:
-                yield one.began, other.began
+            if first.began is not None and second.began is not None:
+                yield first.began, second.began
         if original.times and mutant.times and not self.is_cut:
             yield original.times[-1], mutant.times[-1]
 
 
-def _pair(one: str, other: str) -> BodyPair:
-    return tuple(sorted((one, other)))
+def _pair(first: str, second: str) -> BodyPair:
+    return tuple(sorted((first, second)))
 
 
 def _height(release: Fact) -> str:
@@ -288,52 +305,52 @@ def _height(release: Fact) -> str:
     return f"{_amount(release.value)} above the {release.other}"
 
 
-def _beside(one: Measurement, digits: int = 2) -> str:
+def _beside(measurement: Measurement, digits: int = 2) -> str:
     """Return a measurement beside the original's: ``12 mm (original: 1 mm)``."""
-    usual = "none" if not one.original else _amount(one.original, one.unit, digits)
-    return f"{_amount(one.value or 0.0, one.unit, digits)} (original: {usual})"
+    usual = "none" if not measurement.original else _amount(measurement.original, measurement.unit, digits)
+    return f"{_amount(measurement.value or 0.0, measurement.unit, digits)} (original: {usual})"
 
 
 def _amount(value: float, unit: str = "m", digits: int = 2) -> str:
     return amount(float(f"{value:.{digits}g}"), unit)
 
 
-def _is_significant(one: Apart) -> bool:
+def _is_significant(deviation: Apart) -> bool:
     """Return whether it is more than delay and the original's spread, and worth a sentence."""
-    return not one.is_delay and one.deviation > 1.0 and not one.name.endswith("margin")
+    return not deviation.is_delay and deviation.deviation > 1.0 and not deviation.name.endswith("margin")
 
 
-def _strayed(one: Apart, *, is_whole: bool) -> str:
+def _strayed(deviation: Apart, *, is_whole: bool) -> str:
     """Describe how far a thing was from its path and end; empty if not farther than the original."""
-    strayed, final = one.aside or 0.0, one.final if is_whole and one.of_end > 1.0 else 0.0
-    if final <= one.tolerance:
+    strayed, final = deviation.aside or 0.0, deviation.final if is_whole and deviation.of_end > 1.0 else 0.0
+    if final <= deviation.tolerance:
         return ""
-    thing = one.name.removesuffix(TURNED)
-    if thing != one.name:
-        return f"{thing} ended turned by {amount(final, one.unit)}"
-    if one.unit != "m" or one.is_value:
-        return f"{one.name} ended {amount(final, one.unit)} from its value in the original"
+    thing = deviation.name.removesuffix(TURNED)
+    if thing != deviation.name:
+        return f"{thing} ended turned by {amount(final, deviation.unit)}"
+    if deviation.unit != "m" or deviation.is_value:
+        return f"{deviation.name} ended {amount(final, deviation.unit)} from its value in the original"
     if strayed > 2.0 * final:
-        left = f"{one.name} left its path by up to {amount(strayed)}"
+        left = f"{deviation.name} left its path by up to {amount(strayed)}"
         return f"{left} and ended {amount(final)} from its original position"
-    return f"{one.name} ended {amount(final)} from its position in the original"
+    return f"{deviation.name} ended {amount(final)} from its position in the original"
 
 
 def _detours(apart: Sequence[Apart], *, is_whole: bool) -> Iterator[tuple[float, str]]:
     """Yield the things that left their path, or turned on the way, but reached its end, with deviations."""
-    found = [one for one in apart if one.aside is not None and not _strayed(one, is_whole=is_whole)]
-    found = [one for one in found if one.aside > max(one.tolerance, one.aside_spread)]  # type: ignore[operator]
-    paths = [one for one in found if one.unit == "m" and not one.is_value]
+    found = [gap for gap in apart if gap.aside is not None and not _strayed(gap, is_whole=is_whole)]
+    found = [gap for gap in found if gap.aside > max(gap.tolerance, gap.aside_spread)]  # type: ignore[operator]
+    paths = [gap for gap in found if gap.unit == "m" and not gap.is_value]
     if paths:
-        names = " and ".join(one.name for one in paths[:_MOST_PATHS])
-        far = " and ".join(amount(one.aside or 0.0) for one in paths[:_MOST_PATHS])
+        names = " and ".join(path.name for path in paths[:_MOST_PATHS])
+        far = " and ".join(amount(path.aside or 0.0) for path in paths[:_MOST_PATHS])
         its, plural = ("its path", "") if len(paths) == 1 else ("their paths", "s")
         end = f" but reached the correct end position{plural}" if is_whole else ""
         yield paths[0].deviation, f"{names} left {its} by up to {far}{end}"
-    for one in found:
-        if one.name.endswith(TURNED) and (one.aside or 0.0) > _LEAST_TURN:
-            thing, far = one.name.removesuffix(TURNED), amount(one.aside or 0.0, one.unit)
-            yield one.deviation, f"{thing} was turned by up to {far} on its way"
+    for deviation in found:
+        if deviation.name.endswith(TURNED) and (deviation.aside or 0.0) > _LEAST_TURN:
+            thing, far = deviation.name.removesuffix(TURNED), amount(deviation.aside or 0.0, deviation.unit)
+            yield deviation.deviation, f"{thing} was turned by up to {far} on its way"
 
 
 def amount(value: float, unit: str = "m") -> str:

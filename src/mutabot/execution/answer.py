@@ -82,11 +82,11 @@ class Answer:
 
         ``root``: what the project's folder is called where the answer goes.
         """
-        one = self.result
-        ending = to_data(Ending(one.exit_code, one.overdue, one.wall, one.log))
+        result = self.result
+        ending = to_data(Ending(result.exit_code, result.overdue, result.wall, result.log))
         data = (ending, *map(event_to_data, self.events))
         text = "\n".join(json.dumps(line, separators=(",", ":")) for line in data)
-        here, there = (json.dumps(path)[1:-1] for path in (one.task.job.root, root))
+        here, there = (json.dumps(path)[1:-1] for path in (result.task.job.root, root))
         return text.replace(here, there).encode()
 
     @classmethod
@@ -114,10 +114,12 @@ class Answer:
         task = self.result.task
         if not task.is_fork_parent:
             return (Answer([], self.result), task) if self.result.overdue is not None else (self, None)
-        ended = {one.mutant for one in self.events if isinstance(one, events.ForkDied) and one.overdue}
+        ended = {
+            event.mutant for event in self.events if isinstance(event, events.ForkDied) and event.overdue
+        }
         if not ended:
             return self, None
-        rest = [one for one in self.events if getattr(one, "mutant", None) not in ended]
+        rest = [event for event in self.events if getattr(event, "mutant", None) not in ended]
         return Answer(rest, self.result), task.only(ended)
 
 
@@ -159,9 +161,9 @@ def _check_numbers(value: Any) -> None:
     kind: Any = type(value)
     for name, is_own in _fields(kind).items():
         item = getattr(value, name)
-        for one in item if isinstance(item, tuple) else (item,):
-            if is_dataclass(one):
-                _check_numbers(one)
+        for part in item if isinstance(item, tuple) else (item,):
+            if is_dataclass(part):
+                _check_numbers(part)
         if is_own and any(abs(number) > _MOST for number in _integers(item)):
             raise ValueError(f"{name}: {item!r} is not a count")
         if name in _MEASURED and not 0 <= item < math.inf:
@@ -172,8 +174,8 @@ def _integers(item: Any) -> Iterator[int]:
     if isinstance(item, int):
         yield item
     elif isinstance(item, Mapping | tuple):
-        for one in item.values() if isinstance(item, Mapping) else item:
-            yield from _integers(one)
+        for value in item.values() if isinstance(item, Mapping) else item:
+            yield from _integers(value)
 
 
 @cache
@@ -185,7 +187,7 @@ def _fields(kind: Any) -> dict[str, bool]:
 def check_fit(found: Iterable[Event], job: Job) -> None:
     """Raise ValueError for events that this job cannot have caused."""
     forking = job.forking
-    mutants = {one.id for one in forking.mutants} if forking is not None else set()
+    mutants = {known_mutant.id for known_mutant in forking.mutants} if forking is not None else set()
     sites: set[int] = set()
     for event in found:
         if isinstance(event, _NEVER) or (forking is None and isinstance(event, _FORKS)):

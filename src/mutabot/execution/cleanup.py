@@ -149,7 +149,7 @@ def _open_up(folder: Path) -> None:
     with suppress(OSError):
         folder.chmod(0o700)
     for path, names, _ in os.walk(folder):
-        for one in (Path(path, name) for name in names):
+        for target in (Path(path, name) for name in names):
             with suppress(OSError):
-                if not one.is_symlink():
-                    one.chmod(0o700)
+                if not target.is_symlink():
+                    target.chmod(0o700)

@@ -74,8 +74,8 @@ def observe(
             str(root), tuple(program), tuple(tests), observer, references_for_processes(), tuple(libraries())
         )
         (folder / JOB).write_text(json.dumps(to_data(job)), encoding="utf-8")
-        words = [*command(arguments, home), *_OWN]
-        is_overdue = _wait(words, root, {VARIABLE: str(folder)}, log, limit)
+        command_line = [*command(arguments, home), *_OWN]
+        is_overdue = _wait(command_line, root, {VARIABLE: str(folder)}, log, limit)
         found = _read(folder, result)
         if is_overdue:
             trouble = f"the tests took longer than {limit:.0f} s: only what was seen by then is known"
@@ -88,13 +88,15 @@ def observe(
         return Observed(found.seen, found.outcomes, found.problems, trouble)
 
 
-def _wait(words: Sequence[str], root: Path, variables: Mapping[str, str], log: Path, limit: float) -> bool:
+def _wait(
+    command_line: Sequence[str], root: Path, variables: Mapping[str, str], log: Path, limit: float
+) -> bool:
     """Run pytest. Return whether it was ended because it took too long."""
     environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1", **variables}
     with (
         log.open("wb") as file,
         subprocess.Popen(
-            words, cwd=root, env=environment, stdin=subprocess.DEVNULL, stdout=file,
+            command_line, cwd=root, env=environment, stdin=subprocess.DEVNULL, stdout=file,
             stderr=subprocess.STDOUT, start_new_session=True,
         ) as process,
     ):  # fmt: skip
@@ -114,9 +116,9 @@ def _wait(words: Sequence[str], root: Path, variables: Mapping[str, str], log: P
 def _read(folder: Path, result: type[T]) -> Observed[T]:
     own = folder / f"{TESTS}{SEEN}"
     others = sorted(path for path in folder.glob(f"*{SEEN}") if path != own)
-    told = [_data(path) for path in (own, *others)]
-    seen = [from_data(result, one["seen"]) for one in told if one]
-    return Observed(seen, told[0].get("outcomes", {}), told[0].get("problems", ()))
+    contents = [_data(path) for path in (own, *others)]
+    seen = [from_data(result, content["seen"]) for content in contents if content]
+    return Observed(seen, contents[0].get("outcomes", {}), contents[0].get("problems", ()))
 
 
 def _data(path: Path) -> dict[str, Any]:

@@ -102,7 +102,7 @@ class Task:
         assert forking is not None
         own = replace(
             forking,
-            mutants=tuple(one for one in forking.mutants if one.id in mutants),
+            mutants=tuple(mutant for mutant in forking.mutants if mutant.id in mutants),
             keys={mutant: found for mutant, found in forking.keys.items() if mutant in mutants},
         )
         active = {mutant: found for mutant, found in self.job.active.items() if mutant in mutants}
@@ -215,20 +215,20 @@ class Result:
                 during = f" (during {self.running})" if self.running else ""
                 self.untrusted = f"{line.reason}{during}"
 
-    def death(self, *, said: bool = True) -> str:
-        """Return how a process ended abnormally, and if ``said`` the last line it printed."""
+    def death(self, *, with_message: bool = True) -> str:
+        """Return how a process ended abnormally, and if ``with_message`` the last line it printed."""
         if self.lost is not None:
             return self.lost
         during = f" during {self.running}" if self.running else ""
         if self.overdue:
             return f"{self.overdue}{during}"
-        line = last_line(self.log) if said else ""
+        line = last_line(self.log) if with_message else ""
         return f"{how_ended(self.exit_code)}{during}{f'; it said last: {line}' if line else ''}"
 
     def find_overdue(self, now: float) -> bool:
         """Note and return whether the suite's own limit ended the process by ``now`` (``time.monotonic``)."""
         if self.end is None and self.overdue is None and self.running is not None and self.exit_code == 1:
-            self.overdue = next((one.text for one in self.watched if now >= one.until), None)
+            self.overdue = next((watch.text for watch in self.watched if now >= watch.until), None)
             return self.overdue is not None
         return False
 

@@ -34,6 +34,6 @@ def _own_code() -> str:
     """Return a digest of mutabot's own code, where the version alone does not identify it."""
     home = Path(mutabot.__file__).parent
     places = (*(home / part for part in _PARTS), *home.parent.glob("mutabot_*"))
-    files = sorted(file for one in places for file in one.rglob("*.py"))
+    files = sorted(file for place in places for file in place.rglob("*.py"))
     found = [(file.relative_to(home.parent).as_posix(), digest(file.read_bytes())) for file in files]
     return digest(json.dumps(found).encode())

@@ -204,7 +204,9 @@ class Workers:
             worker.stop_forks()
         until = time.monotonic() + _SLOWER * seconds + _PATIENCE
         has_told = False
-        while time.monotonic() < until and (is_awaited() or any(one.has_forks for one in self._workers)):
+        while time.monotonic() < until and (
+            is_awaited() or any(child_worker.has_forks for child_worker in self._workers)
+        ):
             if not self._workers:
                 return
             if not has_told:
@@ -245,7 +247,7 @@ class Workers:
         Outcomes wait until the parent ends the test in which they were forked: what runs beside it puts off
         the first of them.
         """
-        return sum(one.task.is_fork_parent and not one.result.ends for one in self._workers)
+        return sum(worker.task.is_fork_parent and not worker.result.ends for worker in self._workers)
 
     def _start(self, task: Task) -> None:
         if task.job.forking is not None:
@@ -297,7 +299,7 @@ class Workers:
         self, next_task: Task | None, most: float | None = None
     ) -> Iterator[Result | tuple[Task, Event]]:
         """Wait at most ``most`` seconds for events; ``next_task`` has no place yet."""
-        timeout = min((one for one in (self._patience(), most) if one is not None), default=None)
+        timeout = min((seconds for seconds in (self._patience(), most) if seconds is not None), default=None)
         is_for_token = next_task is not None and next_task.is_fork_parent and len(self._workers) < self._jobs
         is_for_token = is_for_token and not self._spared  # whom tokens are spared for tells when it ends
         if is_for_token:

@@ -205,7 +205,7 @@ def differences(file: sqlite3.Connection, known: sqlite3.Connection) -> list[str
 def named_row(table: str, values: tuple[Any, ...]) -> str:
     """Return the name by which people know a row; the first of the values if it has none."""
     known = dict(zip(columns()[table], values, strict=False))
-    name = next((known[one] for one in ("mutant", "id", "key", "file", "test") if one in known), values[0])
+    name = next((known[key] for key in ("mutant", "id", "key", "file", "test") if key in known), values[0])
     text = name if isinstance(name, str) else repr(name)
     shown = repr(text[:_LONGEST].encode("utf-8", "replace").decode())[1:-1]
     round = known.get("round") if table in ("outcome", "kept") else None

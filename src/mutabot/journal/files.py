@@ -152,7 +152,7 @@ def refuse_tracked(journal: Path) -> None:
     Also if git cannot tell: then nobody knows where the journal comes from.
     """
     here = Path(os.path.abspath(journal))  # noqa: PTH100  # links stay links
-    links = (one for one in (here, *here.parents) if one.is_symlink())
+    links = (folder for folder in (here, *here.parents) if folder.is_symlink())
     for path in (here, *links, Path(os.path.realpath(here))):
         found = _tracked_at(path, journal)
         if found:

@@ -200,8 +200,8 @@ class Journal(JournalReader):
     def add_tests(self, tests: Iterable[BaselineTest]) -> None:
         """Add tests of the baseline, all or none."""
         with self._transaction():
-            for one in tests:
-                self._put("test", one.test.test, _dump(one))
+            for baseline_test in tests:
+                self._put("test", baseline_test.test.test, _dump(baseline_test))
 
     def add_control(self, control: ControlEnd) -> None:
         """Add the end of a control."""
@@ -277,8 +277,16 @@ class Journal(JournalReader):
     def take_over(self, found: Iterable[Kept]) -> None:
         """Add outcomes of earlier campaigns."""
         with self._transaction():
-            for one in found:
-                self._put("outcome", one.mutant, one.round, one.verdict.value, one.data, one.key, 1)
+            for kept_outcome in found:
+                self._put(
+                    "outcome",
+                    kept_outcome.mutant,
+                    kept_outcome.round,
+                    kept_outcome.verdict.value,
+                    kept_outcome.data,
+                    kept_outcome.key,
+                    1,
+                )
 
     def forget(self, mutants: Iterable[str]) -> None:
         """Never reuse what earlier campaigns found about these mutants."""
@@ -301,7 +309,7 @@ class Journal(JournalReader):
             self._drop_others("parts", "digest", {digest for (key,) in keys for digest in key.split()})
             trees = {key.split()[3] for (key,) in keys if len(key.split()) > 3}
             parts = [self.parts(tree) or {} for tree in trees]
-            self._drop_others("text", "digest", {digest for one in parts for digest in one.values()})
+            self._drop_others("text", "digest", {digest for part in parts for digest in part.values()})
 
     def _drop_others(self, table: str, column: str, kept: Collection[str]) -> None:
         for (value,) in self._rows(f"SELECT DISTINCT {column} FROM {table}"):
@@ -320,14 +328,14 @@ class Journal(JournalReader):
 
     def take_outcomes(self, other: JournalReader) -> None:
         """Copy the outcomes and earlier outcomes of another journal; existing ones stay."""
-        known = {(one.test_file, one.control, one.ok) for one in self.controls()}
+        known = {(end.test_file, end.control, end.ok) for end in self.controls()}
         with self._transaction():
             for question, statement in _TAKE.items():
                 for row in other._rows(question):
                     self._write(statement, *row)
-            for one in other.controls():
-                if (one.test_file, one.control, one.ok) not in known:
-                    self.add_control(one)
+            for control in other.controls():
+                if (control.test_file, control.control, control.ok) not in known:
+                    self.add_control(control)
 
     # Writing
 
@@ -400,8 +408,8 @@ class Journal(JournalReader):
         self._lock.renew()
         now = database.stamps(self.path)
         is_there, has_log = (
-            one is not None and before is not None and one[:2] == before[:2]
-            for one, before in zip(now, self._stamps, strict=True)
+            stamp is not None and before is not None and stamp[:2] == before[:2]
+            for stamp, before in zip(now, self._stamps, strict=True)
         )  # fmt: skip
         if not is_there:
             self.lost.append("was deleted or replaced")

@@ -122,7 +122,7 @@ class JournalReader:
 
     def mutants(self) -> list[Mutant]:
         """Return the planned mutants by number."""
-        return sorted(self._all("mutant", Mutant), key=lambda one: one.number)
+        return sorted(self._all("mutant", Mutant), key=lambda mutant: mutant.number)
 
     def left_out(self) -> list[LeftOut]:
         """Return the mutants that the plan leaves out, in its order."""
@@ -204,7 +204,7 @@ class JournalReader:
     def known(self) -> list[tuple[Mutant, bool]]:
         """Return mutants of earlier campaigns, and whether something that they depend on has changed."""
         outdated = {name for (name,) in self._rows("SELECT id FROM known WHERE outdated != 0")}
-        return [(one, one.id in outdated) for one in self._all("known", Mutant)]
+        return [(mutant, mutant.id in outdated) for mutant in self._all("known", Mutant)]
 
     def parts(self, digest: str) -> dict[str, str] | None:
         """Return the content behind a digest in a key; None if it is no longer stored."""

@@ -229,4 +229,4 @@ def _remove(path: Path) -> None:
 
 def _is_foreign(error: sqlite3.DatabaseError) -> bool:
     """Return whether a file is not an SQLite database, is damaged, or has other tables."""
-    return any(words in str(error) for words in ("not a database", "malformed", "no such column"))
+    return any(message in str(error) for message in ("not a database", "malformed", "no such column"))

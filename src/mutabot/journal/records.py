@@ -125,7 +125,7 @@ class Untested:
     def named(self) -> dict[str, tuple[str, ...]]:
         """What no test reaches, by name, grouped by kind."""
         calls, doubtful = (
-            tuple(one.words for one in those) for those in (self.unreached_calls, self.doubtful_calls)
+            tuple(call.words for call in those) for those in (self.unreached_calls, self.doubtful_calls)
         )
         found = {
             "files that no test imports": self.unreached_files,
@@ -257,7 +257,9 @@ class Drawing:
 
     def stratum(self, family: str, role: str) -> Stratum | None:
         """Return the stratum of a family in a role."""
-        return next((one for one in self.strata if (one.family, one.role) == (family, role)), None)
+        return next(
+            (stratum for stratum in self.strata if (stratum.family, stratum.role) == (family, role)), None
+        )
 
 
 @frozen
@@ -387,8 +389,12 @@ def run_short(outcomes: Iterable[Outcome], seed: int) -> list[Outcome]:
     The order depends on the seed and each outcome's mutant and round only, so the first of them are a random
     sample, whatever becomes of the others.
     """
-    found = (one for one in outcomes if one.confirmed is not None and one.verdict not in _NOTHING)
-    return sorted(found, key=lambda one: blake2b(f"{seed}:{one.round}:{one.mutant}".encode()).digest())
+    found = (
+        outcome for outcome in outcomes if outcome.confirmed is not None and outcome.verdict not in _NOTHING
+    )
+    return sorted(
+        found, key=lambda outcome: blake2b(f"{seed}:{outcome.round}:{outcome.mutant}".encode()).digest()
+    )
 
 
 #: outcomes that say nothing about what the whole suite does

@@ -74,8 +74,8 @@ def unused_calls(source: str) -> frozenset[Extent]:
     Raises SyntaxError or ValueError for a file that cannot be read.
     """
     statements = (node.value for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Expr))
-    values = (one.value if isinstance(one, ast.Await) else one for one in statements)
-    return frozenset(extent_of(one) for one in values if isinstance(one, ast.Call))
+    values = (statement.value if isinstance(statement, ast.Await) else statement for statement in statements)
+    return frozenset(extent_of(value) for value in values if isinstance(value, ast.Call))
 
 
 def extent_of(node: ast.expr | ast.stmt) -> Extent:
@@ -117,7 +117,7 @@ def function_of(code: CodeType) -> str:
 
 def _definition(node: ast.FunctionDef | ast.AsyncFunctionDef) -> Extent:
     """Return what ``definition_of`` returns for the function's code."""
-    first = min([node.lineno, *(one.lineno for one in node.decorator_list)])
+    first = min([node.lineno, *(decorator.lineno for decorator in node.decorator_list)])
     return (first, 0, first, 0)
 
 
@@ -164,7 +164,9 @@ def outer_of(node: ast.AST) -> list[ast.AST]:
     if isinstance(node, ast.ClassDef):
         return [*node.decorator_list, *node.bases, *(keyword.value for keyword in node.keywords)]
     if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
-        defaults = [one for one in (*node.args.defaults, *node.args.kw_defaults) if one is not None]
+        defaults = [
+            default for default in (*node.args.defaults, *node.args.kw_defaults) if default is not None
+        ]
         return [*([] if isinstance(node, ast.Lambda) else node.decorator_list), *defaults]
     return []
 

@@ -37,7 +37,7 @@ def language_of(file: str) -> str | None:
     Raises ExtensionError for a language of a package that cannot be loaded.
     """
     name = file.lower()
-    return next((one for one, found in _by_language().items() if name.endswith(found.suffixes)), None)
+    return next((key for key, found in _by_language().items() if name.endswith(found.suffixes)), None)
 
 
 @cache
@@ -67,7 +67,7 @@ def units_of(file: str) -> Callable[[bytes], Mapping[str, TextUnit]] | None:
 
 def program_files(root: Path, program: Iterable[str]) -> list[str]:
     """Return the program's files among the configured files and folders, relative to ``root``, each once."""
-    suffixes = tuple(suffix for one in front_ends() for suffix in one.suffixes)
+    suffixes = tuple(suffix for front_end in front_ends() for suffix in front_end.suffixes)
     files: dict[str, None] = {}
     for name in program:
         path = root / name

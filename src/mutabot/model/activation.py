@@ -105,8 +105,8 @@ class Activation:
     def of_text(cls, place: int, index: int) -> Activation:
         """Return the activation of an alternative, by its place's number and its index there."""
         own, identity, fatal = (
-            cls(TEXT_FAULT, (place, one), (at_text(place, one),), cls.AT_ONCE)
-            for one in (index, IDENTITY, FATAL)
+            cls(TEXT_FAULT, (place, number), (at_text(place, number),), cls.AT_ONCE)
+            for number in (index, IDENTITY, FATAL)
         )
         return replace(own, identity=identity, fatal=fatal)
 

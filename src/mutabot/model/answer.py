@@ -36,7 +36,7 @@ def future_class(value: Any) -> str | None:
         if kind is not None and (own is kind or (module == "asyncio" and issubclass(own, kind))):
             return f"{module}.{name}"
     name = class_name(type(value))
-    return next((one.name for one in brought("futures").values() if one.reference == name), None)
+    return next((part.name for part in brought("futures").values() if part.reference == name), None)
 
 
 def never_done(kind: str, here: Mapping[str, Any]) -> Any:
@@ -126,7 +126,7 @@ class _AnswerWriter:
         if depth > DEPTH:
             raise NotKeptError("something that holds itself")
         if not issubclass(type(value), _IMMUTABLE):
-            known = next((name for name, one in self._here.items() if one is value), None)
+            known = next((name for name, held in self._here.items() if held is value), None)
             if known is not None:
                 return {"here": known}
         return self._container(value, depth + 1)
@@ -234,8 +234,8 @@ def _constant(value: Any) -> str | None:
     kind = type(value)
     module = sys.modules.get(kind.__module__)
     for owner, prefix in ((module, f"{kind.__module__}:"), (kind, f"{class_name(kind)}.")):
-        for name, one in list(vars(owner).items()) if owner is not None else ():
-            if one is value:
+        for name, constant in list(vars(owner).items()) if owner is not None else ():
+            if constant is value:
                 return f"{prefix}{name}"
     return None
 

@@ -103,7 +103,7 @@ class Reply:
     @property
     def parts(self) -> tuple[Reply, ...]:
         """All replies that the program gets, in this order."""
-        return (*(() if self.lost else (self,)), *(part for one in self.more for part in one.parts))
+        return (*(() if self.lost else (self,)), *(part for reply in self.more for part in reply.parts))
 
     @property
     def comes_as_usual(self) -> bool:

@@ -68,10 +68,10 @@ def sparse(value: Any) -> dict[str, Any]:
 def _defaults(kind: type[Any]) -> tuple[tuple[str, Any, bool], ...]:
     """Return the fields of a dataclass with their defaults, and whether each default is made by a factory."""
     return tuple(
-        (one.name, one.default, False)
-        if one.default_factory is MISSING
-        else (one.name, one.default_factory(), True)
-        for one in fields(kind)
+        (field.name, field.default, False)
+        if field.default_factory is MISSING
+        else (field.name, field.default_factory(), True)
+        for field in fields(kind)
     )
 
 
@@ -148,8 +148,8 @@ def _list(data: Any) -> Any:
 def _dataclass_decoder(kind: Any) -> Decoder:
     def decode(data: Any) -> Any:
         decoders, left_out = _fields(kind)  # not before now: a class may refer to itself
-        told = _checked(data, (dict,), "an object").items()
-        return kind(**dict.fromkeys(left_out) | {name: decoders[name](value) for name, value in told})
+        items = _checked(data, (dict,), "an object").items()
+        return kind(**dict.fromkeys(left_out) | {name: decoders[name](value) for name, value in items})
 
     return decode
 
@@ -195,13 +195,13 @@ def to_json(value: Any, default: Callable[[Any], Any]) -> bytes:
     ``default`` gives data for what neither JSON nor ``to_data`` knows.
     """
 
-    def known(one: Any) -> Any:
-        kind: Any = type(one)
+    def known(item: Any) -> Any:
+        kind: Any = type(item)
         if _names(kind) is not None:
-            return sparse(one)
+            return sparse(item)
         if issubclass(kind, Enum):
-            return one.value
-        return dict(one) if issubclass(kind, Mapping) else default(one)
+            return item.value
+        return dict(item) if issubclass(kind, Mapping) else default(item)
 
     try:
         text = json.dumps(value, default=known, separators=(",", ":"))

@@ -83,7 +83,7 @@ def _data_of(value: Any, depth: int) -> Any:
     if items is None or depth <= 0:
         return UNKNOWN
     parts = (*items, *items.values()) if isinstance(items, dict) else items
-    return UNKNOWN if any(_data_of(one, depth - 1) is UNKNOWN for one in parts) else value
+    return UNKNOWN if any(_data_of(part, depth - 1) is UNKNOWN for part in parts) else value
 
 
 def _items(value: Any, base: Any, depth: int) -> Any:

@@ -28,13 +28,13 @@ def deviation_of(difference: float, spread: float, tolerance: float) -> float:
     return difference / max(spread, tolerance)
 
 
-def difference_of(one: float, other: float, unit: str | None) -> float:
+def difference_of(first: float, second: float, unit: str | None) -> float:
     """Return the distance of two numbers; of two angles, modulo a full turn."""
     turn = TURNS.get(unit or "")
-    return abs(one - other) if turn is None else apart(one, other, turn)
+    return abs(first - second) if turn is None else apart(first, second, turn)
 
 
 def spread_of(values: Sequence[float], unit: str | None = None) -> float:
     """Return the greatest distance between any two numbers; of fewer than two, zero."""
     pairs = combinations(values, 2)
-    return max((difference_of(one, other, unit) for one, other in pairs), default=0.0)
+    return max((difference_of(first, second, unit) for first, second in pairs), default=0.0)

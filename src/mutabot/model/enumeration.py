@@ -29,7 +29,7 @@ def _is_of_pybind11(kind: Any) -> bool:
     return (
         isinstance(members, Mapping)
         and bool(members)
-        and all(type(one) is kind for one in members.values())
+        and all(type(member) is kind for member in members.values())
         and all(hasattr(kind, name) for name in ("name", "value"))
     )
 
@@ -59,7 +59,7 @@ def written_of(member: Any, values: Sequence[Any]) -> Any:
     members = [member_of(kind, value) for value in values]
     if None in members:
         raise PathError(_unknown(kind, values[members.index(None)]))
-    twice = [name_of(one) for one in members if members.count(one) > 1]
+    twice = [name_of(found) for found in members if members.count(found) > 1]
     if twice:
         raise PathError(f"values name {twice[0]} of {kind.__name__} twice")
     return values[members.index(member)] if member in members else name_of(member)

@@ -59,7 +59,7 @@ class ChildRecord:
         """The process's name in messages: its node, or the file that it runs."""
         if self.nodes:
             return self.nodes[0]
-        arguments = [one for one in self.began.command[1:] if not one.startswith("-")]
+        arguments = [argument for argument in self.began.command[1:] if not argument.startswith("-")]
         return os.path.basename(arguments[0]) if arguments else os.path.basename(self.began.command[0])
 
     @property
@@ -98,8 +98,8 @@ class ChildRecord:
 
     def forget(self) -> None:
         """Forget the events of the test, which is over."""
-        for told in (self.called, self.noted, self.did, self.places):
-            told.clear()
+        for records in (self.called, self.noted, self.did, self.places):
+            records.clear()
         self.used, self.exceeded, self.guarded = None, None, None
         if self.raised is not None and self.raised.in_thread:
             self.raised = None
@@ -213,9 +213,12 @@ def fold_fork(
     ]
     if died is None:
         return found
-    told = [event.in_call for event in seen if isinstance(event, events.Acted)]
-    calls = [one for one in told if one is not None]
-    return [*found, replace(died, acted=None in told or bool(below), in_mutated_call=calls[-1:] == [True])]
+    in_calls = [event.in_call for event in seen if isinstance(event, events.Acted)]
+    calls = [in_call for in_call in in_calls if in_call is not None]
+    return [
+        *found,
+        replace(died, acted=None in in_calls or bool(below), in_mutated_call=calls[-1:] == [True]),
+    ]
 
 
 @frozen
@@ -248,20 +251,22 @@ def fold(end: events.TestEnd, records: Sequence[ChildRecord], facts: FactsOfTest
 
 def calls_of(records: Sequence[ChildRecord], facts: FactsOfTest) -> Iterator[tuple[int, events.Called]]:
     """Yield the calls of each process in order, one process after the other, each with its site."""
-    for one in records:
-        yield from ((facts.index_of(one.sites[call.site]), call) for call in one.called)
+    for record in records:
+        yield from ((facts.index_of(record.sites[call.site]), call) for call in record.called)
 
 
 def _with_calls(end: events.TestEnd, records: Sequence[ChildRecord], facts: FactsOfTest) -> events.TestEnd:
     called = list(calls_of(records, facts))
     trace = [*end.trace, *((site, call.written, call.read, call.answer) for site, call in called)]
-    used = [one.used for one in records if one.used is not None]
-    times = [end.simulated, *(one.simulated for one in used)]
+    used = [child.used for child in records if child.used is not None]
+    times = [end.simulated, *(use.simulated for use in used)]
     below: dict[str, set[int]] = {}
-    for one in records:
-        sites = {facts.index_of(one.sites[call.site]) for call in one.called}
-        below.setdefault(one.origin, set()).update(sites)
-    noted = [(facts.index_of(one.sites[each.site]), each.refused) for one in records for each in one.noted]
+    for record in records:
+        sites = {facts.index_of(record.sites[call.site]) for call in record.called}
+        below.setdefault(record.origin, set()).update(sites)
+    noted = [
+        (facts.index_of(child.sites[each.site]), each.refused) for child in records for each in child.noted
+    ]
     return replace(
         end,
         refused_calls=(*end.refused_calls, *((site, number) for site, number in noted if number is not None)),
@@ -269,8 +274,8 @@ def _with_calls(end: events.TestEnd, records: Sequence[ChildRecord], facts: Fact
         below={origin: tuple(sorted(sites)) for origin, sites in below.items() if sites},
         trace=tuple(_within_limit(trace)) if facts.job.record else (),
         truncated=end.truncated or len(trace) > events.TRACE_LIMIT,
-        operations=end.operations + max(len(called), sum(one.operations for one in used)),
-        commands=end.commands + sum(one.commands for one in used),
+        operations=end.operations + max(len(called), sum(use.operations for use in used)),
+        commands=end.commands + sum(use.commands for use in used),
         simulated=max((time for time in times if time is not None), default=None),
     )
 
@@ -286,23 +291,25 @@ def _within_limit(trace: Sequence[tuple[Any, ...]]) -> Iterator[tuple[Any, ...]]
 
 def _with_deeds(end: events.TestEnd, records: Sequence[ChildRecord]) -> events.TestEnd:
     """Return the end of a test with what the mutant did in all processes."""
-    did = [each for one in records for each in one.did]
+    did = [each for record in records for each in record.did]
     if not did:
         return end
-    refused = [one for one in did if one.refused is not None]
-    failures = [end.failure, *(one.failure for one in did)]
-    examples = [end.example, *(one.example for one in did)]
+    refused = [report for report in did if report.refused is not None]
+    failures = [end.failure, *(report.failure for report in did)]
+    examples = [end.example, *(report.example for report in did)]
     end = replace(
         end,
-        hits=end.hits + sum(one.hits for one in did),
-        acted=end.acted + sum(one.acted for one in did),
-        hit_below=tuple(sorted({one.origin for one in records if any(each.hits for each in one.did)})),
-        away=added([end.away, *(one.away for one in did)]),
-        example=next((one for one in examples if one is not None), None),
-        failure=next((one for one in failures if one is not None), None),
+        hits=end.hits + sum(report.hits for report in did),
+        acted=end.acted + sum(report.acted for report in did),
+        hit_below=tuple(
+            sorted({record.origin for record in records if any(each.hits for each in record.did)})
+        ),
+        away=added([end.away, *(report.away for report in did)]),
+        example=next((example for example in examples if example is not None), None),
+        failure=next((failure for failure in failures if failure is not None), None),
     )
     if refused and end.refused is None:
-        is_final = any(one.is_final for one in refused)
+        is_final = any(report.is_final for report in refused)
         caught = end.outcome == "failed" and not is_final
         end = replace(end, refused=refused[-1].refused, caught=caught)
     return end
@@ -310,22 +317,24 @@ def _with_deeds(end: events.TestEnd, records: Sequence[ChildRecord]) -> events.T
 
 def _with_ends(end: events.TestEnd, records: Sequence[ChildRecord], facts: FactsOfTest) -> events.TestEnd:
     """Return the end of a test, adjusted for how the processes below it ended."""
-    raised = [one.raised for one in records if one.raised is not None]
-    failure = end.failure or next((one.failure for one in raised if one.failure is not None), None)
-    exceeded = next((one.exceeded for one in records if one.exceeded is not None), None)
-    died_at_work = [one for one in records if one.is_in_call and not is_alive(one.began.pid)]
+    raised = [child.raised for child in records if child.raised is not None]
+    failure = end.failure or next(
+        (raising.failure for raising in raised if raising.failure is not None), None
+    )
+    exceeded = next((child.exceeded for child in records if child.exceeded is not None), None)
+    died_at_work = [child for child in records if child.is_in_call and not is_alive(child.began.pid)]
     end = replace(
         end,
         failure=failure,
         timeout=end.timeout or exceeded,
-        guarded=end.guarded or next((one.guarded for one in records if one.guarded is not None), None),
+        guarded=end.guarded or next((child.guarded for child in records if child.guarded is not None), None),
         hits=end.hits + len(died_at_work),
         acted=end.acted + len(died_at_work),
-        hit_below=tuple(sorted({*end.hit_below, *(one.origin for one in died_at_work)})),
+        hit_below=tuple(sorted({*end.hit_below, *(child.origin for child in died_at_work)})),
     )
-    for one in died_at_work:
-        one.is_in_call = False
-    if end.refused is not None and any(one.is_refusal for one in raised):
+    for record in died_at_work:
+        record.is_in_call = False
+    if end.refused is not None and any(raising.is_refusal for raising in raised):
         end = replace(end, caught=False)
     if end.outcome == "failed" and end.failure is None and facts.job.mutant is not None:
         end = replace(end, failure=_lost(end, records, facts))
@@ -334,16 +343,16 @@ def _with_ends(end: events.TestEnd, records: Sequence[ChildRecord], facts: Facts
 
 def _lost(end: events.TestEnd, records: Sequence[ChildRecord], facts: FactsOfTest) -> str | None:
     """Return why a failed test shows nothing about the mutant; None if it does."""
-    for one in records:
-        code = facts.codes.get(one.began.pid)
+    for record in records:
+        code = facts.codes.get(record.began.pid)
         is_killed = code is not None and code < 0 and -code not in OWN_FAULT
-        if code is not None and is_killed and not one.ended and not _was_signalled(one, facts):
-            return f"the process {one.name} was killed from outside, by signal {-code}"
+        if code is not None and is_killed and not record.ended and not _was_signalled(record, facts):
+            return f"the process {record.name} was killed from outside, by signal {-code}"
     if end.acted or facts.has_acted or end.refused is not None:
         return None
-    for one in records:
-        if one.raised is not None and not one.raised.in_thread:
-            return f"the process {one.name} ended before the mutant changed anything: {one.raised.text}"
+    for record in records:
+        if record.raised is not None and not record.raised.in_thread:
+            return f"the process {record.name} ended before the mutant changed anything: {record.raised.text}"
     return None
 
 

@@ -159,7 +159,7 @@ class Job:
     @property
     def is_of_text(self) -> bool:
         """Whether the job concerns the program text alone, without calls, a clock or other faults."""
-        is_of_text = all(one.reference == TEXT_FAULT for one in self.active.values())
+        is_of_text = all(activation.reference == TEXT_FAULT for activation in self.active.values())
         return is_of_text and not (self.vocabulary.operations or self.vocabulary.clock)
 
     @property

@@ -61,7 +61,7 @@ class Form(StrEnum):
         """The quantities that are written in setting something up, which no vocabulary describes."""
         if self is Form.PARAMETER:
             return (_DEFAULT,)
-        return tuple(one for one in _SETTINGS if one.name in SETTING_UP.get(self, ()))
+        return tuple(setting for setting in _SETTINGS if setting.name in SETTING_UP.get(self, ()))
 
 
 #: forms whose argument holds all that is written, and its name
@@ -221,7 +221,9 @@ class Pattern:
     def fields(self) -> frozenset[str]:
         """The names of the fields of the text."""
         notation = self.notation
-        return frozenset(one.name for one in Notation.compile(notation).fields) if notation else frozenset()
+        return (
+            frozenset(field.name for field in Notation.compile(notation).fields) if notation else frozenset()
+        )
 
     @property
     def name(self) -> str:
@@ -302,10 +304,11 @@ class Operation:
 
         def compared(arguments: tuple[Quantity, ...]) -> tuple[Quantity, ...]:
             return tuple(
-                replace(one, by_number=one.is_whole or one.full_turn is not None) for one in arguments
+                replace(argument, by_number=argument.is_whole or argument.full_turn is not None)
+                for argument in arguments
             )
 
-        patterns = tuple(replace(one, arguments=compared(one.arguments)) for one in self.patterns)
+        patterns = tuple(replace(pattern, arguments=compared(pattern.arguments)) for pattern in self.patterns)
         return replace(self, arguments=compared(self.arguments), patterns=patterns)
 
     @property
@@ -373,7 +376,7 @@ class Operation:
     @property
     def all_refused(self) -> tuple[Refused, ...]:
         """All ways in which the robot reports, by data, that it refuses any of its calls."""
-        return (*self.refused, *(one for pattern in self.patterns for one in pattern.refused))
+        return (*self.refused, *(refusal for pattern in self.patterns for refusal in pattern.refused))
 
     def pattern(self, text: str | None) -> Pattern | None:
         """Return the pattern with this notation, or None."""

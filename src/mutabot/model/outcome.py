@@ -199,7 +199,9 @@ class Diverged:
     @property
     def deviation(self) -> float:
         """The greatest distance of the world from the original's, in units of the original's spread."""
-        found = [one.deviation for one in self.apart] + [one.deviation for one in self.measurements]
+        found = [deviation.deviation for deviation in self.apart] + [
+            measurement.deviation for measurement in self.measurements
+        ]
         return max(found, default=0.0)
 
     @property
@@ -348,7 +350,7 @@ class Outcome:
     @property
     def told(self) -> Diverged | None:
         """The most telling difference in recordings, whose story reports show; None if there is none."""
-        return max(self.diverged, key=lambda one: one.rank, default=None)
+        return max(self.diverged, key=lambda divergence: divergence.rank, default=None)
 
     @property
     def deviation(self) -> float | None:
@@ -357,19 +359,19 @@ class Outcome:
         What was recorded of the world says more than probes do, and tests whose end is stable more than
         others.
         """
-        found = [one for one in self.diverged if one.apart or one.measurements]
-        stable = [one for one in found if not one.scatters]
+        found = [divergence for divergence in self.diverged if divergence.apart or divergence.measurements]
+        stable = [divergence for divergence in found if not divergence.scatters]
         if found:
-            return max(one.deviation for one in stable or found)
-        known = [one for one in (self.distance, self.way) if one is not None]
+            return max(divergence.deviation for divergence in stable or found)
+        known = [size for size in (self.distance, self.way) if size is not None]
         return max(known, default=0.0 if self.indistinguishable else None)
 
 
 def added(counts: Iterable[Mapping[str, int]]) -> dict[str, int]:
     """Return the sum of counts by name."""
     total: dict[str, int] = {}
-    for one in counts:
-        for name, count in one.items():
+    for counter in counts:
+        for name, count in counter.items():
             total[name] = total.get(name, 0) + count
     return total
 
@@ -401,8 +403,8 @@ NOTHING = "would change nothing"
 def by_heading(left_out: Iterable[LeftOut]) -> dict[str, list[LeftOut]]:
     """Group by heading: first what would change nothing, then the largest group first."""
     found: dict[str, list[LeftOut]] = {}
-    for one in left_out:
-        found.setdefault(one.heading, []).append(one)
+    for omission in left_out:
+        found.setdefault(omission.heading, []).append(omission)
     return dict(sorted(found.items(), key=lambda item: (item[0] != NOTHING, -len(item[1]))))
 
 

@@ -242,7 +242,7 @@ def _stored_as(value: Any, name: str) -> str:
     if isinstance(getattr(type(value), name, None), property):
         shown = getattr(value, name)
         hidden = (f"_{name}", *(f"_{base.__name__.lstrip('_')}__{name}" for base in type(value).__mro__))
-        return next((one for one in hidden if getattr(value, one, None) is shown), name)
+        return next((field_name for field_name in hidden if getattr(value, field_name, None) is shown), name)
     return name
 
 

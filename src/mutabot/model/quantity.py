@@ -147,7 +147,7 @@ DIMENSIONS: dict[Kind, frozenset[Dimension]] = {
     Kind.OPENING: frozenset({Dimension.RATIO, Dimension.LENGTH}),
     Kind.DURATION: frozenset({Dimension.TIME}),
     **{
-        kind: frozenset(one for one in Dimension if one.removeprefix("angular ") == kind)
+        kind: frozenset(dimension for dimension in Dimension if dimension.removeprefix("angular ") == kind)
         for kind in PLAIN - {Kind.COUNT, Kind.NUMBER}
     },
 }
@@ -329,27 +329,27 @@ class Quantity:
             return None
         return ends[1] if value == ends[0] else ends[0]
 
-    def is_same(self, one: Value, other: Value) -> bool:
+    def is_same(self, first: Value, second: Value) -> bool:
         """Return whether neither the robot nor the program can distinguish two values.
 
         Orientations as a whole are the same if the angle between them is none, in whichever writing; targets
         of rotations modulo a full turn; numbers, and the parts of vectors, up to the rounding of
         computations.
         """
-        if one is other:
+        if first is second:
             return True
         kind = self.kind
         if kind in WHOLE and not self.by_number:
-            before, after = self.orientation(one), self.orientation(other)
+            before, after = self.orientation(first), self.orientation(second)
             if before is not None and after is not None:
                 return before.distance(after) < _SAME_ORIENTATION
         if kind not in MEASURED and kind is not Kind.STAMP:
-            return same(one, other)
-        if hasattr(type(one), "tolist"):
-            one = one.tolist()
-        if hasattr(type(other), "tolist"):
-            other = other.tolist()
-        return _are_same(self, one, other)
+            return same(first, second)
+        if hasattr(type(first), "tolist"):
+            first = first.tolist()
+        if hasattr(type(second), "tolist"):
+            second = second.tolist()
+        return _are_same(self, first, second)
 
     def rotated(
         self, value: Value, change: Callable[[Quaternion], Quaternion], least: float = _SAME_ORIENTATION
@@ -422,20 +422,20 @@ class Quantity:
         number = f"{value:.{digits}g}"
         return f"{number} {self.unit}" if self.unit not in (None, "fraction") else number
 
-    def texts(self, one: Value, other: Value) -> tuple[str, str]:
+    def texts(self, first: Value, second: Value) -> tuple[str, str]:
         """Return two values as reports print them side by side."""
-        return distinct_texts(one, other, self.text, 6)
+        return distinct_texts(first, second, self.text, 6)
 
 
 def distinct_texts(
-    one: Value, other: Value, text: Callable[[Value, int], str], digits: int
+    first: Value, second: Value, text: Callable[[Value, int], str], digits: int
 ) -> tuple[str, str]:
     """Return two values as texts with enough significant digits to differ, and at least ``digits``."""
     for more in range(digits, _MOST_DIGITS + 1):
-        texts = text(one, more), text(other, more)
+        texts = text(first, more), text(second, more)
         if texts[0] != texts[1]:
             return texts
-    return text(one, digits), text(other, digits)
+    return text(first, digits), text(second, digits)
 
 
 def is_reading_of(reading: Quantity, written: Quantity) -> bool:
@@ -492,22 +492,22 @@ def value_text(value: Any, digits: int = 4) -> str:
     return str(value)
 
 
-def same(one: Value, other: Value) -> bool:
+def same(first: Value, second: Value) -> bool:
     """Return whether two values are equal; arrays by their elements, NaN equal to itself.
 
     A difference that is but rounding of the computation is none: no robot could show it.
     """
-    if one is other:
+    if first is second:
         return True
-    are_floats = isinstance(one, float) and isinstance(other, float)
-    if are_floats and isclose(one, other, rel_tol=_RELATIVE, abs_tol=_ABSOLUTE):
+    are_floats = isinstance(first, float) and isinstance(second, float)
+    if are_floats and isclose(first, second, rel_tol=_RELATIVE, abs_tol=_ABSOLUTE):
         return True
-    if hasattr(type(one), "tolist"):
-        one = one.tolist()
-    if hasattr(type(other), "tolist"):
-        other = other.tolist()
+    if hasattr(type(first), "tolist"):
+        first = first.tolist()
+    if hasattr(type(second), "tolist"):
+        second = second.tolist()
     try:
-        return bool(one == other) or bool(one != one and other != other)  # noqa: PLR0124  # NaN
+        return bool(first == second) or bool(first != first and second != second)  # noqa: PLR0124  # NaN
     except Exception:  # a value of the user's may compare in any way; what cannot be compared differs
         return False
 
@@ -542,9 +542,9 @@ _OF_STAMP = 1e-15
 _NANOSECOND = 1e-9
 
 
-def are_same(quantities: Iterable[Quantity], one: Mapping[str, Value], other: Mapping[str, Value]) -> bool:
+def are_same(quantities: Iterable[Quantity], first: Mapping[str, Value], second: Mapping[str, Value]) -> bool:
     """Return whether neither the robot nor the program can distinguish the values of two calls."""
-    return one.keys() == other.keys() and not changes(quantities, other, one)
+    return first.keys() == second.keys() and not changes(quantities, second, first)
 
 
 def changes(
@@ -559,35 +559,35 @@ def changes(
     }
 
 
-def _are_same(quantity: Quantity, one: Value, other: Value) -> bool:
-    if isinstance(one, list | tuple) and isinstance(other, list | tuple):
-        return len(one) == len(other) and all(
-            _are_same(quantity, first, second) for first, second in zip(one, other, strict=True)
+def _are_same(quantity: Quantity, left: Value, right: Value) -> bool:
+    if isinstance(left, list | tuple) and isinstance(right, list | tuple):
+        return len(left) == len(right) and all(
+            _are_same(quantity, first, second) for first, second in zip(left, right, strict=True)
         )
-    if not (is_number(one) and is_number(other)):
-        return same(one, other)
-    if one == other:
+    if not (is_number(left) and is_number(right)):
+        return same(left, right)
+    if left == right:
         return True
-    if not (math.isfinite(one) and math.isfinite(other)):
-        return same(one, other)
-    return _is_rounding(quantity, one, other) or _is_full_turn(quantity, one, other)
+    if not (math.isfinite(left) and math.isfinite(right)):
+        return same(left, right)
+    return _is_rounding(quantity, left, right) or _is_full_turn(quantity, left, right)
 
 
-def _is_rounding(quantity: Quantity, one: float, other: float) -> bool:
-    if isinstance(one, int) and isinstance(other, int):
+def _is_rounding(quantity: Quantity, first: float, second: float) -> bool:
+    if isinstance(first, int) and isinstance(second, int):
         return False  # whole numbers are not rounded: two counts of an encoder are two places
     if quantity.kind is Kind.STAMP:
-        return math.isclose(one, other, rel_tol=_OF_STAMP, abs_tol=_NANOSECOND)
+        return math.isclose(first, second, rel_tol=_OF_STAMP, abs_tol=_NANOSECOND)
     factor = UNITS[quantity.unit].factor if quantity.unit is not None else 1.0
-    return math.isclose(one, other, rel_tol=_RELATIVE, abs_tol=max(_ABSOLUTE / factor, _ABSOLUTE))
+    return math.isclose(first, second, rel_tol=_RELATIVE, abs_tol=max(_ABSOLUTE / factor, _ABSOLUTE))
 
 
-def _is_full_turn(quantity: Quantity, one: float, other: float) -> bool:
+def _is_full_turn(quantity: Quantity, first: float, second: float) -> bool:
     """Return whether the targets of a rotation lie one or several full turns apart."""
     turn = _turn_of_target(quantity)
-    if turn is None or abs(one - other) < 0.5 * turn:
+    if turn is None or abs(first - second) < 0.5 * turn:
         return False
-    return abs(math.remainder(one - other, turn)) <= _TURNED_ROUND * turn / (2.0 * math.pi)
+    return abs(math.remainder(first - second, turn)) <= _TURNED_ROUND * turn / (2.0 * math.pi)
 
 
 def _turn_of_target(quantity: Quantity) -> float | None:

@@ -87,11 +87,17 @@ def _patterns(file: Path, ids: Collection[str]) -> Iterator[str]:
 
 
 def _names(mutants: Sequence[Mutant]) -> list[str]:
-    words = (
-        (one.operator, one.family, one.site.role.value, *(span.file for span in one.site.spans), one.id)
-        for one in mutants
+    names = (
+        (
+            mutant.operator,
+            mutant.family,
+            mutant.site.role.value,
+            *(span.file for span in mutant.site.spans),
+            mutant.id,
+        )
+        for mutant in mutants
     )
-    return list(dict.fromkeys(chain.from_iterable(words)))
+    return list(dict.fromkeys(chain.from_iterable(names)))
 
 
 def nothing_fits(source: str, unknown: Sequence[str], known: Sequence[str]) -> SelectionError:

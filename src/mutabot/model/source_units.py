@@ -59,14 +59,14 @@ class ExecutedByTests:
     What was executed before a test counts for it.
 
     Args:
-        told: the tests in their order, and what each has told.
+        tests: the tests in their order, and what each has reported.
     """
 
-    def __init__(self, told: Iterable[tuple[str, Executed | None]]) -> None:
+    def __init__(self, tests: Iterable[tuple[str, Executed | None]]) -> None:
         self._numbers: dict[str, int] = {}
         self._by_test: list[Executed | None] = []
         self._read: dict[str, int] = {}  # by file, the first test that reads it as text
-        for number, (test, executed) in enumerate(told):
+        for number, (test, executed) in enumerate(tests):
             self._numbers[test] = number
             self._by_test.append(executed)
             for file, lines in (executed or {}).items():
@@ -125,9 +125,9 @@ def _is_plain(decorator: ast.expr) -> bool:
 
 def _is_mark(decorator: ast.expr) -> bool:
     """Return whether a decorator is a mark of pytest's, with arguments computed without a call."""
-    calls = [one for one in ast.walk(decorator) if isinstance(one, ast.Call)]
+    calls = [node for node in ast.walk(decorator) if isinstance(node, ast.Call)]
     is_mark = ast.unparse(decorator).startswith(("pytest.mark.", "mark."))
-    return is_mark and all(one is decorator or last_name(one) == "param" for one in calls)
+    return is_mark and all(call is decorator or last_name(call) == "param" for call in calls)
 
 
 #: a unit of a file in another language than Python: its number when it is recorded (``MODULE``, or above 0),
@@ -255,7 +255,7 @@ class File:
         return {name: map(_extent, ast.walk(node)) for name, node in (self._nodes() or {}).items()}
 
     def _said_by(self, node: ast.AST) -> str:
-        names = {getattr(one, "attr", getattr(one, "id", "")) for one in ast.walk(node)}
+        names = {getattr(inner, "attr", getattr(inner, "id", "")) for inner in ast.walk(node)}
         text = self.digest if not _TEXT.isdisjoint(names) else ""
         return digest((ast.dump(node) + text).encode())
 
@@ -265,10 +265,10 @@ def _is_quiet(node: ast.AST) -> bool:
         return not node.decorator_list and not node.bases and all(map(_is_quiet, node.body))
     if isinstance(node, ast.Assign | ast.AnnAssign | ast.Expr):
         targets = getattr(node, "targets", [getattr(node, "target", None)] if hasattr(node, "target") else [])
-        if not all(isinstance(one, ast.Name) and one.id != "pytest_plugins" for one in targets):
+        if not all(isinstance(target, ast.Name) and target.id != "pytest_plugins" for target in targets):
             return False
         parts = ast.walk(node.value) if node.value is not None else ()
-        return not any(isinstance(one, ast.Call | ast.Await) for one in parts)
+        return not any(isinstance(part, ast.Call | ast.Await) for part in parts)
     return isinstance(node, ast.Import | ast.ImportFrom | ast.Pass)
 
 
@@ -295,7 +295,7 @@ class _ModuleLevel(ast.NodeTransformer):
         if (
             self._are_tests
             and node.name.startswith("test")
-            and not any(last_name(one) == "fixture" for one in node.decorator_list)
+            and not any(last_name(decorator) == "fixture" for decorator in node.decorator_list)
         ):
             return None
         text = ast.get_docstring(node, clean=False) or ""
@@ -308,7 +308,9 @@ class _ModuleLevel(ast.NodeTransformer):
     def visit_ClassDef(self, node: ast.ClassDef) -> ast.ClassDef | None:
         had = len(node.body)
         self.generic_visit(node)
-        own = [one for one in node.body if not isinstance(one, ast.Expr)]  # a docstring is one
+        own = [
+            statement for statement in node.body if not isinstance(statement, ast.Expr)
+        ]  # a docstring is one
         return (
             None
             if len(node.body) < had and not own and not (node.decorator_list or node.bases or node.keywords)

@@ -137,8 +137,8 @@ def name_of(pid: int) -> str:
     command = b""
     with suppress(OSError), open(f"/proc/{pid}/cmdline", "rb") as file:
         command = file.read()
-    words = " ".join(command.decode("utf-8", "replace").replace("\0", " ").split())
-    printable = "".join(letter if letter.isprintable() else "?" for letter in words)
+    text = " ".join(command.decode("utf-8", "replace").replace("\0", " ").split())
+    printable = "".join(letter if letter.isprintable() else "?" for letter in text)
     return f"{printable[:_WORDS] or 'a process'} ({pid})"
 
 

@@ -120,4 +120,4 @@ class Accepted:
 
 def first_fitting(suppressions: Iterable[Suppression], mutant: Mutant, lines: LinesOf) -> Suppression | None:
     """Return the first decision that matches a mutant; None if there is none."""
-    return next((one for one in suppressions if one.fits(mutant, lines)), None)
+    return next((suppression for suppression in suppressions if suppression.fits(mutant, lines)), None)

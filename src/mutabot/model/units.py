@@ -104,12 +104,12 @@ def convert(value: float, unit: str, to: str) -> float:
     Raises ValueError when the two units measure different things. A conversion between equal units
     returns the value untouched, so that nothing is rounded without need.
     """
-    one, other = _both(unit, to)
+    source, target = _both(unit, to)
     if unit == to:
         return value
-    if one.zero == other.zero:
-        return value * one.factor / other.factor
-    return (value * one.factor + one.zero - other.zero) / other.factor
+    if source.zero == target.zero:
+        return value * source.factor / target.factor
+    return (value * source.factor + source.zero - target.zero) / target.factor
 
 
 def convert_difference(difference: float, unit: str, to: str) -> float:
@@ -117,15 +117,15 @@ def convert_difference(difference: float, unit: str, to: str) -> float:
 
     Raises ValueError when the two units measure different things.
     """
-    one, other = _both(unit, to)
-    return difference if unit == to else difference * one.factor / other.factor
+    source, target = _both(unit, to)
+    return difference if unit == to else difference * source.factor / target.factor
 
 
 def _both(unit: str, to: str) -> tuple[Unit, Unit]:
-    one, other = UNITS[unit], UNITS[to]
-    if one.dimension is not other.dimension:
-        raise ValueError(f"cannot convert {unit} ({one.dimension}) to {to} ({other.dimension})")
-    return one, other
+    source, target = UNITS[unit], UNITS[to]
+    if source.dimension is not target.dimension:
+        raise ValueError(f"cannot convert {unit} ({source.dimension}) to {to} ({target.dimension})")
+    return source, target
 
 
 class Quaternion(NamedTuple):
@@ -209,8 +209,8 @@ def to_euler(rotation: Quaternion, order: str) -> list[float]:
     proper = i == k
     k = 6 - i - j if proper else k
     sign = (i - j) * (j - k) * (k - i) // 2
-    w, one, two, three = rotation[0], rotation[i], rotation[j], rotation[k] * sign
-    a, b, c, d = (w, one, two, three) if proper else (w - two, one + three, two + w, three - one)
+    w, q1, q2, q3 = rotation[0], rotation[i], rotation[j], rotation[k] * sign
+    a, b, c, d = (w, q1, q2, q3) if proper else (w - q2, q1 + q3, q2 + w, q3 - q1)
     middle = 2.0 * math.atan2(math.hypot(c, d), math.hypot(a, b))
     half_sum, half_difference = math.atan2(b, a), math.atan2(d, c)
     if abs(middle) <= _LOCKED:

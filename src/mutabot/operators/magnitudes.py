@@ -78,9 +78,9 @@ def own_ladder(quantity: Quantity) -> Magnitudes | None:
     # orientations as a whole are angles; plain numbers have no measure
     unit = "rad" if quantity.is_whole else quantity.unit
     measure = dimension_of(unit) if unit is not None else None
-    told = _from_vocabulary(quantity)
-    if told is not None and (told.unit is None or dimension_of(told.unit) is measure):
-        return told
+    ladder = _from_vocabulary(quantity)
+    if ladder is not None and (ladder.unit is None or dimension_of(ladder.unit) is measure):
+        return ladder
     if quantity.kind is Kind.COUNT:
         return _COUNTED
     return LADDERS.get(measure) if measure is not None else None
@@ -88,9 +88,9 @@ def own_ladder(quantity: Quantity) -> Magnitudes | None:
 
 def ladder_in(quantity: Quantity | None, measure: Dimension) -> Magnitudes:
     """Return the magnitudes of faults measured in time, or as a share of the value."""
-    told = _from_vocabulary(quantity) if quantity is not None else None
-    if told is not None and told.unit is not None and dimension_of(told.unit) is measure:
-        return told
+    ladder = _from_vocabulary(quantity) if quantity is not None else None
+    if ladder is not None and ladder.unit is not None and dimension_of(ladder.unit) is measure:
+        return ladder
     return LADDERS[measure]
 
 

@@ -302,8 +302,8 @@ class Example:
         """
         first = next(iter((*operation.arguments, *operation.result)), None)
 
-        def of(one: Any) -> Mapping[str, Value]:
-            return one if first is None or isinstance(one, Mapping) else {first.name: one}
+        def of(values: Any) -> Mapping[str, Value]:
+            return values if first is None or isinstance(values, Mapping) else {first.name: values}
 
         subject = Subject(operation, variant=variant)
         subject = subject if size is None else subject.of_size(size[0], size[1])
@@ -316,10 +316,10 @@ class Example:
 
 def _subject(operation: Operation, variant: str, more: dict[str, Any]) -> Subject:
     """Return the subject of an example, and remove the attributes that name it."""
-    quantities = {one.name: one for one in (*operation.arguments, *operation.result)}
+    quantities = {argument.name: argument for argument in (*operation.arguments, *operation.result)}
     quantity = quantities[more.pop("quantity", next(iter(quantities)))]
     subject = Subject(operation, quantity=quantity, variant=variant)
-    more["earlier"] = tuple(_values(subject, one) for one in more.get("earlier", ()))
+    more["earlier"] = tuple(_values(subject, call_value) for call_value in more.get("earlier", ()))
     if "size" not in more:
         return subject
     direction, size, unit = more.pop("size")
@@ -419,7 +419,7 @@ def subject_of(
             return subject
     whole = Subject(operation, pattern, None, variant)
     quantities = (*whole.written, *whole.read)
-    return replace(whole, quantity=next((one for one in quantities if one.name == quantity), None))
+    return replace(whole, quantity=next((named for named in quantities if named.name == quantity), None))
 
 
 _BITS = 64

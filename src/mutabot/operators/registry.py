@@ -83,7 +83,7 @@ def _modules() -> dict[str, str]:
     """
     return {
         f"{__package__}.kinds.{module}": (_KINDS / f"{module}.py").read_text(encoding="utf-8")
-        for module in sorted(modules_in(_KINDS), key=lambda one: (*_ORDER, one).index(one))
+        for module in sorted(modules_in(_KINDS), key=lambda name: (*_ORDER, name).index(name))
     }
 
 

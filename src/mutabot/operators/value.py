@@ -126,21 +126,23 @@ class ValueOperator(Operator):
         return ""
 
     async def _changed(
-        self, one: CallOrReply, call: Call, context: Context, known: Mapping[str, Quantity]
+        self, call_or_reply: CallOrReply, call: Call, context: Context, known: Mapping[str, Quantity]
     ) -> CallOrReply:
         """Return the call or reply with the new values; ``known`` are its quantities."""
         context.call = call  # others may have been made while this one waited for its reply
         try:
-            changed = await self.changes(one.values, context)
+            changed = await self.changes(call_or_reply.values, context)
         except Unchanged as why:
-            return one.as_is(str(why))
+            return call_or_reply.as_is(str(why))
         finally:
             context.let_go(call)
-        reasons = [self._why_unchanged(known[name], one.values[name], changed[name]) for name in changed]
+        reasons = [
+            self._why_unchanged(known[name], call_or_reply.values[name], changed[name]) for name in changed
+        ]
         serious = [reason for reason in reasons if reason and reason != _SAME]
         if serious or all(reasons):
-            return one.as_is((serious or [_SAME])[0])
-        return replace(one, values={**one.values, **changed})
+            return call_or_reply.as_is((serious or [_SAME])[0])
+        return replace(call_or_reply, values={**call_or_reply.values, **changed})
 
 
 def _allowed(quantity: Quantity, value: Value) -> bool:

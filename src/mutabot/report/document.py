@@ -75,7 +75,8 @@ def accepting_data(results: Results) -> dict[str, Any]:
     """Return the accepted survivors, and decisions that no longer have an effect."""
     return {
         "survivors": [
-            data_of.facts(one, "number=mutant.number id=mutant.id *acceptance") for one in results.accepted
+            data_of.facts(result, "number=mutant.number id=mutant.id *acceptance")
+            for result in results.accepted
         ],
         "without_effect": [*results.needlessly_accepted, *results.accepting.unmatched],
     }
@@ -120,10 +121,10 @@ def _mutant(result: MutantResult) -> dict[str, Any]:
     return data if result.lets_through else data | {"deviation": None}
 
 
-def _replayed(one: records.Replayed) -> dict[str, Any]:
-    none = {"round": one.round + 1, "verdict": None}
-    return data_of.facts(one, "round=round+1 agrees journal=first replay=second") | (
-        {"journal": none} if one.first is None else {}
+def _replayed(replayed_round: records.Replayed) -> dict[str, Any]:
+    none = {"round": replayed_round.round + 1, "verdict": None}
+    return data_of.facts(replayed_round, "round=round+1 agrees journal=first replay=second") | (
+        {"journal": none} if replayed_round.first is None else {}
     )
 
 
@@ -152,15 +153,16 @@ def _ladder(ladder: ladders.Ladder) -> dict[str, Any]:
     }
 
 
-def _ladder_round(one: ladders.LadderRound) -> dict[str, Any]:
+def _ladder_round(ladder_round: ladders.LadderRound) -> dict[str, Any]:
     return {
         **data_of.facts(
-            one,
+            ladder_round,
             "round=number+1 counts why=why_out? missed=bracket.low noticed=bracket.high "
             "refused=bracket.refused by=noticed_by above",
         ),
         "verdicts": [
-            {"magnitude": size, "verdict": outcome.verdict.value} for size, outcome in one.outcomes.items()
+            {"magnitude": size, "verdict": outcome.verdict.value}
+            for size, outcome in ladder_round.outcomes.items()
         ],
     }
 

@@ -27,7 +27,7 @@ _DATA_OF = Encoder({Span: SPAN})
 
 def mutant_data(result: MutantResult) -> dict[str, Any]:
     """Return a mutant's data: its state with the reason, its place and its description."""
-    deciding = next((one for one in result.outcomes if one.test is not None), None)
+    deciding = next((outcome for outcome in result.outcomes if outcome.test is not None), None)
     return {
         "status": state_of(result),
         **_DATA_OF.facts(result, _LINE),

@@ -98,7 +98,7 @@ def _scores(results: Results) -> Iterator[Section]:
     rows = [_score_row(group) for group in results.groups]
     if results.accepted:
         columns = (*columns, ">accepted")
-        rows = [(*row, str(one.scores.accepted)) for row, one in zip(rows, results.groups, strict=True)]
+        rows = [(*row, str(group.scores.accepted)) for row, group in zip(rows, results.groups, strict=True)]
     if rows:
         yield Section("Scores", columns, rows, [_INTERVALS] if results.rounds > 1 else [])
     if results.drawing is not None:
@@ -168,13 +168,15 @@ _FEW = 10
 
 def _survivors(results: Results, place: PlaceName) -> Iterator[Section]:
     """Yield survivors with an effect, the largest first, and a line with those without an effect."""
-    idle = [one.mutant.number for one in results.survivors if one.status is Verdict.NOT_COVERED]
+    idle = [
+        survivor.mutant.number for survivor in results.survivors if survivor.status is Verdict.NOT_COVERED
+    ]
     if idle:
         yield Section(
             f"{plural(len(idle), 'mutant')} not covered, since no test reaches the place",
             lines=[numbered(idle)],
         )
-    survivors = [one for one in results.survivors if one.status is not Verdict.NOT_COVERED]
+    survivors = [survivor for survivor in results.survivors if survivor.status is not Verdict.NOT_COVERED]
     if not survivors:
         if results.all.total.valid > len(idle) * results.rounds:
             yield Section("No survivors" if results.is_complete else "No survivors so far")
@@ -202,7 +204,7 @@ def _survivors(results: Results, place: PlaceName) -> Iterator[Section]:
 
 def accepted_sections(results: Results, place: PlaceName) -> Iterator[Section]:
     """Yield accepted survivors with the reasons, and decisions that no longer have an effect."""
-    rows = [(*mutant_cells(one.mutant, place), acceptance_text(one)) for one in results.accepted]
+    rows = [(*mutant_cells(result.mutant, place), acceptance_text(result)) for result in results.accepted]
     if rows:
         title = f"{plural(len(rows), 'survivor')} accepted, in no score"
         yield Section(title, (*MUTANT_COLUMNS, "*reason"), rows, is_detail=True)
@@ -213,15 +215,15 @@ def accepted_sections(results: Results, place: PlaceName) -> Iterator[Section]:
 def _outside(results: Results, place: PlaceName) -> Iterator[Section]:
     """Yield mutants with rounds that do not count, with the reason of the first such round."""
     found = [(verdict, results.with_verdict(verdict)) for verdict in OUTSIDE]
-    told = ", ".join(f"{len(those)} {verdict}" for verdict, those in found if those)
+    counts = ", ".join(f"{len(those)} {verdict}" for verdict, those in found if those)
     rows = [
-        (*mutant_cells(one.mutant, place), f"{rounds_text(one)}: {first_line(outcome.message)}")
+        (*mutant_cells(result.mutant, place), f"{rounds_text(result)}: {first_line(outcome.message)}")
         for _, those in found
-        for one, outcome in those
+        for result, outcome in those
     ]
     if rows:
         columns = (*MUTANT_COLUMNS, "*result")
-        yield Section(f"Not counted in the score: {told}", columns, rows, is_detail=True)
+        yield Section(f"Not counted in the score: {counts}", columns, rows, is_detail=True)
     waiting = sum(not result.outcomes for result in results.mutants)
     if waiting:
         yield Section(f"{plural(waiting, 'mutant')} not run yet")
@@ -244,8 +246,8 @@ def _thresholds(results: Results, place: PlaceName) -> Iterator[Section]:
         runs = sum(len(result.outcomes) for result in results.graded)
         graded = f"{plural(results.ladders, 'ladder')} of graded mutants ({plural(runs, 'run')})"
         rows = [
-            (places_text(one.mutant.site, place), one.name, line_of(one))
-            for one in thresholds_of(results).ladders
+            (places_text(ladder.mutant.site, place), ladder.name, line_of(ladder))
+            for ladder in thresholds_of(results).ladders
         ]
         title = f"{graded}, in no score: `mutabot thresholds` shows them"
         columns = ("place", "*fault", "*noticed")
@@ -260,17 +262,18 @@ def _reliability(results: Results) -> Iterator[Section]:
     for text, rows in ((_DAMAGED, results.set_aside), (_ALTERED, results.altered)):
         if rows:
             yield Section(text, lines=rows, is_alarm=True)
-    said = results.meta.get(RAN_OVER)
+    condition = results.meta.get(RAN_OVER)
     yield from (
-        Section(str(remark)) for remark in (*([said] if said else ()), *(results.meta.get(REMARKS) or ()))
+        Section(str(remark))
+        for remark in (*([condition] if condition else ()), *(results.meta.get(REMARKS) or ()))
     )
     if confirmed is not None:
         yield Section(f"{confirmed.text}.", is_alarm=bool(confirmed.wrong))
     if checked is not None:
         where = "over the real middleware" if results.meta.get(SIMULATION) else "in fresh processes"
         lines = [
-            f"mutant {one.number}, round {one.round + 1}: {one.first}; re-run: {one.second}"
-            for one in checked.disagreements
+            f"mutant {pair.number}, round {pair.round + 1}: {pair.first}; re-run: {pair.second}"
+            for pair in checked.disagreements
         ]
         text = f"Verified: {checked.agreed} of {checked.checked} outcomes end the same {where}."
         yield Section(text, lines=lines, is_alarm=bool(lines))
@@ -278,11 +281,17 @@ def _reliability(results: Results) -> Iterator[Section]:
     kinds = (("kill that might be a coincidence", repeats.doubted), ("other kill", repeats.others))
     yield from _re_runs("kills", false_kills(repeats), kinds)
     yield from _re_runs("survivors", false_survivors(repeats), (("survivor", repeats.survivors),))
-    wrong = [f"{one.control} in {one.test_file}: {one.detail}" for one in results.controls if not one.ok]
+    wrong = [
+        f"{control.control} in {control.test_file}: {control.detail}"
+        for control in results.controls
+        if not control.ok
+    ]
     if wrong:
         yield Section("Self-check failed", lines=wrong, is_alarm=True)
     elif results.controls:
-        files = plural(len({one.test_file.partition("::")[0] for one in results.controls}), "test file")
+        files = plural(
+            len({control.test_file.partition("::")[0] for control in results.controls}), "test file"
+        )
         text = f"Self-check passed in {files} (a no-op mutant survived, a crashing one was killed)"
         yield Section(text, is_detail=True)
 
@@ -290,21 +299,22 @@ def _reliability(results: Results) -> Iterator[Section]:
 def _re_runs(what: str, found: Estimate | None, kinds: Sequence[tuple[str, Repeated]]) -> Iterator[Section]:
     """Yield how many outcomes were re-run, and how many of the others may be wrong, if any were re-run."""
     parts = []
-    for name, one in kinds:
-        of_kind = plural(one.outcomes, name, name.replace("kill", "kills").replace("survivor", "survivors"))
-        if one.repeated:
-            dropped = (
-                f"{one.changed} gave a different result and {'was' if one.changed == 1 else 'were'} dropped"
-            )
-            parts.append(f"{one.repeated} of {of_kind} re-run, {dropped}")
-        elif parts and one.outcomes:
+    for name, repeat in kinds:
+        of_kind = plural(
+            repeat.outcomes, name, name.replace("kill", "kills").replace("survivor", "survivors")
+        )
+        if repeat.repeated:
+            were = "was" if repeat.changed == 1 else "were"
+            dropped = f"{repeat.changed} gave a different result and {were} dropped"
+            parts.append(f"{repeat.repeated} of {of_kind} re-run, {dropped}")
+        elif parts and repeat.outcomes:
             parts.append(f"{of_kind} not re-run (--verify N re-runs some)")
     if parts and found is not None:
         interval = f"(95 % interval {found.low}–{found.high})"
         parts.append(f"estimated wrong {what} among {found.known}: {found.expected:.1f} {interval}")
     if parts:
         text = f"{what.capitalize()}: {'; '.join(parts)}"
-        yield Section(text, is_alarm=any(one.changed for _, one in kinds))
+        yield Section(text, is_alarm=any(kind.changed for _, kind in kinds))
 
 
 def section_lines(section: Section, at_most: int) -> Iterator[str]:

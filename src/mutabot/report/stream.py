@@ -51,7 +51,7 @@ class MutantStream:
             return
         row = self._waiting.setdefault(mutant.id, [None] * self._rounds)
         row[end.outcome.round] = end.outcome
-        known = [one for one in row if one is not None]
+        known = [outcome for outcome in row if outcome is not None]
         result = MutantResult(
             mutant,
             tuple(row),

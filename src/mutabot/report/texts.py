@@ -94,7 +94,8 @@ def portable(campaign: Results) -> Results:
         **found,
         meta=mapped({key: campaign.meta[key] for key in _META if key in campaign.meta}, clean),
         baseline=tuple(
-            replace(one, test=replace(one.test, test=clean(one.test.test))) for one in campaign.baseline
+            replace(baseline_test, test=replace(baseline_test.test, test=clean(baseline_test.test.test)))
+            for baseline_test in campaign.baseline
         ),
         # a mark of the byte order is no part of the first line
         sources=mapped(
@@ -126,7 +127,7 @@ def _mapped(value: Any, change: Callable[[str], str]) -> Any:
         return value._make(items) if hasattr(value, "_make") else type(value)(items)
     if is_dataclass(value) and not isinstance(value, type):
         change = legible if isinstance(value, _OWN) else change
-        made = {one.name: _mapped(getattr(value, one.name), change) for one in fields(value)}
+        made = {field.name: _mapped(getattr(value, field.name), change) for field in fields(value)}
         if isinstance(value, Outcome):
             made["mutant"] = legible(value.mutant)
         return replace(value, **made)
@@ -164,11 +165,11 @@ def reason_of(result: MutantResult) -> str:
     status = result.status
     if result.lets_through:
         lines.append(told_text(result))
-    told: set[str] = set()
+    given: set[str] = set()
     for outcome in result.outcomes:
         text = outcome.message or ""
-        if text and text not in told and (not result.lets_through or outcome.verdict is not status):
-            told.add(text)
+        if text and text not in given and (not result.lets_through or outcome.verdict is not status):
+            given.add(text)
             lines.append(f"round {outcome.round + 1}: {outcome.test + ': ' if outcome.test else ''}{text}")
     return "\n".join(lines)
 
@@ -195,8 +196,8 @@ def told_text(result: MutantResult) -> str:
     what = result.mutant.description
     why = result.why.removeprefix(f"{what}; ")
     change = _CHANGE.match(why)
-    said = (f" {change[2]} → {change[1]}", f" {change[1]} instead of {change[2]}") if change else ()
-    if change is not None and any(what.endswith(text) for text in said):
+    phrases = (f" {change[2]} → {change[1]}", f" {change[1]} instead of {change[2]}") if change else ()
+    if change is not None and any(what.endswith(text) for text in phrases):
         why = why.removeprefix(change[0])
     number, diverged = telling(result) or (0, None)
     if diverged is not None and diverged.story and diverged.story in why:
@@ -221,9 +222,9 @@ def telling(result: MutantResult) -> tuple[int, Diverged | None] | None:
     about too; else the first round with its state. None if it has not been run.
     """
     status = result.status
-    outcomes = result.survived or [one for one in result.outcomes if one.verdict is status]
+    outcomes = result.survived or [outcome for outcome in result.outcomes if outcome.verdict is status]
     if not outcomes:
-        return next(((one.round, None) for one in result.outcomes), None)
+        return next(((outcome.round, None) for outcome in result.outcomes), None)
     worst = max(outcomes, key=weight_of)
     return worst.round, worst.told
 
@@ -238,7 +239,7 @@ def place_text(result: MutantResult, number: int, diverged: Diverged) -> str:
 def short_reason(result: MutantResult) -> str:
     """Return why a mutant that has been run has its state, in a line, by the first such round."""
     status = result.status
-    return next(first_line(one.message) for one in result.outcomes if one.verdict is status)
+    return next(first_line(outcome.message) for outcome in result.outcomes if outcome.verdict is status)
 
 
 def _end(outcome: Outcome | None) -> str:

@@ -29,14 +29,14 @@ def explain(mutant: Mutant, outcomes: Sequence[Outcome], vocabulary: Vocabulary 
     if not outcomes:
         return "not run"
     quantity = quantity_of(mutant, vocabulary)
-    survivors = [one for one in outcomes if one.verdict is Verdict.SURVIVED]
+    survivors = [outcome for outcome in outcomes if outcome.verdict is Verdict.SURVIVED]
     if survivors:
         worst = max(survivors, key=weight_of)
         return f"{change_text(mutant, worst, quantity) or mutant.description}; {_world_text(worst)}"
-    verdict, _ = Counter(one.verdict for one in outcomes).most_common(1)[0]
-    if any(one.verdict is Verdict.NOT_COVERED for one in outcomes):
+    verdict, _ = Counter(outcome.verdict for outcome in outcomes).most_common(1)[0]
+    if any(outcome.verdict is Verdict.NOT_COVERED for outcome in outcomes):
         verdict = Verdict.NOT_COVERED
-    return _end_text(next(one for one in outcomes if one.verdict is verdict))
+    return _end_text(next(outcome for outcome in outcomes if outcome.verdict is verdict))
 
 
 def change_text(mutant: Mutant, outcome: Outcome, quantity: Quantity | None = None) -> str | None:
@@ -44,8 +44,8 @@ def change_text(mutant: Mutant, outcome: Outcome, quantity: Quantity | None = No
 
     That is in the test whose story is told, if there is one.
     """
-    told = outcome.told.example if outcome.told is not None else None
-    example = told if told is not None else outcome.example
+    reported = outcome.told.example if outcome.told is not None else None
+    example = reported if reported is not None else outcome.example
     if mutant.quantity is None or example is None or len(example) != 2:
         return None
     text = quantity.text if quantity is not None else value_text

@@ -70,7 +70,7 @@ def decide(
         return Decision(ExitCode.UNRELIABLE, unstable)
     if results.since is not None and not results.everything:
         return Decision(ExitCode.FINE)  # nothing that was asked for has changed
-    is_judged = bool(results.graded) and any(not one.why_unjudged for one in ladders_of(results))
+    is_judged = bool(results.graded) and any(not ladder.why_unjudged for ladder in ladders_of(results))
     if not total.valid and not is_judged:  # scores have no part in thresholds
         return Decision(ExitCode.NOTHING_KNOWN, (_nothing_valid(results),))
     share = total.timeouts / total.valid if total.valid else 0.0
@@ -83,7 +83,9 @@ def decide(
 
 
 def _incomplete(results: Results) -> str:
-    lacking = [str(one.mutant.number) for one in results.mutants if len(one.outcomes) < results.rounds]
+    lacking = [
+        str(result.mutant.number) for result in results.mutants if len(result.outcomes) < results.rounds
+    ]
     if results.shard is not None and results.shard.of > 1:
         lacking = []  # most of them are other shards'
     shown = f": mutants {', '.join(lacking[:20])}{' …' if len(lacking) > 20 else ''}" if lacking else ""
@@ -112,8 +114,8 @@ def _of_shard(results: Results, shard: ShardOf) -> Decision:
     wrong = _disagreements(results)
     if wrong:
         return Decision(ExitCode.UNRELIABLE, wrong)
-    told = f"{shard.words}: limits and scores are judged by `mutabot merge`, with all shards"
-    return Decision(ExitCode.FINE, (told,))
+    text = f"{shard.words}: limits and scores are judged by `mutabot merge`, with all shards"
+    return Decision(ExitCode.FINE, (text,))
 
 
 def _disagreements(results: Results) -> tuple[str, ...]:
@@ -121,9 +123,11 @@ def _disagreements(results: Results) -> tuple[str, ...]:
     if found is None or not found.disagreements:
         return ()
     lines = [f"{len(found.disagreements)} of {found.checked} outcomes differ in a fresh process:"]
-    for one in found.disagreements:
-        lines.append(f"  mutant {one.number} ({one.mutant}), round {one.round + 1}:")
-        lines += [f"    here    {one.first}", f"    afresh  {one.second}"]
+    for disagreement in found.disagreements:
+        lines.append(
+            f"  mutant {disagreement.number} ({disagreement.mutant}), round {disagreement.round + 1}:"
+        )
+        lines += [f"    here    {disagreement.first}", f"    afresh  {disagreement.second}"]
     return tuple(lines)
 
 
@@ -135,27 +139,27 @@ def _too_unstable(results: Results, limit: float | None) -> tuple[str, ...]:
 
 
 def _too_many(
-    results: Results, verdict: Verdict, words: str, limit: float | None, key: str
+    results: Results, verdict: Verdict, description: str, limit: float | None, key: str
 ) -> tuple[str, ...]:
     """Return a message if more outcomes than the limit have one of these verdicts."""
     outcomes = results.outcomes
-    count, run = sum(one.verdict is verdict for one in outcomes), len(outcomes)
+    count, run = sum(outcome.verdict is verdict for outcome in outcomes), len(outcomes)
     if limit is None or not run or count / run <= limit:
         return ()
     numbers = [
         str(result.mutant.number)
         for result in results.everything
-        if any(one.verdict is verdict for one in result.outcomes)
+        if any(outcome.verdict is verdict for outcome in result.outcomes)
     ]
     shown = ", ".join(numbers[:20]) + (" …" if len(numbers) > 20 else "")
-    text = f"{count} of {run} outcomes are {words} ({count / run:.0%})"
+    text = f"{count} of {run} outcomes are {description} ({count / run:.0%})"
     return (f"{text}; the limit is {limit:.0%} ({key}): mutants {shown}",)
 
 
 def _nothing_valid(results: Results) -> str:
     if not results.everything:
         return "no mutant was planned, so nothing is known about the tests"
-    counts = Counter(one.verdict for one in results.outcomes)
+    counts = Counter(outcome.verdict for outcome in results.outcomes)
     if not counts:
         return "no mutant was run, so nothing is known about the tests"
     if results.accepted:
@@ -175,8 +179,10 @@ def _too_loose(results: Results, demands: Sequence[Demand]) -> Iterator[str]:
 
 def _found(results: Results, fail_on: Collection[str]) -> Iterator[str]:
     """Yield the findings that ``--fail-on`` forbids: unaccepted survivors, or code that no test reaches."""
-    idle = [one.mutant.number for one in results.survivors if one.status is Verdict.NOT_COVERED]
-    survivors = sorted({one.mutant.number for one in results.survivors} - {*idle})
+    idle = [
+        survivor.mutant.number for survivor in results.survivors if survivor.status is Verdict.NOT_COVERED
+    ]
+    survivors = sorted({survivor.mutant.number for survivor in results.survivors} - {*idle})
     if "survivors" in fail_on and survivors:
         yield f"{plural(len(survivors), 'survivor')} (--fail-on survivors): {_numbers(survivors)}"
     if "untested" in fail_on and results.untested.text:

@@ -68,7 +68,7 @@ class MutantResult:
     @property
     def survived(self) -> list[Outcome]:
         """The outcomes in which every test that reaches the mutant passed."""
-        return [one for one in self.outcomes if one.verdict is Verdict.SURVIVED]
+        return [outcome for outcome in self.outcomes if outcome.verdict is Verdict.SURVIVED]
 
     @property
     def kill_rate(self) -> Score:
@@ -113,18 +113,20 @@ class MutantResult:
     @property
     def deviation(self) -> float:
         """The greatest distance of its survivors from the original, in units of the original's spread."""
-        return max((one.deviation or 0.0 for one in self.survived), default=0.0)
+        return max((outcome.deviation or 0.0 for outcome in self.survived), default=0.0)
 
     @property
     def change(self) -> str | None:
         """Describe its first change, in the test whose story is reported; None if not known."""
         outcomes = sorted(self.survived, key=weight_of, reverse=True) or self.outcomes
-        return next(filter(None, (change_text(self.mutant, one, self.quantity) for one in outcomes)), None)
+        return next(
+            filter(None, (change_text(self.mutant, outcome, self.quantity) for outcome in outcomes)), None
+        )
 
     @property
     def indistinguishable(self) -> bool:
         """Whether all its survivors looked exactly like the original."""
-        return bool(self.survived) and all(one.indistinguishable for one in self.survived)
+        return bool(self.survived) and all(outcome.indistinguishable for outcome in self.survived)
 
 
 @frozen
@@ -207,7 +209,7 @@ class Results:
         """All mutants, graded ones included, by number."""
         if not self.graded:
             return self.mutants
-        return tuple(sorted((*self.mutants, *self.graded), key=lambda one: one.mutant.number))
+        return tuple(sorted((*self.mutants, *self.graded), key=lambda result: result.mutant.number))
 
     @property
     def outcomes(self) -> tuple[Outcome, ...]:
@@ -217,8 +219,8 @@ class Results:
     @property
     def tests(self) -> list[str]:
         """Node ids of all known tests, including those that mutants name."""
-        named = (test for one in self.outcomes for test, _ in killing_tests(one))
-        baseline = (one.test.test for one in self.baseline)
+        named = (test for outcome in self.outcomes for test, _ in killing_tests(outcome))
+        baseline = (baseline_test.test.test for baseline_test in self.baseline)
         return list(dict.fromkeys([*baseline, *self.reaching.tests, *named]))
 
     @classmethod
@@ -244,17 +246,23 @@ class Results:
         if name.isdigit():
             last = everything[-1].mutant.number
             raise SelectionError(f"there is no mutant {name}; they are numbered 1 to {last}")
-        found = [one for one in everything if name in one.mutant.id or fits(name, one.mutant)]
+        found = [
+            candidate
+            for candidate in everything
+            if name in candidate.mutant.id or fits(name, candidate.mutant)
+        ]
         if len(found) == 1:
             return found[0]
         if found:
             raise SelectionError(_several(name, found))
-        raise SelectionError(unknown_name_text("mutant", name, (one.mutant.id for one in everything)))
+        raise SelectionError(
+            unknown_name_text("mutant", name, (candidate.mutant.id for candidate in everything))
+        )
 
     def selected(self, only: Iterable[str], skip: Iterable[str]) -> list[MutantResult]:
         """Return the ``mutants`` that match ``only`` and not ``skip``. Raises SelectionError."""
-        chosen = {one.id for one in select([one.mutant for one in self.mutants], only, skip)}
-        return [one for one in self.mutants if one.mutant.id in chosen]
+        chosen = {mutant.id for mutant in select([result.mutant for result in self.mutants], only, skip)}
+        return [result for result in self.mutants if result.mutant.id in chosen]
 
     def round_index(self, number: int) -> int:
         """Return the 0-based index of the round with this number. Raises UsageError if there is none."""
@@ -273,7 +281,7 @@ class Results:
     @property
     def ladders(self) -> int:
         """Number of ladders of graded mutants."""
-        return len({one.mutant.ladder for one in self.graded})
+        return len({result.mutant.ladder for result in self.graded})
 
     @property
     def earlier(self) -> list[MutantResult]:
@@ -284,7 +292,9 @@ class Results:
     def survivors(self) -> list[MutantResult]:
         """Mutants that survive in some round, the farthest from the original at any moment first."""
         found = [result for result in self.mutants if result.is_survivor]
-        return sorted(found, key=lambda one: (-one.deviation, one.indistinguishable, one.mutant.number))
+        return sorted(
+            found, key=lambda result: (-result.deviation, result.indistinguishable, result.mutant.number)
+        )
 
     @property
     def accepted(self) -> list[MutantResult]:
@@ -295,9 +305,9 @@ class Results:
     def needlessly_accepted(self) -> list[str]:
         """Descriptions of decisions whose mutants are all killed in every valid round."""
         groups: dict[str, list[MutantResult]] = {}
-        for one in self.mutants:
-            if one.acceptance is not None:
-                groups.setdefault(one.acceptance.source, []).append(one)
+        for result in self.mutants:
+            if result.acceptance is not None:
+                groups.setdefault(result.acceptance.source, []).append(result)
         return [_killed_now_text(source, those) for source, those in groups.items() if _is_killed(those)]
 
     @property
@@ -310,7 +320,9 @@ class Results:
         """Return each mutant with its first outcome of one of these verdicts, by number."""
         found = []
         for result in self.mutants:
-            outcome = next((one for one in result.outcomes if one.verdict in verdicts), None)
+            outcome = next(
+                (candidate for candidate in result.outcomes if candidate.verdict in verdicts), None
+            )
             if outcome is not None:
                 found.append((result, outcome))
         return found
@@ -343,17 +355,19 @@ def killing_tests(outcome: Outcome) -> list[tuple[str, By | None]]:
     if not outcome.verdict.is_killed:
         return []
     first = [(outcome.test, outcome.by)] if outcome.test is not None else []
-    return [*first, *((one.test, one.by) for one in outcome.kills)]
+    return [*first, *((kill.test, kill.by) for kill in outcome.kills)]
 
 
 def _several(name: str, found: Sequence[MutantResult]) -> str:
-    lines = [f"{one.mutant.number:>6}  {one.mutant.id}" for one in found[:_SHOWN]]
+    lines = [f"{result.mutant.number:>6}  {result.mutant.id}" for result in found[:_SHOWN]]
     more = [f"        and {len(found) - _SHOWN} more"] if len(found) > _SHOWN else []
     return "\n".join([f"{name!r} fits {len(found)} mutants; give a number or a whole id:", *lines, *more])
 
 
 #: what a campaign says about itself under the name that it has in ``Results``
-_TOLD = {one.name for one in fields(Results)} & (records.FACTS.keys() - records.PLAIN.keys())
+_TOLD = {stored_field.name for stored_field in fields(Results)} & (
+    records.FACTS.keys() - records.PLAIN.keys()
+)
 
 
 def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
@@ -364,9 +378,9 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
     rounds = _number_of_rounds(meta, outcomes)
     outcomes = [outcome for outcome in outcomes if outcome.round < rounds]
     vocabulary = journal.vocabulary
-    told = {key: meta[key] for key in _TOLD if key in meta}
+    facts = {key: meta[key] for key in _TOLD if key in meta}
     accepting: Accepted = meta.get(records.ACCEPTED) or Accepted()
-    drawing, shard = told.get(records.DRAWING), told.get(records.SHARD)
+    drawing, shard = facts.get(records.DRAWING), facts.get(records.SHARD)
     accepted = _accepted(accepting, outcomes)
     groups = groups_of(mutants, outcomes, rounds, drawing, accepted=accepted)
     is_whole = _is_whole(mutants, outcomes, rounds)
@@ -391,7 +405,7 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
             None if mutant.has_sizes else accepting.mutants.get(mutant.id),
         )  # fmt: skip
 
-    files = sorted({span.file for one in mutants for span in one.site.spans})
+    files = sorted({span.file for mutant in mutants for span in mutant.site.spans})
     texts = {file: journal.source(file) for file in files}
     found = Results(
         meta=meta,
@@ -400,7 +414,9 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
         mutants=tuple(result(mutant) for mutant in mutants if mutant.id not in graded),
         graded=tuple(result(mutant) for mutant in mutants if mutant.id in graded),
         groups=groups,
-        all=RoundScores.of([one for one in outcomes if one.mutant not in graded], rounds, accepted=accepted),
+        all=RoundScores.of(
+            [outcome for outcome in outcomes if outcome.mutant not in graded], rounds, accepted=accepted
+        ),
         left_out=tuple(journal.left_out()),
         controls=tuple(journal.controls()),
         baseline=tuple(journal.tests()),
@@ -408,7 +424,7 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
         attempt=_attempt(journal),
         accepting=accepting,
         sources={file: text for file, text in texts.items() if text is not None},
-        **told,
+        **facts,
     )
     # what rows hold is known now that they are read
     set_aside = tuple(journal.set_aside)
@@ -422,11 +438,13 @@ def _lets_through(outcome: Outcome) -> bool:
 
 def _is_killed(results: Iterable[MutantResult]) -> bool:
     """Return whether all of these have run in every round, and every valid round of each kills it."""
-    return all(one.kill_rate.valid and not one.lets_through and None not in one.rounds for one in results)
+    return all(
+        result.kill_rate.valid and not result.lets_through and None not in result.rounds for result in results
+    )
 
 
 def _killed_now_text(source: str, results: Sequence[MutantResult]) -> str:
-    numbers = in_short([str(one.mutant.number) for one in results], _SHOWN)
+    numbers = in_short([str(result.mutant.number) for result in results], _SHOWN)
     is_one = len(results) == 1
     return (
         f"{source}: mutant{'' if is_one else 's'} {numbers} {'is' if is_one else 'are'} killed now, so there "
@@ -436,7 +454,11 @@ def _killed_now_text(source: str, results: Sequence[MutantResult]) -> str:
 
 def _accepted(accepting: Accepted, outcomes: Iterable[Outcome]) -> set[str]:
     """Return the ids of accepted mutants that survive in some round."""
-    return {one.mutant for one in outcomes if one.mutant in accepting.mutants and _lets_through(one)}
+    return {
+        outcome.mutant
+        for outcome in outcomes
+        if outcome.mutant in accepting.mutants and _lets_through(outcome)
+    }
 
 
 def _earlier(
@@ -450,20 +472,20 @@ def _earlier(
     outdated = {mutant.id: is_outdated for mutant, is_outdated in journal.known()}
     wanted = {mutant.id for mutant in planned} | outdated.keys()
     found = [
-        one
-        for one in journal.kept_outcomes()
-        if one.mutant in wanted and one.round < rounds and (one.mutant, one.round) not in done
+        outcome
+        for outcome in journal.kept_outcomes()
+        if outcome.mutant in wanted and outcome.round < rounds and (outcome.mutant, outcome.round) not in done
     ]
     # what was planned and would still hold has been taken over, unless everything is to be run again, or
     # another shard is to look at it
     meta = journal.meta()
     may_hold = bool(meta.get("fresh")) or records.SHARD in meta
-    return found, {one.mutant: outdated.get(one.mutant, not may_hold) for one in found}
+    return found, {outcome.mutant: outdated.get(outcome.mutant, not may_hold) for outcome in found}
 
 
 def _number_of_rounds(meta: Mapping[str, Any], outcomes: list[Outcome]) -> int:
-    said = meta.get("rounds")
-    return said if isinstance(said, int) else max((one.round + 1 for one in outcomes), default=0)
+    rounds = meta.get("rounds")
+    return rounds if isinstance(rounds, int) else max((outcome.round + 1 for outcome in outcomes), default=0)
 
 
 def _attempt(journal: JournalReader) -> str | None:
@@ -499,26 +521,26 @@ def unlooked(results: Iterable[MutantResult]) -> list[str]:
     """
     groups: dict[tuple[str, str], list[MutantResult]] = {}
     open_ones: set[tuple[str, str]] = set()
-    for one in results:
-        mutant = one.mutant
+    for result in results:
+        mutant = result.mutant
         is_reading = mutant.site.role is Role.ORACLE and mutant.operation and mutant.quantity
         key = (mutant.operation, mutant.quantity or "")
-        if one.is_accepted:
+        if result.is_accepted:
             continue
-        if is_reading and not one.outdated and one.kill_rate.valid:
-            groups.setdefault(key, []).append(one)
-        elif is_reading and not one.outcomes and not mutant.ladder:  # of a ladder, a search runs some
+        if is_reading and not result.outdated and result.kill_rate.valid:
+            groups.setdefault(key, []).append(result)
+        elif is_reading and not result.outcomes and not mutant.ladder:  # of a ladder, a search runs some
             open_ones.add(key)
     return [
         _unlooked_text(*key, found)
         for key, found in groups.items()
-        if key not in open_ones and not any(one.kill_rate.killed for one in found)
+        if key not in open_ones and not any(found_result.kill_rate.killed for found_result in found)
     ]
 
 
 def _unlooked_text(operation: str, quantity: str, found: Sequence[MutantResult]) -> str:
     """Describe an unnoticed reading: ``tests/sensors.py:12:5 tracker:position .y: none of its 3 mutants``."""
-    places = in_short(list(dict.fromkeys(one.mutant.site.place for one in found)), 1)
+    places = in_short(list(dict.fromkeys(result.mutant.site.place for result in found)), 1)
     which = "its only mutant was not" if len(found) == 1 else f"none of its {len(found)} mutants was"
     return f"{places} {operation} {quantity}: {which} noticed"
 
@@ -531,13 +553,13 @@ Facts = Mapping[type, str | Callable[[Any], dict[str, Any]]]
 _PLAIN = {str, int, float, bool, type(None)}
 
 
-def fact(one: Any, path: Sequence[str]) -> Any:
+def fact(value: Any, path: Sequence[str]) -> Any:
     """Return the attribute at a path such as ``("site", "span", "file")``; None if a step is None."""
     for name in path:
-        if one is None:
+        if value is None:
             return None
-        one = getattr(one, name)
-    return one
+        value = getattr(value, name)
+    return value
 
 
 class Encoder:
@@ -566,14 +588,14 @@ class Encoder:
             return [self(item) for item in value]
         return self._fields(value) if is_dataclass(value) else value
 
-    def facts(self, one: object, line: str) -> dict[str, Any]:
+    def facts(self, value: object, line: str) -> dict[str, Any]:
         """Return the facts of an object that a line names, in its order."""
         found: dict[str, Any] = {}
         for key, path, kind in _words(line):
             if kind == "*":
-                found |= self(fact(one, path)) if path else self._fields(one)
+                found |= self(fact(value, path)) if path else self._fields(value)
             else:
-                found[key] = self._fact(fact(one, path), kind)
+                found[key] = self._fact(fact(value, path), kind)
         return found
 
     def _fact(self, value: Any, kind: str) -> Any:
@@ -585,7 +607,7 @@ class Encoder:
         return None if kind == "?" and not value else self(value)
 
     def _fields(self, value: Any) -> dict[str, Any]:
-        pairs = ((one.name, getattr(value, one.name)) for one in fields(value))
+        pairs = ((own_field.name, getattr(value, own_field.name)) for own_field in fields(value))
         return {name: self(item) for name, item in pairs if item is not None}
 
 
@@ -598,7 +620,7 @@ def _words(line: str) -> tuple[tuple[str, tuple[str, ...], str], ...]:
             found.append(("", tuple(word[1:].split(".")) if word[1:] else (), "*"))
             continue
         name, _, path = word.rpartition("=")
-        kind = next((one for one in ("+1", "?", "#") if path.endswith(one)), "")
+        kind = next((marker for marker in ("+1", "?", "#") if path.endswith(marker)), "")
         path = path.removesuffix(kind)
         found.append((name or path, tuple(path.split(".")), kind))
     return tuple(found)

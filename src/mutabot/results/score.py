@@ -34,7 +34,7 @@ class Score:
     def of(cls, outcomes: Iterable[Outcome]) -> Score:
         """Return the score of these outcomes."""
         outcomes = list(outcomes)
-        return cls(Counter(one.verdict for one in outcomes), sum(map(_is_found, outcomes)))
+        return cls(Counter(outcome.verdict for outcome in outcomes), sum(map(_is_found, outcomes)))
 
     @property
     def of_each(self) -> dict[Verdict, int]:
@@ -120,11 +120,12 @@ class RoundScores:
                 by_round[outcome.round].append(outcome)
                 row[outcome.round] = outcome
         killed = [
-            [_share(one, lambda one: one.verdict.is_killed) for one in row] for row in by_mutant.values()
+            [_share(round_outcome, lambda scored: scored.verdict.is_killed) for round_outcome in row]
+            for row in by_mutant.values()
         ]
-        found = [[_share(one, _is_found) for one in row] for row in by_mutant.values()]
+        found = [[_share(round_outcome, _is_found) for round_outcome in row] for row in by_mutant.values()]
         return cls(
-            tuple(Score.of(one) for one in by_round),
+            tuple(Score.of(of_round) for of_round in by_round),
             crossed(killed),
             crossed(found),
             sampled(killed, population) if population is not None else None,

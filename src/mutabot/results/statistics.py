@@ -294,16 +294,16 @@ def false_survivors(repeats: Repeats, level: float = LEVEL) -> Estimate | None:
 
 def _sum_of(strata: tuple[Repeated, ...], level: float) -> Estimate | None:
     """Return the sum over kinds of outcomes. The ends are summed too, so the interval is conservative."""
-    looked = [one for one in strata if one.repeated]
+    looked = [repeat for repeat in strata if repeat.repeated]
     if not looked:
         return None
-    ends = [remaining(one, level) for one in looked]
+    ends = [remaining(repeat, level) for repeat in looked]
     return Estimate(
-        sum(one.changed / one.repeated * one.left for one in looked),
+        sum(repeat.changed / repeat.repeated * repeat.left for repeat in looked),
         sum(low for low, _ in ends),
         sum(high for _, high in ends),
-        sum(one.outcomes - one.changed for one in looked),
-        sum(one.outcomes for one in strata if not one.repeated),
+        sum(repeat.outcomes - repeat.changed for repeat in looked),
+        sum(repeat.outcomes for repeat in strata if not repeat.repeated),
         level,
     )
 
@@ -414,13 +414,13 @@ class Confirmed:
         drawn = run_short(outcomes, seed)
         if not drawn:
             return None
-        left = sum(not one.confirmed for one in drawn)
-        let_through = [one for one in drawn if one.verdict in LET_THROUGH]
-        whole = sum(one.verdict is Verdict.SURVIVED and one.confirmed is None for one in outcomes)
-        sample = list(takewhile(lambda one: one.confirmed, drawn))
+        left = sum(not outcome.confirmed for outcome in drawn)
+        let_through = [outcome for outcome in drawn if outcome.verdict in LET_THROUGH]
+        whole = sum(outcome.verdict is Verdict.SURVIVED and outcome.confirmed is None for outcome in outcomes)
+        sample = list(takewhile(lambda outcome: outcome.confirmed, drawn))
         found = Repeated(len(drawn), len(sample), sum(map(is_wrong, sample)))
         most = min(remaining(found, 2 * LEVEL - 1)[1], left) if sample else None  # one end of its interval
-        refused = sum(one.verdict is Verdict.REFUSED for one in let_through)
+        refused = sum(outcome.verdict is Verdict.REFUSED for outcome in let_through)
         all = whole + len(let_through)
         return cls(all, refused, all - left, sum(map(is_wrong, drawn)), left, most)
 

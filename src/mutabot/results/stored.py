@@ -122,15 +122,15 @@ class StoredCampaign(Results):
     def _repr_html_(self) -> str:
         """Return scores and the first survivors as HTML, for notebooks."""
         scores = [
-            (f"{one.family} · {one.role}", str(one.mutants), _percent(one.scores.mean),
-             _percent(one.scores.mean_check), str(one.scores.accepted))
-            for one in self.groups
+            (f"{group.family} · {group.role}", str(group.mutants), _percent(group.scores.mean),
+             _percent(group.scores.mean_check), str(group.scores.accepted))
+            for group in self.groups
         ]  # fmt: skip
         first = self.survivors[:_SHOWN]
         survivors = [
-            (str(one.mutant.number), one.mutant.site.span.place, one.mutant.operator,
-             one.mutant.description, one.why)
-            for one in first
+            (str(result.mutant.number), result.mutant.site.span.place, result.mutant.operator,
+             result.mutant.description, result.why)
+            for result in first
         ]  # fmt: skip
         left = len(self.survivors) - len(first)
         return "".join(
@@ -145,7 +145,7 @@ class StoredCampaign(Results):
     @property
     def _counts(self) -> dict[str, int]:
         """The counts of mutants by state."""
-        states = ("accepted" if one.is_accepted else one.status or "not run" for one in self.mutants)
+        states = ("accepted" if result.is_accepted else result.status or "not run" for result in self.mutants)
         return dict(Counter(map(str, states)))
 
     def rows(self) -> list[dict[str, Any]]:

@@ -20,7 +20,7 @@ _WRAPPED, _SEVERAL = "doctest:UnexpectedException", "_pytest.doctest:MultipleDoc
 def leaves(error: BaseException) -> list[BaseException]:
     """Return the exceptions in a group, in order; the exception itself if it is no group."""
     held = _held(error)
-    return [leaf for one in held for leaf in leaves(one)] if held else [error]
+    return [leaf for part in held for leaf in leaves(part)] if held else [error]
 
 
 def everything(error: BaseException) -> Iterator[BaseException]:
@@ -90,7 +90,9 @@ class Refusal:
     def __init__(self, error: BaseException) -> None:
         held = leaves(error)
         self.text = text_of(held[0])
-        self.noted = tuple(KnownError(one) for one in (error, *(leaf for leaf in held if leaf is not error)))
+        self.noted = tuple(
+            KnownError(held_error) for held_error in (error, *(leaf for leaf in held if leaf is not error))
+        )
 
 
 def is_due_to(error: BaseException, culprits: Sequence[KnownError]) -> bool:
@@ -107,16 +109,16 @@ def _is_due(error: BaseException | None, culprits: Sequence[KnownError], above: 
     """Return whether an exception is due to culprits; ``above`` has those on the way, against circles."""
     if error is None or id(error) in above:
         return False
-    if any(one.matches(error) for one in culprits):
+    if any(culprit.matches(error) for culprit in culprits):
         return True
     above |= {id(error)}
     held = _held(error)
     if not held:
         return _is_due(_cause(error), culprits, above)
-    if all(_is_due(one, culprits, above) for one in held) or _is_due(error.__cause__, culprits, above):
+    if all(_is_due(part, culprits, above) for part in held) or _is_due(error.__cause__, culprits, above):
         return True
     cause = _cause(error)
-    is_known = cause is not None and any(one.matches(cause) for one in culprits)
+    is_known = cause is not None and any(culprit.matches(cause) for culprit in culprits)
     return is_known and all(cause is not leaf for leaf in leaves(error))
 
 
@@ -171,7 +173,7 @@ class Evidence:
     @property
     def culprits(self) -> tuple[KnownError, ...]:
         """The refusals and all exceptions in them."""
-        return tuple(one for refusal in self.refusals for one in refusal.noted)
+        return tuple(error for refusal in self.refusals for error in refusal.noted)
 
     @property
     def refusal(self) -> str | None:

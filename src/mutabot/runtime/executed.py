@@ -119,11 +119,11 @@ class ExecutedUnits(SourceStep):
         """Return new units that the running test depends on; ``alone``: only those of its call phase."""
         self.end_call()
         self._keep(self._take())
-        told = set(self._test if alone else self._untold)  # another thread may be at work
+        executed = set(self._test if alone else self._untold)  # another thread may be at work
         if not alone:
-            self._untold.difference_update(told)
+            self._untold.difference_update(executed)
         found: dict[str, set[int]] = {}
-        for file, line in told:
+        for file, line in executed:
             found.setdefault(file, set()).add(line)
         return {file: tuple(sorted(lines)) for file, lines in found.items()}
 
@@ -205,5 +205,5 @@ def _mark(function: ast.FunctionDef | ast.AsyncFunctionDef, number: int) -> None
 def _imports(tree: ast.Module, package: str) -> bool:
     nodes = [node for node in ast.walk(tree) if isinstance(node, ast.Import | ast.ImportFrom)]
     names = [getattr(node, "module", None) or "" for node in nodes]
-    names += [one.name for node in nodes for one in node.names]
+    names += [alias.name for node in nodes for alias in node.names]
     return any(name.partition(".")[0] == package for name in names)

@@ -168,12 +168,12 @@ class FaultRunner:
         if fault is None or not fault.is_checked:
             return None
         meant = {*map(id, fault.meant)}
-        for one in everything(error):
-            frames = (frame for frame, _ in reversed(list(walk_tb(one.__traceback__))))
-            told = (_is_own(frame, type(fault).__module__, robots, locator) for frame in frames)
+        for part in everything(error):
+            frames = (frame for frame, _ in reversed(list(walk_tb(part.__traceback__))))
+            owners = (_is_own(frame, type(fault).__module__, robots, locator) for frame in frames)
             # the nearest to the raise decides that is the fault's, the robot's, the program's or a test's
-            if id(one) not in meant and next((is_own for is_own in told if is_own is not None), False):
-                return f"{fault.mutant.operator} fails at work: {in_words(one)}"
+            if id(part) not in meant and next((is_own for is_own in owners if is_own is not None), False):
+                return f"{fault.mutant.operator} fails at work: {in_words(part)}"
         return None
 
     def _made(self) -> ActiveFault:
@@ -194,7 +194,7 @@ def _is_own(frame: FrameType, module: str, robots: Collection[str], locator: Loc
         return False
     if _is_within(name, module.rpartition(".")[0] or module):
         return True
-    if name.startswith(_MOCKS) or any(_is_within(name, one.partition(".")[0]) for one in robots):
+    if name.startswith(_MOCKS) or any(_is_within(name, robot.partition(".")[0]) for robot in robots):
         return False
     file = frame.f_code.co_filename
     return False if locator.is_of_project(file) or locator.role(file) is not None else None

@@ -107,7 +107,9 @@ class Inspection:
         keys = ("refusals", "checks", "failures")
         named = [("vocabulary", key, name) for key in keys for name in getattr(self._vocabulary, key)]
         named += [
-            (one.source, "refusals", name) for one in self._vocabulary.operations for name in one.refusals
+            (operation.source, "refusals", name)
+            for operation in self._vocabulary.operations
+            for name in operation.refusals
         ]
         for source, key, name in named:
             found = self._look_up(source, f"{key} {name}", name)

@@ -56,7 +56,7 @@ class _ObservationHooks:
 
     def _write(self) -> None:
         outcomes = list(self._outcomes.values())
-        counts = {one: outcomes.count(one) for one in dict.fromkeys(outcomes)}
+        counts = {outcome: outcomes.count(outcome) for outcome in dict.fromkeys(outcomes)}
         problems = self._problems[:_MOST_PROBLEMS]
         self._observation.write(TESTS, outcomes=counts, problems=problems)
         self._written = time.monotonic()

@@ -101,7 +101,7 @@ class Session:
         self.noted: dict[Noted, None] = {}
         self.on_noted: Callable[[Noted], None] | None = None
         self._adapters: list[Adapter] = []
-        targets = frozenset(one.target for one in job.vocabulary.operations)
+        targets = frozenset(operation.target for operation in job.vocabulary.operations)
         self.guards = CallGuards.load(job.guards, self.untracked, lambda: self.meter, targets)
         self._lately: dict[str, Mapping[str, Value]] = {}
         self._telling: list[Adapter] = []
@@ -141,8 +141,12 @@ class Session:
 
     def _find_answer_readers(self) -> None:
         """Find the mutants of the job that may ask for a command's last answer."""
-        idle = [(one, Idle.of(one.idle)) for one in self._mutants_of_job() if one.idle is not None]
-        self._asking = [(one.operation, one.pattern, answers) for one, answers in idle if answers.varying]
+        idle = [
+            (mutant, Idle.of(mutant.idle)) for mutant in self._mutants_of_job() if mutant.idle is not None
+        ]
+        self._asking = [
+            (mutant.operation, mutant.pattern, answers) for mutant, answers in idle if answers.varying
+        ]
         self._remember_answers()
 
     def _remember_answers(self) -> None:
@@ -158,10 +162,10 @@ class Session:
 
     def _see_calls(self) -> None:
         """Intercept calls at their sites, whatever replaces an operation there."""
-        called = [one for one in self._adapters if one.operation.kind in (None, "methods")]
+        called = [adapter for adapter in self._adapters if adapter.operation.kind in (None, "methods")]
         self.call_targets = CallTargets(called, self.callables, self.locator, self._sees_itself)
         self._report_replacements()
-        names = {one.operation.last_name for one in called}
+        names = {adapter.operation.last_name for adapter in called}
         handing = PassedCallables(self.call_targets, self.passing.given)
         self.call_sites = CallSites(names, self.locator.role, self.call_targets, self._sees_itself, handing)
         self.call_sites.install()
@@ -169,7 +173,9 @@ class Session:
     def _report_replacements(self) -> None:
         """Report what the baseline observed at the sites of the job's mutants."""
         mutants = self._mutants_of_job()
-        self.call_targets.known = dict(self.job.known) | {one.site.span: one.operation for one in mutants}
+        self.call_targets.known = dict(self.job.known) | {
+            mutant.site.span: mutant.operation for mutant in mutants
+        }
         if self.job.inspect:
             self.call_targets.noted = CallFindings(lambda: self.test, self.locator.relative)
 
@@ -177,9 +183,9 @@ class Session:
         """Receive messages that may show refusals, or the robot's position."""
         operations = self.job.vocabulary.operations
         asked = {name for operation in operations for name in operation.currents}
-        told = (one for operation in operations for one in operation.all_refused)
+        refusals = (refusal for operation in operations for refusal in operation.all_refused)
         self._telling = [adapter for adapter in self._adapters if adapter.operation.target in asked]
-        if any(refused.topic is not None for refused in told) or any(
+        if any(refused.topic is not None for refused in refusals) or any(
             adapter.operation.named is not None for adapter in self._telling
         ):
             self._heeded().on_heard = self._on_message
@@ -202,12 +208,12 @@ class Session:
         """Return the handler of an operation, with an adapter of its own."""
         vocabulary = self.job.vocabulary
         readings = {name: vocabulary.operation(name) for name in operation.currents}
-        told = partial(self.inspection.path_is_wrong, operation)
+        is_wrong = partial(self.inspection.path_is_wrong, operation)
         time = (self._time.now, self._time.wait)
         parts = self._lately, handles_of(vocabulary), *time
-        adapter = Adapter(operation, readings, told, *parts)
+        adapter = Adapter(operation, readings, is_wrong, *parts)
         if self.guards is not None:
-            adapter.guard = OperationGuard(self.guards, Adapter(operation, readings, told, *parts))
+            adapter.guard = OperationGuard(self.guards, Adapter(operation, readings, is_wrong, *parts))
         self._adapters.append(adapter)
         adapter.handler = self.passing.handler(adapter)
         self._sees_itself.add(adapter.handler)
@@ -406,7 +412,7 @@ class Session:
         if self.text is None or self.text.sightings is not None or not any(map(self._is_of_program, probes)):
             return take(probes, self.instances)
         if threading.active_count() > 1:
-            return take(tuple(one for one in probes if not self._is_of_program(one)), self.instances)
+            return take(tuple(probe for probe in probes if not self._is_of_program(probe)), self.instances)
         with self.text.alternatives.paused():
             return take(probes, self.instances)
 
@@ -457,15 +463,15 @@ class Session:
     def _note(self, made: SiteCall, *, is_refused: bool = False) -> None:
         """Note that the robot refused a call of the original, or returned its own memory."""
         index = self.recorder.index_of(replace(seen_by(made), direct=False, stands_in=False))
-        one = Noted(index, made.number if is_refused else None)
-        if one not in self.noted and self.on_noted is not None:
-            self.on_noted(one)
-        self.noted[one] = None
+        note = Noted(index, made.number if is_refused else None)
+        if note not in self.noted and self.on_noted is not None:
+            self.on_noted(note)
+        self.noted[note] = None
 
     def failure_in(self, error: BaseException) -> str | None:
         """Return how the mutant's own code failed, if it is the source of an exception; None if it is not."""
         operations = self.job.vocabulary.operations
-        robots = {one.target.partition(":")[0] for one in operations if one.named is None}
+        robots = {operation.target.partition(":")[0] for operation in operations if operation.named is None}
         return self.fault.failure_in(error, robots, self.locator)
 
     def refusals_of(self, operation: Operation) -> frozenset[str]:

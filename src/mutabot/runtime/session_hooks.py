@@ -175,7 +175,9 @@ class SessionHooks:
         elif missing:
             self._errors.append(f"tests that were there before are gone: {', '.join(missing)}")
         known = new.union(self.job.tests)
-        items[:] = [by_id[one] for one in (by_id if new else self.job.tests) if one in by_id and one in known]
+        items[:] = [
+            by_id[test] for test in (by_id if new else self.job.tests) if test in by_id and test in known
+        ]
 
     @pytest.hookimpl(wrapper=True)
     def pytest_make_collect_report(
@@ -272,8 +274,8 @@ class SessionHooks:
         if members is not None and members.children.doubt is not None:
             self._errors.append(members.children.doubt)
         not_private = self._files.why_not if self.job.private_files else None
-        told = (self._collected, tuple(self._errors), not_private, self._gone)
-        self.session.pipe.send(SessionEnd(int(exitstatus), *told, self.session.evidence.acted > 0))
+        facts = (self._collected, tuple(self._errors), not_private, self._gone)
+        self.session.pipe.send(SessionEnd(int(exitstatus), *facts, self.session.evidence.acted > 0))
 
 
 def _keep_cache_in(config: pytest.Config, home: str) -> None:
@@ -290,4 +292,4 @@ def _tests_us(job: Job) -> bool:
         return False
     ours = list(home.glob("mutabot*"))
     parts = [Path(job.root, part).resolve() for part in (*job.program, *job.oracle)]
-    return any(one.is_relative_to(part) or part.is_relative_to(one) for part in parts for one in ours)
+    return any(path.is_relative_to(part) or part.is_relative_to(path) for part in parts for path in ours)

@@ -121,8 +121,8 @@ def _lines(error: BaseException) -> list[str]:
     if isinstance(error, pytest.FixtureLookupError):
         text = error.msg or f"fixture {error.argname!r} not found"
     elif _is_mismatch(error):
-        source, want, got = error.example.source.strip(), error.example.want.strip(), error.got.strip()
-        text = f"{source}: expected {want or 'nothing'}, got {got or 'nothing'}"
+        source, want, output = error.example.source.strip(), error.example.want.strip(), error.got.strip()
+        text = f"{source}: expected {want or 'nothing'}, got {output or 'nothing'}"
     return _ADDRESS.sub("0x…", text).strip().splitlines() or [type(error).__name__]
 
 

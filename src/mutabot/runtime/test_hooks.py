@@ -86,8 +86,10 @@ class ForkedRun:
             end = replace(end, trace=(), returned=(), moments=())
         sites = [self._session.recorder.sites[index] for index in sorted({hit[0] for hit in end.trace})]
         is_test_control = self._parent.is_test_control(self.mutant)
-        told = ForkTestEnd(self.mutant.id, end, tuple(sites), self._shared, self._is_early, is_test_control)
-        self._session.pipe.send(told)
+        fork_end = ForkTestEnd(
+            self.mutant.id, end, tuple(sites), self._shared, self._is_early, is_test_control
+        )
+        self._session.pipe.send(fork_end)
 
     def _on_audit_event(self, event: str, arguments: tuple[Any, ...]) -> None:
         """Make the first process that the program starts the mutant as well."""
@@ -303,8 +305,10 @@ class TestHooks:
             guarded=meter.guarded,
             # what the machine had to do with a time-out of the suite's own
             hindered=self._used.hindrance([os.getpid()]) if end.timeout is not None else None,
-            refused_calls=tuple((one.site, one.refused) for one in session.noted if one.refused is not None),
-            live=tuple(sorted(one.site for one in session.noted if one.refused is None)),
+            refused_calls=tuple(
+                (note.site, note.refused) for note in session.noted if note.refused is not None
+            ),
+            live=tuple(sorted(note.site for note in session.noted if note.refused is None)),
             operations=meter.operations,
             commands=session.commands,
             wall=wall,
@@ -331,9 +335,9 @@ def objects_of_fixtures(item: pytest.Item) -> Iterator[Any]:
     """Return the values of the test's fixtures, its instance, and their direct attributes."""
     given = list(getattr(item, "funcargs", {}).values())
     owner = getattr(getattr(item, "obj", None), "__self__", None)
-    for one in given if owner is None else [*given, type(owner), owner]:
-        yield one
-        yield from islice(_parts(one), _MOST)
+    for value in given if owner is None else [*given, type(owner), owner]:
+        yield value
+        yield from islice(_parts(value), _MOST)
 
 
 def _parts(value: Any) -> Iterator[Any]:

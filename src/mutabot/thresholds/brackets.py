@@ -71,15 +71,15 @@ class Bracket:
 
 def bracket_of(ladder: Mapping[float, MagnitudeResult]) -> Bracket:
     """Return the bracket of a round, from the magnitudes that were run."""
-    missed = [size for size, one in ladder.items() if one is MagnitudeResult.MISSED]
+    missed = [size for size, result in ladder.items() if result is MagnitudeResult.MISSED]
     low = max(missed, default=None)
-    above = {size: one for size, one in ladder.items() if low is None or size > low}
-    high = min((size for size, one in above.items() if one is MagnitudeResult.NOTICED), default=None)
+    above = {size: result for size, result in ladder.items() if low is None or size > low}
+    high = min((size for size, result in above.items() if result is MagnitudeResult.NOTICED), default=None)
     refused = (
         size
-        for size, one in above.items()
-        if one is MagnitudeResult.REFUSED and (high is None or size < high)
+        for size, result in above.items()
+        if result is MagnitudeResult.REFUSED and (high is None or size < high)
     )
-    noticed = sorted(size for size, one in ladder.items() if one is MagnitudeResult.NOTICED)
+    noticed = sorted(size for size, result in ladder.items() if result is MagnitudeResult.NOTICED)
     pairs = ((size, larger) for size in noticed for larger in sorted(missed) if larger > size)
     return Bracket(low, high, min(refused, default=None), tuple(pairs))

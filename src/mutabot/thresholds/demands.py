@@ -91,7 +91,7 @@ def wanted_magnitudes(demands: Iterable[Demand], mutant: Mutant, kind: Kind | No
     ``mutant`` is any of the ladder's: only its site, quantity, operator, unit and id are looked at. ``kind``
     is that of its quantity.
     """
-    found = (one.magnitude_in(mutant.unit) for one in demands if one.is_about(mutant, kind))
+    found = (demand.magnitude_in(mutant.unit) for demand in demands if demand.is_about(mutant, kind))
     return tuple(sorted({magnitude for magnitude in found if magnitude is not None}))
 
 
@@ -100,9 +100,9 @@ def is_at_least(magnitude: float, demanded: float) -> bool:
     return magnitude > demanded or is_same(magnitude, demanded)
 
 
-def is_same(one: float, other: float) -> bool:
+def is_same(first: float, second: float) -> bool:
     """Return whether two magnitudes are equal, up to rounding of units."""
-    return math.isclose(one, other, rel_tol=1e-9)
+    return math.isclose(first, second, rel_tol=1e-9)
 
 
 def parse_amount(text: str) -> tuple[float, str | None]:

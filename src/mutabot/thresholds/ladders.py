@@ -135,15 +135,15 @@ class LadderRound:
     @classmethod
     def of(cls, number: int, sizes: Sequence[float], outcomes: Mapping[float, Outcome]) -> LadderRound:
         """Make it from the planned magnitudes, rising, and the outcomes of those that were run."""
-        bracket = bracket_of({size: seen(one) for size, one in outcomes.items()})
-        if any(one.verdict is Verdict.NOT_COVERED for one in outcomes.values()):
+        bracket = bracket_of({size: seen(outcome) for size, outcome in outcomes.items()})
+        if any(outcome.verdict is Verdict.NOT_COVERED for outcome in outcomes.values()):
             bracket = Bracket(low=sizes[-1])  # what no test reaches, none reaches at any magnitude
         return cls(number, outcomes, bracket, _above(bracket, sizes, outcomes))
 
     @property
     def is_reached(self) -> bool:
         """Whether a test reaches the site."""
-        return not any(one.verdict is Verdict.NOT_COVERED for one in self.outcomes.values())
+        return not any(outcome.verdict is Verdict.NOT_COVERED for outcome in self.outcomes.values())
 
     @property
     def why_out(self) -> str:
@@ -151,8 +151,8 @@ class LadderRound:
         if not self.outcomes:
             return "was not run"
         if not self.bracket.is_known:
-            verdicts = {one.verdict for one in self.outcomes.values()}
-            return next((words for end, words in _WORDS.items() if end in verdicts), "says nothing")
+            verdicts = {outcome.verdict for outcome in self.outcomes.values()}
+            return next((text for end, text in _WORDS.items() if end in verdicts), "says nothing")
         if self.above is Above.OPEN:
             return "is not judged to the end of the ladder"
         return ""
@@ -239,7 +239,7 @@ class Ladder:
     @property
     def sizes(self) -> tuple[float, ...]:
         """Its magnitudes, rising."""
-        return tuple(one.mutant.magnitude or 0.0 for one in self.results)
+        return tuple(result.mutant.magnitude or 0.0 for result in self.results)
 
     @property
     def place(self) -> str:
@@ -258,17 +258,19 @@ class Ladder:
     @property
     def counted(self) -> tuple[LadderRound, ...]:
         """The rounds that count, by the order of their thresholds."""
-        return tuple(sorted((one for one in self.rounds if one.counts), key=_order))
+        return tuple(
+            sorted((ladder_round for ladder_round in self.rounds if ladder_round.counts), key=_order)
+        )
 
     @property
     def lows(self) -> tuple[float, ...]:
         """The lower ends of their brackets, rising; 0 where even the smallest fault was noticed."""
-        return tuple(sorted(one.bracket.low or 0.0 for one in self.counted))
+        return tuple(sorted(ladder_round.bracket.low or 0.0 for ladder_round in self.counted))
 
     @property
     def highs(self) -> tuple[float, ...]:
         """The upper ends, rising; infinite where nothing was noticed."""
-        ends = (one.bracket.high for one in self.counted)
+        ends = (ladder_round.bracket.high for ladder_round in self.counted)
         return tuple(sorted(math.inf if end is None else end for end in ends))
 
     @property
@@ -300,23 +302,29 @@ class Ladder:
     def violations(self) -> tuple[Violation, ...]:
         """Per round the smallest magnitude that was noticed below a larger one that was missed, if any."""
         return tuple(
-            Violation(one.number, one.bracket.out_of_order[0][0], one.bracket.out_of_order[-1][1])
-            for one in self.rounds
-            if one.bracket.is_violated
+            Violation(
+                ladder_round.number,
+                ladder_round.bracket.out_of_order[0][0],
+                ladder_round.bracket.out_of_order[-1][1],
+            )
+            for ladder_round in self.rounds
+            if ladder_round.bracket.is_violated
         )
 
     @property
     def refused_from(self) -> float | None:
         """The smallest magnitude from which on all results of a round are refusals; None if there is none."""
-        ends = (one.bracket.refused for one in self.counted if one.bracket.high is None)
+        ends = (
+            ladder_round.bracket.refused for ladder_round in self.counted if ladder_round.bracket.high is None
+        )
         return min((end for end in ends if end is not None), default=None)
 
     @property
     def why_unjudged(self) -> str:
         """Why the ladder cannot be judged; empty if it can."""
-        if any(one.counts for one in self.rounds):
+        if any(ladder_round.counts for ladder_round in self.rounds):
             return ""
-        reasons = Counter(one.why_out for one in self.rounds)
+        reasons = Counter(ladder_round.why_out for ladder_round in self.rounds)
         ranked = [
             f"{reason} ({count} of {plural(len(self.rounds), 'round')})"
             for reason, count in reasons.most_common()
@@ -325,8 +333,10 @@ class Ladder:
 
     def number_of(self, magnitude: float) -> int | None:
         """Return the number of the mutant of this magnitude; None if the ladder has none."""
-        found = (one.mutant for one in self.results if is_same(one.mutant.magnitude or 0.0, magnitude))
-        return next((one.number for one in found), None)
+        found = (
+            result.mutant for result in self.results if is_same(result.mutant.magnitude or 0.0, magnitude)
+        )
+        return next((mutant.number for mutant in found), None)
 
 
 def looseness(ladder: Ladder) -> tuple[float, float, float]:
@@ -344,20 +354,22 @@ def looseness(ladder: Ladder) -> tuple[float, float, float]:
 def ladders_of(results: GradedResults) -> tuple[Ladder, ...]:
     """Return the ladders of a campaign, in the order of its plan."""
     found: dict[str, list[GradedResult]] = {}
-    for one in results.graded:
-        found.setdefault(one.mutant.ladder, []).append(one)
+    for result in results.graded:
+        found.setdefault(result.mutant.ladder, []).append(result)
     return tuple(_ladder(name, those, results.rounds) for name, those in found.items())
 
 
 def _ladder(name: str, results: Iterable[GradedResult], rounds: int) -> Ladder:
-    rising = sorted(((one.mutant.magnitude or 0.0, one) for one in results), key=lambda pair: pair[0])
+    rising = sorted(
+        ((result.mutant.magnitude or 0.0, result) for result in results), key=lambda pair: pair[0]
+    )
     found = []
     for number in range(rounds):
-        outcomes = {size: outcome for size, one in rising if (outcome := one.rounds[number])}
+        outcomes = {size: outcome for size, result in rising if (outcome := result.rounds[number])}
         found.append(LadderRound.of(number, [size for size, _ in rising], outcomes))
-    return Ladder(name, tuple(one for _, one in rising), tuple(found))
+    return Ladder(name, tuple(result for _, result in rising), tuple(found))
 
 
-def _order(one: LadderRound) -> tuple[float, float, int]:
-    high = one.bracket.high
-    return math.inf if high is None else high, one.bracket.low or 0.0, one.number
+def _order(ladder_round: LadderRound) -> tuple[float, float, int]:
+    high = ladder_round.bracket.high
+    return math.inf if high is None else high, ladder_round.bracket.low or 0.0, ladder_round.number

@@ -19,7 +19,9 @@ def split_ladders(mutants: Iterable[Mutant]) -> tuple[list[Mutant], Ladders]:
     for mutant in mutants:
         found.setdefault(mutant.ladder, []).append(mutant)
     alone = found.pop("", [])
-    return alone, {name: sorted(those, key=lambda one: one.magnitude or 0.0) for name, those in found.items()}
+    return alone, {
+        name: sorted(those, key=lambda member: member.magnitude or 0.0) for name, those in found.items()
+    }
 
 
 def demanded_of(

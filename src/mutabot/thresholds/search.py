@@ -56,7 +56,7 @@ class LadderSearch:
     @property
     def is_violated(self) -> bool:
         """Whether any round missed a larger fault and noticed a smaller one."""
-        rows = ({float(step): one for step, one in row.items()} for row in self.found.values())
+        rows = ({float(step): result for step, result in row.items()} for row in self.found.values())
         return any(bracket_of(row).is_violated for row in rows)
 
     def due(self, round: int) -> set[LadderStep]:
@@ -77,7 +77,7 @@ class LadderSearch:
     def _guess(self, round: int) -> tuple[LadderStep, ...]:
         """Return the first round's bracket as a guess; empty in that round itself, or without a bracket."""
         row = self.found.get(0, {})
-        if round == 0 or not any(one.is_valid for one in row.values()):
+        if round == 0 or not any(result.is_valid for result in row.values()):
             return ()
         return _ends(row, self.size)
 
@@ -103,9 +103,9 @@ def _ends(row: Mapping[LadderStep, MagnitudeResult], size: int) -> tuple[LadderS
 
     −1 and ``size`` where there is none.
     """
-    low = max((step for step, one in row.items() if one is MagnitudeResult.MISSED), default=-1)
+    low = max((step for step, result in row.items() if result is MagnitudeResult.MISSED), default=-1)
     bounds = (MagnitudeResult.NOTICED, MagnitudeResult.REFUSED)
-    high = min((step for step, one in row.items() if one in bounds and step > low), default=size)
+    high = min((step for step, result in row.items() if result in bounds and step > low), default=size)
     return low, high
 
 
@@ -135,7 +135,7 @@ def search_ladders(
     searches = dict[str, LadderSearch]()
     for name, mutants in ladders.items():
         demanded = always.get(name, ())
-        steps = frozenset(step for step, one in enumerate(mutants) if one.magnitude in demanded)
+        steps = frozenset(step for step, tried in enumerate(mutants) if tried.magnitude in demanded)
         searches[name] = LadderSearch(len(mutants), rounds, seed, steps)
     for known in (range(rounds)[:1], range(rounds)):
         # until nothing more is asked in these rounds; a violation asks in all of them
@@ -146,7 +146,7 @@ def search_ladders(
             for step in sorted(searches[name].due(round))
         ]:
             outcomes = run([(mutant, round) for *_, mutant, round in trials])
-            ended = {(one.mutant, one.round): one for one in outcomes}
+            ended = {(ended_outcome.mutant, ended_outcome.round): ended_outcome for ended_outcome in outcomes}
             for search, step, mutant, round in trials:
                 outcome = ended.get((mutant.id, round))
                 if outcome is not None:

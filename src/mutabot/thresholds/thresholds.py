@@ -31,24 +31,27 @@ def amount(magnitude: float, unit: str | None) -> str:
 
 def line_of(ladder: Ladder) -> str:
     """Return the line of a ladder that can be judged: a fact about these rounds."""
-    brackets = {(one.bracket.low, one.bracket.high, one.above) for one in ladder.counted}
-    if not any(one.is_reached for one in ladder.counted):
+    brackets = {
+        (ladder_round.bracket.low, ladder_round.bracket.high, ladder_round.above)
+        for ladder_round in ladder.counted
+    }
+    if not any(ladder_round.is_reached for ladder_round in ladder.counted):
         return f"no test reaches it{_all(ladder)}"
     return _alike(ladder) if len(brackets) == 1 else _apart(ladder)
 
 
 def rounds_left_out(ladder: Ladder) -> Iterator[str]:
     """Yield the rounds that do not count although others do, each with the reason."""
-    for one in ladder.rounds:
-        if one.why_out:
-            yield f"round {one.number + 1} {one.why_out}"
+    for ladder_round in ladder.rounds:
+        if ladder_round.why_out:
+            yield f"round {ladder_round.number + 1} {ladder_round.why_out}"
 
 
 def _alike(ladder: Ladder) -> str:
-    one = ladder.counted[0]
-    low, high = one.bracket.low, one.bracket.high
+    ladder_round = ladder.counted[0]
+    low, high = ladder_round.bracket.low, ladder_round.bracket.high
     if high is None:
-        return f"{_never(ladder, one)}{_all(ladder)}"
+        return f"{_never(ladder, ladder_round)}{_all(ladder)}"
     if low is None:
         return f"noticed from {_smallest(ladder, high)}{_all(ladder)}"
     return f"noticed from {_text(ladder, high)}, not at {_text(ladder, low)}{_all(ladder)}"
@@ -73,28 +76,28 @@ def _noticed(ladder: Ladder) -> Iterator[tuple[int, str]]:
     """Yield from which magnitude the first, half and all of the rounds notice it."""
     highs = [high for high in ladder.highs if math.isfinite(high)]
     wanted = {highs[0], highs[-1], ladder.half_from} if highs else set()
-    for high in sorted(one for one in wanted if math.isfinite(one)):
-        count = sum(one <= high for one in highs)
+    for high in sorted(size for size in wanted if math.isfinite(size)):
+        count = sum(size <= high for size in highs)
         yield count, _smallest(ladder, high) if high == ladder.sizes[0] else _text(ladder, high)
 
 
 def _never_noticed(ladder: Ladder) -> Iterator[str]:
     """Yield the rounds that never notice it, equal ones together."""
-    rounds = [one for one in ladder.counted if one.bracket.high is None]
+    rounds = [ladder_round for ladder_round in ladder.counted if ladder_round.bracket.high is None]
     total = len(ladder.counted)
-    for text, count in Counter(_never(ladder, one) for one in rounds).items():
+    for text, count in Counter(_never(ladder, ladder_round) for ladder_round in rounds).items():
         yield f"{text} ({count} of {plural(total, 'round')})"
 
 
-def _never(ladder: Ladder, one: LadderRound) -> str:
-    low = one.bracket.low
-    if not one.is_reached:
+def _never(ladder: Ladder, ladder_round: LadderRound) -> str:
+    low = ladder_round.bracket.low
+    if not ladder_round.is_reached:
         return "no test reaches it"
     missed = f"not noticed up to {_text(ladder, low)}" if low is not None else ""
     above = ""
-    if one.above is Above.REFUSED and one.bracket.refused is not None:
-        above = f"refused from {_text(ladder, one.bracket.refused)}"
-    elif one.above is Above.NO_EFFECT:
+    if ladder_round.above is Above.REFUSED and ladder_round.bracket.refused is not None:
+        above = f"refused from {_text(ladder, ladder_round.bracket.refused)}"
+    elif ladder_round.above is Above.NO_EFFECT:
         above = "without effect above"
     return ", ".join(part for part in (missed, above) if part)
 
@@ -116,8 +119,8 @@ def _text(ladder: Ladder, magnitude: float) -> str:
 def describe_violations(ladder: Ladder) -> Iterator[str]:
     """Yield violations as text: ``noticed at 5 mm, survives 20 mm, round 3``; equal rounds together."""
     rounds: dict[tuple[float, float], list[int]] = {}
-    for one in ladder.violations:
-        rounds.setdefault((one.noticed, one.missed), []).append(one.round + 1)
+    for violation in ladder.violations:
+        rounds.setdefault((violation.noticed, violation.missed), []).append(violation.round + 1)
     for (noticed, missed), numbers in rounds.items():
         ends = f"noticed at {_text(ladder, noticed)}, survives {_text(ladder, missed)}"
         yield f"{ends}, {numbers_text(numbers)}"
@@ -170,8 +173,8 @@ _KINDS = (
 def _in_all_rounds(ladder: Ladder) -> str:
     """Return the kind of a ladder that can be judged."""
     largest, accepted, effective, some, every, unreached = _KINDS
-    above = {one.above for one in ladder.counted}
-    if not any(one.is_reached for one in ladder.counted):
+    above = {ladder_round.above for ladder_round in ladder.counted}
+    if not any(ladder_round.is_reached for ladder_round in ladder.counted):
         return unreached
     if math.isfinite(ladder.all_from):
         return every
@@ -183,10 +186,10 @@ def _in_all_rounds(ladder: Ladder) -> str:
 def thresholds_of(results: GradedResults) -> Thresholds:
     """Return the thresholds of a campaign."""
     ladders = ladders_of(results)
-    judged = (one for one in ladders if not one.why_unjudged)
+    judged = (ladder for ladder in ladders if not ladder.why_unjudged)
     return Thresholds(
-        ladders=tuple(sorted(judged, key=lambda one: [-end for end in looseness(one)])),
-        unjudged=tuple(one for one in ladders if one.why_unjudged),
+        ladders=tuple(sorted(judged, key=lambda ladder: [-end for end in looseness(ladder)])),
+        unjudged=tuple(ladder for ladder in ladders if ladder.why_unjudged),
         rounds=results.rounds,
         state=results.state,
     )
@@ -194,10 +197,10 @@ def thresholds_of(results: GradedResults) -> Thresholds:
 
 def unmet(demands: Iterable[Demand], ladders: Sequence[Ladder]) -> Iterator[str]:
     """Yield the unmet demands: ``sorting.py:38 arm.move_by y +: survives 5 mm in round 3``."""
-    kinds = {one.id: one.quantity.kind if one.quantity is not None else None for one in ladders}
+    kinds = {ladder.id: ladder.quantity.kind if ladder.quantity is not None else None for ladder in ladders}
     for demand in demands:
-        about = [one for one in ladders if demand.is_about(one.mutant, kinds[one.id])]
-        found = {f"{one.place} {one.name}": _why_unmet(demand, one) for one in about}
+        about = [ladder for ladder in ladders if demand.is_about(ladder.mutant, kinds[ladder.id])]
+        found = {f"{ladder.place} {ladder.name}": _why_unmet(demand, ladder) for ladder in about}
         if not about:
             found = {"no ladder": _why_nothing_fits(demand, ladders)}
         source = f"{demand.source} · " if demand.source else ""
@@ -209,9 +212,9 @@ def _why_unmet(demand: Demand, ladder: Ladder) -> str:
     demanded = demand.magnitude_in(ladder.unit)
     assert demanded is not None, "it speaks of ladders of its own measure alone"
     survivors = [
-        (one.number + 1, magnitude, outcome)
-        for one in ladder.rounds
-        for magnitude, outcome in one.outcomes.items()
+        (ladder_round.number + 1, magnitude, outcome)
+        for ladder_round in ladder.rounds
+        for magnitude, outcome in ladder_round.outcomes.items()
         if is_at_least(magnitude, demanded) and seen(outcome) is MagnitudeResult.MISSED
     ]
     if survivors:
@@ -220,14 +223,18 @@ def _why_unmet(demand: Demand, ladder: Ladder) -> str:
     if ladder.number_of(demanded) is None:
         return f"{size} is not on its ladder; `mutabot run` again plants it"
     verdicts = {
-        one.number + 1: next((end.verdict for at, end in one.outcomes.items() if is_same(at, demanded)), None)
-        for one in ladder.rounds
+        ladder_round.number + 1: next(
+            (end.verdict for at, end in ladder_round.outcomes.items() if is_same(at, demanded)), None
+        )
+        for ladder_round in ladder.rounds
     }
-    for verdict, words in _UNKNOWN.items():
+    for verdict, text in _UNKNOWN.items():
         rounds = [number for number, found in verdicts.items() if found is verdict]
         if rounds:
-            return f"{size} {words} in {numbers_text(rounds)}{'' if verdict else '; `mutabot run` goes on'}"
-    is_noticed = any(one is not None and one.is_killed for one in verdicts.values())
+            return f"{size} {text} in {numbers_text(rounds)}{'' if verdict else '; `mutabot run` goes on'}"
+    is_noticed = any(
+        outcome_verdict is not None and outcome_verdict.is_killed for outcome_verdict in verdicts.values()
+    )
     if is_noticed or {*verdicts.values()} <= {Verdict.REFUSED, Verdict.GUARDED}:
         return ""
     return f"{size} has no effect in any round, so nothing is known; demand it of other sites"
@@ -244,11 +251,11 @@ def _survivors_text(ladder: Ladder, survivors: Sequence[tuple[int, float, Outcom
     rounds: dict[float, list[int]] = {}
     for number, size, _ in survivors:
         rounds.setdefault(size, []).append(number)
-    told = [
+    survived = [
         f"{_text(ladder, size)} in {numbers_text(numbers)} (mutant {ladder.number_of(size)})"
         for size, numbers in rounds.items()
     ]
-    return f"survives {', '.join(told)}"
+    return f"survives {', '.join(survived)}"
 
 
 def _why_nothing_fits(demand: Demand, ladders: Sequence[Ladder]) -> str:
@@ -256,9 +263,13 @@ def _why_nothing_fits(demand: Demand, ladders: Sequence[Ladder]) -> str:
         return (
             "the campaign has no graded mutants; `mutabot run` plants those of which a demand speaks, if any"
         )
-    here = [one for one in ladders if demand.is_at(one.mutant)]
+    here = [ladder for ladder in ladders if demand.is_at(ladder.mutant)]
     if not here:
-        places = {name for one in ladders for name in (one.place, one.mutant.site.id, one.mutant.site.text)}
+        places = {
+            name
+            for ladder in ladders
+            for name in (ladder.place, ladder.mutant.site.id, ladder.mutant.site.text)
+        }
         return unknown_name_text("site", demand.site or "", places)
-    known = ", ".join(sorted({f"{one.name} in {one.unit or 'no unit'}" for one in here}))
+    known = ", ".join(sorted({f"{ladder.name} in {ladder.unit or 'no unit'}" for ladder in here}))
     return f"fits none of {len(here)} ladders: {known}"

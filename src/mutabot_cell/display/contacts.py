@@ -35,8 +35,8 @@ class Contacts:
 
     def read(self) -> Iterator[tuple[str, str]]:
         """Yield the pairs that touch now, without those within an arm."""
-        for one, other in _touching(self._data) | self._asleep():
-            pair = self._names[one], self._names[other]
+        for first, second in _touching(self._data) | self._asleep():
+            pair = self._names[first], self._names[second]
             if pair[0] != pair[1]:
                 yield pair
 

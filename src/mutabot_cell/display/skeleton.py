@@ -51,7 +51,7 @@ def skeleton_of(simulation: Simulation, robot: Robot) -> Iterator[SkeletonLine]:
         return
     flange = places[chain[-1]]
     pads = [model.geom(robot.prefix + name).id for name in fingers.pads]
-    one, other = data.geom_xpos[pads[0]], data.geom_xpos[_farthest(data, pads)]
+    first, second = data.geom_xpos[pads[0]], data.geom_xpos[_farthest(data, pads)]
 
     def arm() -> list[float]:
         palm = flange + _KNUCKLES * (site - flange)
@@ -59,7 +59,7 @@ def skeleton_of(simulation: Simulation, robot: Robot) -> Iterator[SkeletonLine]:
 
     def jaws() -> list[float]:
         back = _KNUCKLES * (flange - site)
-        return [*one.tolist(), *(one + back).tolist(), *(other + back).tolist(), *other.tolist()]
+        return [*first.tolist(), *(first + back).tolist(), *(second + back).tolist(), *second.tolist()]
 
     yield SkeletonLine(f"{robot.prefix}arm", arm, (*radii, radii[-1]))
     yield SkeletonLine(f"{robot.prefix}fingers", jaws, (_FINGER,) * 4)
@@ -72,7 +72,7 @@ def _chain(simulation: Simulation, robot: Robot) -> list[int]:
     while found[-1] not in (robot.body, 0):
         found.append(int(parents[found[-1]]))
     chain = found[::-1]
-    apart = [float(np.linalg.norm(places[one] - places[after])) for one, after in pairwise(chain)]
+    apart = [float(np.linalg.norm(places[body] - places[after])) for body, after in pairwise(chain)]
     return [body for body, far in zip(chain, [*apart, 1.0], strict=True) if far > _SAME]
 
 

@@ -24,17 +24,17 @@ def compiled(spec: mujoco.MjSpec, path: FilePath) -> mujoco.MjModel:
     try:
         return compile_quietly(spec)
     except (ValueError, mujoco.FatalError) as error:
-        words = str(error).strip()
+        text = str(error).strip()
         advice = ""
-        if "mass" in words and "inertia" in words:
+        if "mass" in text and "inertia" in text:
             advice = (
                 '; add <inertial mass="..." pos="..." diaginertia="..."/> (kg, m, kg m²) to the body it names'
             )
-        elif "file" in words:
+        elif "file" in text:
             advice = (
                 "; meshes are looked for beside the file, in the folder that its compiler's meshdir names"
             )
-        raise BadModel(f"MuJoCo cannot build {path}: {words}{advice}") from error
+        raise BadModel(f"MuJoCo cannot build {path}: {text}{advice}") from error
 
 
 def check_chain(chain: Sequence[mujoco.MjsBody], path: FilePath) -> list[mujoco.MjsJoint]:

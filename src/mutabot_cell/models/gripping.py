@@ -109,9 +109,9 @@ def read_gripper(
             actuator=PREFIX + actuator,
             pads=tuple(PREFIX + pad for pad in pads),
             stroke=stroke,
-            paths=tuple(opened.gap - one.gap for one in found),
-            controls=tuple(one.control for one in found),
-            lengths=tuple(one.length for one in found),
+            paths=tuple(opened.gap - fingers.gap for fingers in found),
+            controls=tuple(fingers.control for fingers in found),
+            lengths=tuple(fingers.length for fingers in found),
             force_range=(_WEAKEST_SHARE * strongest, strongest),
             speed_range=_SPEED_RANGE,
             force=strongest if force is None else force,
@@ -179,10 +179,10 @@ def _opposite(places: Sequence[Array], pads: Sequence[str]) -> list[str]:
     ]
 
 
-def distance_between(model: mujoco.MjModel, data: mujoco.MjData, one: str, other: str) -> float:
+def distance_between(model: mujoco.MjModel, data: mujoco.MjData, first: str, second: str) -> float:
     """Return the distance between two shapes, m, at most 1; negative if they overlap."""
     between = np.zeros(6)
-    numbers = model.geom(one).id, model.geom(other).id
+    numbers = model.geom(first).id, model.geom(second).id
     return float(mujoco.mj_geomDistance(model, data, *numbers, 1.0, between))
 
 

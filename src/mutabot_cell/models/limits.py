@@ -77,13 +77,13 @@ class Limits:
         speed = _each("speed", self.speed, count)
         acceleration = _each("acceleration", self.acceleration, count, [5 * value for value in speed])
         torque = _each("torque", self.torque, count)
-        torques = [one or other for one, other in zip_longest(found, torque)]
+        torques = [first or second for first, second in zip_longest(found, torque)]
         if self.peak_torque is None and None in torques:
             raise BadModel(
                 f"joint {joints[torques.index(None)]!r} has no actuator with a known torque: add one with a "
                 "forcerange (Nm), or say Limits(torque=...)"
             )
-        peak = _each("peak_torque", self.peak_torque, count, [one or 0.0 for one in torques])
+        peak = _each("peak_torque", self.peak_torque, count, [value or 0.0 for value in torques])
         torque = torque or peak
         return JointLimits(
             speed=speed,

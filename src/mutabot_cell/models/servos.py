@@ -19,20 +19,20 @@ _ROTOR_SHARE = 0.5e-2
 
 def servos_of(spec: mujoco.MjSpec, joints: Sequence[str]) -> tuple[str, ...] | None:
     """Return the names of the file's position servos of the joints; None unless each joint has one."""
-    by_joint = {one.target: one for one in spec.actuators if _is_servo(one)}
+    by_joint = {known_servo.target: known_servo for known_servo in spec.actuators if _is_servo(known_servo)}
     found = [by_joint.get(name) for name in joints]
-    if any(one is None for one in found):
+    if any(servo is None for servo in found):
         return None
-    for joint, one in zip(joints, found, strict=True):
-        if one is not None and not one.name:
-            one.name = f"servo of {joint}"
-    return tuple(one.name for one in found if one is not None)
+    for joint, actuator in zip(joints, found, strict=True):
+        if actuator is not None and not actuator.name:
+            actuator.name = f"servo of {joint}"
+    return tuple(servo.name for servo in found if servo is not None)
 
 
 def make_servos(spec: mujoco.MjSpec, joints: Sequence[str], limits: JointLimits) -> tuple[str, ...]:
     """Replace the joints' actuators by position servos, and return their names."""
-    for one in [one for one in spec.actuators if one.target in joints]:
-        spec.delete(one)
+    for actuator in [candidate for candidate in spec.actuators if candidate.target in joints]:
+        spec.delete(actuator)
     for joint, peak in zip(joints, limits.peak_torque, strict=True):
         stiffness = peak / FULL_TORQUE_AT
         servo = spec.add_actuator(name=f"servo of {joint}", target=joint)
@@ -65,13 +65,13 @@ def torque_of(spec: mujoco.MjSpec, model: mujoco.MjModel, joint: str) -> float |
     return None
 
 
-def _is_servo(one: mujoco.MjsActuator) -> bool:
+def _is_servo(actuator: mujoco.MjsActuator) -> bool:
     """Return whether an actuator's input is a joint position, in the joint's unit."""
-    stiffness = float(one.gainprm[0])
+    stiffness = float(actuator.gainprm[0])
     return (
-        one.trntype == mujoco.mjtTrn.mjTRN_JOINT
-        and one.biastype == mujoco.mjtBias.mjBIAS_AFFINE
+        actuator.trntype == mujoco.mjtTrn.mjTRN_JOINT
+        and actuator.biastype == mujoco.mjtBias.mjBIAS_AFFINE
         and stiffness > 0
-        and float(one.biasprm[1]) == -stiffness
-        and float(one.gear[0]) == 1.0
+        and float(actuator.biasprm[1]) == -stiffness
+        and float(actuator.gear[0]) == 1.0
     )

@@ -99,7 +99,7 @@ class RoundedPath:
     def numbers(self) -> tuple[Array, ...]:
         """All numbers that determine the path."""
         return tuple(
-            part for one in self._points for part in (one.position, one.rotation, np.array(one.blend))
+            part for point in self._points for part in (point.position, point.rotation, np.array(point.blend))
         )
 
     @property

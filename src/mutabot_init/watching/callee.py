@@ -83,8 +83,8 @@ class Callee:
                 named = _UNNAMED.sub(lambda match, names=names: names.get(int(match[1]), match[0]), first)
                 with suppress(ValueError):
                     found.append(parse_signature(named.removeprefix(name).rstrip(":.")))
-        telling = (one for one in found if not _takes_anything(one))
-        return max(telling, key=lambda one: len(one.parameters), default=None)
+        telling = (signature for signature in found if not _takes_anything(signature))
+        return max(telling, key=lambda signature: len(signature.parameters), default=None)
 
 
 def class_name(kind: type) -> str:
@@ -99,7 +99,7 @@ def _takes_anything(signature: inspect.Signature) -> bool:
 
 def replaced_method(kind: type, name: str) -> Callee | None:
     """Return method ``name`` of the class that a mock or fake replaces, even if a patch hides the class."""
-    owner = next((one for one in kind.__mro__ if name in vars(one)), None)
+    owner = next((cls for cls in kind.__mro__ if name in vars(cls)), None)
     if owner is None or "<" in owner.__qualname__:
         return None
     raw = vars(owner)[name]
@@ -120,7 +120,7 @@ def method_of(value: Any, name: str) -> Callee | None:
         if name in getattr(value, "__dict__", ()):
             return function_of(getattr(value, name))
         classes = type(value).__mro__
-    owner = next((one for one in classes if name in vars(one)), None)
+    owner = next((cls for cls in classes if name in vars(cls)), None)
     if owner is None:
         return None
     return _nameable(f"{class_name(owner)}.{name}", vars(owner)[name], owner)
@@ -176,7 +176,11 @@ def described(callee: Callee, *, of_tests: bool, own: bool) -> WatchedCallable:
         only_computes=not callee.stands_in and only_computes(function, owner),
         signature=spell_signature(signature) if signature is not None else "",
         is_documented=callee.is_documented,
-        annotations={one.name: _written(one.annotation) for one in parameters if one.name != "self"},
+        annotations={
+            parameter.name: _written(parameter.annotation)
+            for parameter in parameters
+            if parameter.name != "self"
+        },
         returns=_written(signature.return_annotation) if signature is not None else "",
         raised=list(dict.fromkeys(_raised_by(function))),
         stands_in=callee.stands_in,

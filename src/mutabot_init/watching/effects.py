@@ -75,7 +75,7 @@ class _Function:
             return False
         nodes = list(ast.walk(self._tree))
         returned = [node.value for node in nodes if isinstance(node, ast.Return) and node.value is not None]
-        is_computed = any(not isinstance(one, ast.Constant) for one in returned)
+        is_computed = any(not isinstance(expression, ast.Constant) for expression in returned)
         return is_computed and self._uses_arguments(nodes) and self._has_no_effect(nodes)
 
     def _uses_arguments(self, nodes: list[ast.AST]) -> bool:
@@ -98,11 +98,13 @@ class _Function:
         for node in values.values():
             for target in node.targets:
                 names = made if isinstance(target, ast.Name) and self._is_made(node.value) else others
-                names.update(one.id for one in ast.walk(target) if _is_bound(one))
+                names.update(inner.id for inner in ast.walk(target) if _is_bound(inner))
         assigned = {
-            id(one) for node in values.values() for target in node.targets for one in ast.walk(target)
+            id(inner) for node in values.values() for target in node.targets for inner in ast.walk(target)
         }
-        others.update(one.id for one in ast.walk(self._tree) if _is_bound(one) and id(one) not in assigned)
+        others.update(
+            inner.id for inner in ast.walk(self._tree) if _is_bound(inner) and id(inner) not in assigned
+        )
         return made - others
 
     def _is_made(self, value: ast.expr) -> bool:

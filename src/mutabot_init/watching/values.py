@@ -48,10 +48,10 @@ def merge_part(values: Values, part: WatchedPart) -> None:
     known.count += part.count
     if part.length is not None and known.length is not None:
         known.length = min(part.length, known.length)
-    for one in part.values:
-        is_new = all(one != other or type(one) is not type(other) for other in known.values)
+    for value in part.values:
+        is_new = all(value != other or type(value) is not type(other) for other in known.values)
         if is_new and len(known.values) < MOST_VALUES:
-            known.values.append(one)
+            known.values.append(value)
 
 
 def type_of(value: Any) -> str:
@@ -86,8 +86,8 @@ def _elements(value: list[Any] | tuple[Any, ...], part: WatchedPart, depth: int)
     if value and _message_fields(value[-1]) is not None:
         yield from _parts(value[-1], dataclasses.replace(part, path=f"{part.path}[-1]", type=""), depth - 1)
         return
-    items = [plain(one) for one in value[:MOST_ELEMENTS]]
-    if all(isinstance(one, int | float) and not isinstance(one, bool) for one in items):
+    items = [plain(element) for element in value[:MOST_ELEMENTS]]
+    if all(isinstance(element, int | float) and not isinstance(element, bool) for element in items):
         part.length = len(value)
         part.values = [items] if items and all(map(_is_finite, items)) else []
         yield part

@@ -93,7 +93,7 @@ class Watch(Observer):
         self._only_class = cache(_only_class)
         self._uses: dict[tuple[Form, str, bool, bool], Use] = {}
         self._lock = threading.RLock()
-        self._beside = {name: one.watch() for name, one in brought_proposers().items()}
+        self._beside = {name: proposer.watch() for name, proposer in brought_proposers().items()}
 
     def called(self, name: str, found: Any, receiver: Any, caller: CallOrigin) -> Any:
         """Return what is called in the place of ``found``, which was read from ``receiver``."""
@@ -171,7 +171,10 @@ class Watch(Observer):
         if callee is None or callee.owner is None or not self._is_of_tests(callee):
             return callee
         meant = (replaced_method(kind, name) for kind in callee.owner.__mro__[1:-1])
-        robots = next((one for one in meant if one is not None and not self._is_of_tests(one)), None)
+        robots = next(
+            (candidate for candidate in meant if candidate is not None and not self._is_of_tests(candidate)),
+            None,
+        )
         return robots or any_method(name, callee)
 
     def _of(self, callee: Callee | None, caller: CallOrigin) -> _Seen | None:
@@ -345,7 +348,7 @@ def _identify_command(call: WatchedCallable, instance: Any, values: Mapping[str,
     if not (is_item or call.is_set or _TALKS.search(call.name)):
         return "", "", {}
     for name, value in values.items():
-        beside = {other: one for other, one in values.items() if other != name}
+        beside = {key: known_value for key, known_value in values.items() if key != name}
         if is_item:
             return (name, str(value), beside) if _is_address(value) else ("", "", {})
         is_plain = isinstance(value, str | int) and not isinstance(value, bool)

@@ -21,7 +21,7 @@ class Frame:
     def of_euler(cls, position: Sequence[float], z: float, y: float, x: float) -> Frame:
         """Of Euler angles in degrees: R = Rz·Ry·Rx."""
         (cz, sz), (cy, sy), (cx, sx) = (
-            (math.cos(math.radians(one) / 2), math.sin(math.radians(one) / 2)) for one in (z, y, x)
+            (math.cos(math.radians(angle) / 2), math.sin(math.radians(angle) / 2)) for angle in (z, y, x)
         )
         rotation = (
             cx * cy * cz + sx * sy * sz,
@@ -47,7 +47,7 @@ class Frame:
         length = math.hypot(*rotation)
         if length < 1e-9:
             raise ValueError("a quaternion of zeros is no rotation")
-        w, x, y, z = (one / length for one in rotation)
+        w, x, y, z = (part / length for part in rotation)
         return cls(vector_of(position), (w, x, y, z))
 
     def __mul__(self, other: Frame) -> Frame:
@@ -89,7 +89,7 @@ class Frame:
 
     def vector(self) -> Vector:
         """The rotation vector: axis times angle, rad, of the shorter way."""
-        w, x, y, z = self.rotation if self.rotation[0] >= 0 else tuple(-one for one in self.rotation)
+        w, x, y, z = self.rotation if self.rotation[0] >= 0 else tuple(-part for part in self.rotation)
         sine = math.hypot(x, y, z)
         if sine < 1e-12:
             return (0.0, 0.0, 0.0)
@@ -99,8 +99,8 @@ class Frame:
     def between(self, other: Frame, fraction: float) -> Frame:
         """The frame at a part of the way to another one."""
         step = self.inverse() * other
-        turn = tuple(one * fraction for one in step.vector())
-        shift = tuple(one * fraction for one in step.position)
+        turn = tuple(part * fraction for part in step.vector())
+        shift = tuple(part * fraction for part in step.position)
         return self * Frame.of_vector(shift, turn)
 
     def distance(self, other: Frame) -> float:
@@ -113,7 +113,7 @@ IDENTITY = Frame()
 
 def vector_of(values: Sequence[float]) -> Vector:
     """Three numbers."""
-    x, y, z = (float(one) for one in values)
+    x, y, z = (float(value) for value in values)
     return (x, y, z)
 
 
@@ -122,9 +122,9 @@ def cross(a: Sequence[float], b: Sequence[float]) -> Vector:
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
-def _product(one: UnitQuaternion, other: UnitQuaternion) -> UnitQuaternion:
-    a, b, c, d = one
-    w, x, y, z = other
+def _product(first: UnitQuaternion, second: UnitQuaternion) -> UnitQuaternion:
+    a, b, c, d = first
+    w, x, y, z = second
     return (
         a * w - b * x - c * y - d * z,
         a * x + b * w + c * z - d * y,

@@ -43,17 +43,17 @@ def joint_target(kinematics: Any, model: Any, target: Frame, near: list[float]) 
             solution = _wrapped(np, model, solution, start)
             distance = float(np.abs(solution - start).max())
             if distance < math.pi / 2:  # as near as another configuration cannot be
-                return [float(one) for one in np.degrees(solution)]
+                return [float(angle) for angle in np.degrees(solution)]
             found.append((distance, solution))
     if not found:
         return None
-    return [float(one) for one in np.degrees(min(found, key=lambda one: one[0])[1])]
+    return [float(angle) for angle in np.degrees(min(found, key=lambda reached: reached[0])[1])]
 
 
 def _solve(np: Any, kinematics: Any, model: Any, position: Any, wanted: Any, seed: Any) -> Any:
     joints = seed.copy()
-    low = np.array([one for one, _ in model.ranges])
-    high = np.array([one for _, one in model.ranges])
+    low = np.array([lower for lower, _ in model.ranges])
+    high = np.array([upper for _, upper in model.ranges])
     for _ in range(_ROUNDS):
         at, rotation = kinematics.tool(joints)
         error = np.concatenate((position - at, _turn(np, wanted @ rotation.T)))

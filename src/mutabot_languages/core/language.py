@@ -55,9 +55,9 @@ class RobotLanguage:
     @property
     def highlighting(self) -> tuple[str, str]:
         """What reports mark in its files, as front ends say it."""
-        lexis, words = self.parser.lexis, "|".join(sorted(self.parser.keywords))
-        patterns = (lexis.marked["text"], lexis.marked["comment"], rf"\b(?:{words})\b")
-        return "|".join(f"({one})" for one in patterns), "gim" if lexis.ignores_case else "gm"
+        lexis, keywords = self.parser.lexis, "|".join(sorted(self.parser.keywords))
+        patterns = (lexis.marked["text"], lexis.marked["comment"], rf"\b(?:{keywords})\b")
+        return "|".join(f"({pattern})" for pattern in patterns), "gim" if lexis.ignores_case else "gm"
 
     def text_of(self, content: bytes) -> str:
         """The text of a file: UTF-8 if it is that, else Latin-1."""
@@ -74,8 +74,8 @@ class RobotLanguage:
         owners, names = [MODULE] * len(tokens.starts), {MODULE: ""}
         for number, node in enumerate(routines(parsed.tree), 1):
             names[number] = f"{node.name}#{number}" if node.name in names.values() else node.name
-            begins = min([one.start for one in node.bodies[0] if one.kind != "empty"], default=node.end)
-            first, last = (bisect_left(tokens.starts, one) for one in (begins, node.end))
+            begins = min([body.start for body in node.bodies[0] if body.kind != "empty"], default=node.end)
+            first, last = (bisect_left(tokens.starts, item) for item in (begins, node.end))
             owners[first:last] = [number] * (last - first)
         said: dict[int, list[str]] = {number: [] for number in names}
         for owner, kind, start, end in zip(owners, tokens.kinds, tokens.starts, tokens.ends, strict=True):
@@ -126,8 +126,8 @@ def sites(tree: ProgramNode) -> Iterator[tuple[ProgramNode, str]]:
             yield node, routine
         inner = node.name if node.kind == "routine" else routine
         for body in reversed(node.bodies):
-            waiting.extend((one, inner) for one in reversed(body))
-        waiting.extend((one, routine) for one in reversed(node.parts))
+            waiting.extend((inner_node, inner) for inner_node in reversed(body))
+        waiting.extend((part, routine) for part in reversed(node.parts))
 
 
 def site_text(node: ProgramNode, text: str) -> str:

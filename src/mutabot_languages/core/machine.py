@@ -371,8 +371,8 @@ class Evaluation:
     ) -> Generator[TaskOperation, Any, list[tuple[ProgramNode, str]]]:
         """Give parameters their arguments; returns what is to be stored back afterwards."""
         back: list[tuple[ProgramNode, str]] = []
-        named = {one.name: one for one in arguments if one.kind == "option"}
-        unnamed = [one for one in arguments if one.kind != "option"]
+        named = {argument.name: argument for argument in arguments if argument.kind == "option"}
+        unnamed = [argument for argument in arguments if argument.kind != "option"]
         for parameter in routine.parts:
             given: ProgramNode | None = None
             if parameter.name in named:

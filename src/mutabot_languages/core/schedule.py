@@ -35,7 +35,7 @@ class TaskSchedule:
             for name in ready:
                 if main in tasks and name in tasks and self._may_begin(name):
                     self._advance(name, main)
-            for name in [one for one in self._waiting if one not in tasks]:
+            for name in [task for task in self._waiting if task not in tasks]:
                 del self._waiting[name]
             if main in tasks and not self._ready():
                 self._pass_time()

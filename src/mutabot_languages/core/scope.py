@@ -56,7 +56,7 @@ class Structure(dict[str, Any]):
         return made
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Structure:
-        return Structure.of(self.type, {name: copy.deepcopy(one, memo) for name, one in self.items()})
+        return Structure.of(self.type, {name: copy.deepcopy(value, memo) for name, value in self.items()})
 
 
 @dataclass(slots=True)

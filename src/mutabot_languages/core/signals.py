@@ -75,7 +75,7 @@ class CellMap:
             {signal_name(name): entry for name, entry in data.get(table, {}).items()}
             for table in ("out", "in", "function")
         ]
-        return cls(tuple(float(one) for one in tool), *named)
+        return cls(tuple(float(number) for number in tool), *named)
 
 
 def signal_name(text: str) -> str:

@@ -126,12 +126,12 @@ class Station:
 
     def angles(self, site: ProgramPlace) -> list[float]:
         """Joint angles by the encoders, degrees."""
-        return [float(one) for one in self.call(site, self.cell.sensors.joint_angles)]
+        return [float(angle) for angle in self.call(site, self.cell.sensors.joint_angles)]
 
     def forward(self, degrees: list[float]) -> Frame:
         """Where the program's tool point is with these joint angles, robot base frame."""
         degrees = self._all_joints(degrees)
-        position, rotation = self.cell.arm.kinematics.tool([math.radians(one) for one in degrees])
+        position, rotation = self.cell.arm.kinematics.tool([math.radians(angle) for angle in degrees])
         return matrix_frame(position.tolist(), rotation.tolist()) * self._mounted.inverse() * self.tool
 
     def inverse(self, target: Frame, near: list[float] | None = None) -> list[float]:
@@ -140,7 +140,7 @@ class Station:
         Raises UnreachableError if it cannot be reached.
         """
         arm = self.cell.arm
-        start = [math.degrees(one) for one in arm.setpoint] if near is None else near
+        start = [math.degrees(angle) for angle in arm.setpoint] if near is None else near
         found = joint_target(arm.kinematics, self.model, self.to_cell(target), start)
         if found is None:
             x, y, z = target.position
@@ -165,14 +165,14 @@ class Station:
 
     def _all_joints(self, angles: list[float]) -> list[float]:
         """Angles of all joints, degrees: the arm may have more than the program's robot, and these stay."""
-        now = [math.degrees(one) for one in self.cell.arm.setpoint]
+        now = [math.degrees(angle) for angle in self.cell.arm.setpoint]
         return [*angles, *now[len(angles) :]][: self.joints]
 
     def arc(
         self, start: Frame, via: Frame, end: Frame, speed: float
     ) -> list[tuple[str, tuple[Any, ...], float]]:
         """A circular motion through ``via``, in short straight ones."""
-        return [self.line(one, speed) for one in arc_points(start, via, end)]
+        return [self.line(point, speed) for point in arc_points(start, via, end)]
 
     # signals
 
@@ -188,8 +188,8 @@ class Station:
         if "force" in entry:
             self.call(site, self.cell.gripper.set_force, float(entry["force"]))
         if "gripper" in entry:
-            told = entry["gripper"]
-            position = told[int(is_on)] if isinstance(told, list) else told if is_on else None
+            controls = entry["gripper"]
+            position = controls[int(is_on)] if isinstance(controls, list) else controls if is_on else None
             if position is not None and position >= 0:
                 self.call(site, self.cell.gripper.command, position)
         if "suction" in entry:
@@ -277,9 +277,9 @@ def arc_points(start: Frame, via: Frame, end: Frame) -> list[Frame]:
     # the centre from the start: ((|u|² w - |w|² u) × (u × w)) / (2 |u × w|²)
     uu, ww = _dot(u, u), _dot(w, w)
     mixed = tuple(uu * q - ww * p for p, q in zip(u, w, strict=True))
-    to_centre = tuple(one / (2 * area * area) for one in cross(mixed, normal))
+    to_centre = tuple(number / (2 * area * area) for number in cross(mixed, normal))
     centre = tuple(p + q for p, q in zip(a, to_centre, strict=True))
-    axis = tuple(one / area for one in normal)
+    axis = tuple(number / area for number in normal)
     radius = _minus(a, centre)
     side = cross(axis, radius)
     last = _minus(c, centre)

@@ -17,8 +17,8 @@ _IDLE_LOOPS = 20
 #: functions of angles in degrees
 OF_DEGREES: dict[str, Callable[..., float]] = {
     "sin": lambda angle: math.sin(math.radians(angle)), "cos": lambda angle: math.cos(math.radians(angle)),
-    "tan": lambda angle: math.tan(math.radians(angle)), "asin": lambda one: math.degrees(math.asin(one)),
-    "acos": lambda one: math.degrees(math.acos(one)), "atan2": lambda y, x: math.degrees(math.atan2(y, x)),
+    "tan": lambda angle: math.tan(math.radians(angle)), "asin": lambda x: math.degrees(math.asin(x)),
+    "acos": lambda x: math.degrees(math.acos(x)), "atan2": lambda y, x: math.degrees(math.atan2(y, x)),
 }  # fmt: skip
 
 
@@ -36,7 +36,7 @@ class ProgramTask(Evaluation):
             except ControlFlow as leave:
                 if leave.kind != "goto":
                     raise
-                found = [index for index, one in enumerate(body) if _is_label(one, leave.value)]
+                found = [index for index, node in enumerate(body) if _is_label(node, leave.value)]
                 if not found:
                     raise
                 at = found[0]

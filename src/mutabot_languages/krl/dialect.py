@@ -44,8 +44,8 @@ class KrlDialect(Dialect):
         if not is_global and node.name in scope.names and not node.parts:
             scope.names[node.name].type = type  # of a parameter, which is there already
             return
-        sized = [one for one in node.value["sizes"] if one.kind != "omitted"]
-        sizes = [int(one) for one in (yield from task.values(sized, scope))]
+        sized = [size for size in node.value["sizes"] if size.kind != "omitted"]
+        sizes = [int(size) for size in (yield from task.values(sized, scope))]
         sizes += [1] * (len(node.value["sizes"]) - len(sizes))
         value = beginning(type, sizes)
         if node.parts and not sizes:
@@ -187,7 +187,7 @@ def frame_of(value: Any) -> Frame:
 
 def of_frame(frame: Frame, type: str) -> Structure:
     """The position of a frame."""
-    values = [*(one * 1000 for one in frame.position), *frame.euler()]
+    values = [*(number * 1000 for number in frame.position), *frame.euler()]
     return Structure.of(type, dict(zip(_CARTESIAN, values, strict=True)))
 
 
@@ -205,10 +205,10 @@ def join(left: Any, right: Any) -> Any:
 
 
 def _calculated(operator: str, left: Any, right: Any) -> Any:
-    if not all(isinstance(one, (int, float)) for one in (left, right)):
+    if not all(isinstance(operand, (int, float)) for operand in (left, right)):
         raise TypeError("only numbers can be calculated with")
     value = OF_NUMBERS[operator](left, right)
-    are_whole = all(isinstance(one, int) for one in (left, right))
+    are_whole = all(isinstance(operand, int) for operand in (left, right))
     return int(value) if operator == "/" and are_whole else value
 
 
@@ -216,7 +216,7 @@ def _element(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
     machine = task.machine
     assert isinstance(machine, KrlMachine)
     name = node.parts[0].name
-    indexes = [int(one) for one in (yield from task.values(node.parts[1:], scope))]
+    indexes = [int(index) for index in (yield from task.values(node.parts[1:], scope))]
     signal = f"{name}[{','.join(map(str, indexes))}]"
     if name in ("$in", "$anin", "$digin", "$sen_pint"):
         return task.station.read(task.site(node, scope), signal)
@@ -287,7 +287,7 @@ def _set_element(task: Evaluation, target: ProgramNode, value: Any, scope: Routi
     machine = task.machine
     assert isinstance(machine, KrlMachine)
     name = target.parts[0].name
-    indexes = [int(one) for one in (yield from task.values(target.parts[1:], scope))]
+    indexes = [int(index) for index in (yield from task.values(target.parts[1:], scope))]
     signal = f"{name}[{','.join(map(str, indexes))}]"
     if name in ("$out", "$anout"):
         _write(task, target, scope, signal, value)
@@ -295,7 +295,7 @@ def _set_element(task: Evaluation, target: ProgramNode, value: Any, scope: Routi
     machine.system[signal] = copy.deepcopy(value)
     if name == "$vel_axis":
         machine.system["$vel_axis"][indexes[0] - 1] = float(value)
-        machine.pace[1] = max(0.01, min(float(one) for one in machine.system["$vel_axis"][:6]) / 100)
+        machine.pace[1] = max(0.01, min(float(speed) for speed in machine.system["$vel_axis"][:6]) / 100)
     elif name not in INERT and name not in _KNOWN and name not in ("base_data", "tool_data", "load_data"):
         raise task.unsupported(target, scope, signal)
 
@@ -325,7 +325,7 @@ def _set_indexed_component(task: Evaluation, target: ProgramNode, value: Any, sc
     machine = task.machine
     assert isinstance(machine, KrlMachine)
     owner = target.parts[0]
-    indexes = [int(one) for one in (yield from task.values(owner.parts[1:], scope))]
+    indexes = [int(index) for index in (yield from task.values(owner.parts[1:], scope))]
     signal = f"{owner.parts[0].name}[{','.join(map(str, indexes))}]"
     record = machine.system.setdefault(signal, of_frame(Frame(), "frame"))
     record[target.name] = value

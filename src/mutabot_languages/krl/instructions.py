@@ -39,7 +39,7 @@ def machine_of(task: ProgramTask) -> KrlMachine:
 
 def _angles(task: ProgramTask, value: Any) -> list[float]:
     """Joint angles of an axis position; axes that are not named stay."""
-    now = [math.degrees(one) for one in task.station.cell.arm.setpoint]
+    now = [math.degrees(angle) for angle in task.station.cell.arm.setpoint]
     return [float(value.get(name, angle)) for name, angle in zip(_AXES, now, strict=False)]
 
 
@@ -50,7 +50,7 @@ def _is_axes(value: Any) -> bool:
 def _complete(task: ProgramTask, value: Any, site: ProgramPlace) -> Frame:
     """The frame of a target; components that it does not name stay as they are."""
     base = machine_of(task).base
-    named = {name: one for name, one in value.items() if name in tuple("xyzabc")}
+    named = {name: part for name, part in value.items() if name in tuple("xyzabc")}
     if len(named) < 6:  # else nothing is read
         named = {**of_frame(base.inverse() * task.station.commanded(site), "frame"), **named}
     return base * frame_of(named)
@@ -60,21 +60,21 @@ def _move(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
     """PTP, LIN, CIRC, their splines, and all of them relative."""
     yield from _with(task, node, scope)
     machine, station, site = machine_of(task), task.station, task.site(node, scope)
-    targets = yield from task.values([one for one in node.parts if one.kind != "option"], scope)
-    options = {one.name: one for one in node.parts if one.kind == "option"}
+    targets = yield from task.values([part for part in node.parts if part.kind != "option"], scope)
+    options = {part.name: part for part in node.parts if part.kind == "option"}
     name = node.name
     kind = name.removesuffix("_rel").lstrip("s") if name not in ("spl", "spl_rel") else "lin"
     kind = "ptp" if kind in ("tp", "async_ptp") else kind
     if name.endswith("_rel"):
         start = station.commanded(site)
-        targets = [_relative(task, one, options, start) for one in targets]
+        targets = [_relative(task, point, options, start) for point in targets]
     if kind == "ptp" and _is_axes(targets[0]):
         yield from task.move(node, scope, station.joint_move(_angles(task, targets[0]), machine.pace[1]))
     else:
         frames = [
-            one if isinstance(one, Frame) else station.forward(_angles(task, one)) if _is_axes(one)
-            else _complete(task, one, site)
-            for one in targets
+            point if isinstance(point, Frame) else station.forward(_angles(task, point)) if _is_axes(point)
+            else _complete(task, point, site)
+            for point in targets
         ]  # fmt: skip
         if kind == "ptp":
             yield from task.move(node, scope, station.joint_move(station.inverse(frames[0]), machine.pace[1]))
@@ -89,8 +89,8 @@ def _move(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
 def _relative(task: ProgramTask, value: Any, options: dict[str, ProgramNode], start: Frame) -> Any:
     """The target of a relative motion: in the axes of the base, or of the tool."""
     if _is_axes(value):
-        now = [math.degrees(one) for one in task.station.cell.arm.setpoint]
-        return of_axes([one + float(value.get(name, 0.0)) for name, one in zip(_AXES, now, strict=False)])
+        now = [math.degrees(angle) for angle in task.station.cell.arm.setpoint]
+        return of_axes([item + float(value.get(name, 0.0)) for name, item in zip(_AXES, now, strict=False)])
     shift = frame_of({"x": 0.0, **value})
     frame = options.get("frame")
     if frame is not None and frame.parts[0].name == "tool":
@@ -150,7 +150,7 @@ def _interrupt(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Ste
     """INTERRUPT DECL, ON, OFF, ENABLE and DISABLE; the one with IR_STOPM, in every program, is inert."""
     interrupts = task.machine.interrupts
     is_inert = node.bodies and node.bodies[0][0].name == "ir_stopm"
-    numbers = [int(one) for one in (yield from task.values(node.parts[:1], scope))]
+    numbers = [int(number) for number in (yield from task.values(node.parts[:1], scope))]
     if node.name == "interrupt decl" and not is_inert:
         handlers = type(task)(task.machine, HANDLERS)
         condition, action = node.parts[1], node.bodies[0][0]
@@ -163,9 +163,9 @@ def _interrupt(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Ste
         if HANDLERS not in task.machine.tasks:
             task.machine.start(HANDLERS, interrupts.steps(task.site(node, scope)))
         return
-    chosen = [one for number, one in interrupts.known.items() if not numbers or number in numbers]
-    for one in chosen:
-        one.is_awake = node.name in ("interrupt on", "interrupt enable")
+    chosen = [candidate for number, candidate in interrupts.known.items() if not numbers or number in numbers]
+    for interrupt in chosen:
+        interrupt.is_awake = node.name in ("interrupt on", "interrupt enable")
     if is_inert or not chosen:
         task.station.note(f"{node.name} at line {scope.unit.source.line_of(node.start)} has no effect here")
 
@@ -258,7 +258,7 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
     **{name: of_values(function) for name, function in OF_DEGREES.items()},
     "round": of_values(lambda value: math.floor(value + 0.5)), "trunc": of_values(math.trunc),
     "strlen": of_values(len), "strdecllen": of_values(len),
-    "strcomp": of_values(lambda one, other, *_: one == other),
+    "strcomp": of_values(lambda first, second, *_: first == second),
     "strclear": of_values(lambda *_: True),
     "toint": of_values(int), "copy": of_values(copy.deepcopy),
     **dict.fromkeys(("svel_joint", "sacc_cp", "sacc_joint", "sgear_jerk"), of_values(float)),

@@ -52,9 +52,9 @@ def _data(unit: ProgramUnit) -> list[ProgramNode]:
     found: list[ProgramNode] = []
     for node in unit.tree.bodies[0]:
         members = node.bodies[0] if is_data(node) else [node]
-        for one in members:
-            found += one.bodies[0] if one.kind == "declarations" else [one]
-    return [one for one in found if one.kind in ("declare", "assign", "signal", "opaque")]
+        for part in members:
+            found += part.bodies[0] if part.kind == "declarations" else [part]
+    return [node for node in found if node.kind in ("declare", "assign", "signal", "opaque")]
 
 
 def _declare(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
@@ -97,18 +97,18 @@ def _signal(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
 def _main(machine: Machine, task: ProgramTask, routine: str) -> Steps:
     """The routine with the name of the first file, or its first one."""
     first = machine.units[0]
-    own = [one for one in first.tree.bodies[0] if one.kind == "routine" and not routine]
+    own = [node for node in first.tree.bodies[0] if node.kind == "routine" and not routine]
     yield from call_main(task, routine.lower() or first.source.name.rpartition(".")[0].lower(), own)
 
 
 def _beside(file: Path) -> list[Path]:
     """The data file of a program, and ``$config.dat`` in its folder or in one called R1/System above it."""
     found = [
-        one
-        for one in sorted(file.parent.iterdir())
-        if one.suffix.lower() == ".dat" and one.stem.lower() in (file.stem.lower(), "$config")
+        path
+        for path in sorted(file.parent.iterdir())
+        if path.suffix.lower() == ".dat" and path.stem.lower() in (file.stem.lower(), "$config")
     ]
-    return [one for one in found if one != file]
+    return [path for path in found if path != file]
 
 
 KRL = RobotLanguage(

@@ -61,7 +61,7 @@ class KrlRewriter(Rewriter):
     def _types(self) -> dict[str, str]:
         """The types of all variables of the program, by name."""
         found: dict[str, str] = {}
-        for parsed in (*(one.parsed for one in self.program.others), self.program.parsed):
+        for parsed in (*(other.parsed for other in self.program.others), self.program.parsed):
             for node in parsed.tree.walk():
                 if node.kind == "declare":
                     found[node.name] = node.value["type"]
@@ -70,8 +70,8 @@ class KrlRewriter(Rewriter):
     @cached_property
     def _signals(self) -> dict[str, str]:
         """What signals stand for, such as ``$in``, by name."""
-        parsed = (*(one.parsed for one in self.program.others), self.program.parsed)
-        nodes = (node for one in parsed for node in one.tree.walk() if node.kind == "signal")
+        parsed = (*(other.parsed for other in self.program.others), self.program.parsed)
+        nodes = (node for file in parsed for node in file.tree.walk() if node.kind == "signal")
         return {node.name: self._base_name(node.parts[0]) for node in nodes}
 
     def _meant(self, node: ProgramNode) -> str:
@@ -86,7 +86,7 @@ class KrlRewriter(Rewriter):
             return True
         if any(name.startswith("ini") and start <= node.start < end for start, end, name in self._folds):
             return True
-        return any(_is_form(one) for one in (*parents, node))
+        return any(_is_form(outer) for outer in (*parents, node))
 
     def is_of_robot(self, node: ProgramNode) -> bool:
         """Motions, outputs, waits, and what sets tool, base and speed."""
@@ -203,9 +203,9 @@ class KrlRewriter(Rewriter):
         number = node.parts[1] if node.kind == "index" else node
         if number.kind == "number":
             alike = (
-                one.parts[1]
-                for one, _ in self._nodes()
-                if one.kind == node.kind == "index" and one.parts[0].name == node.parts[0].name
+                candidate.parts[1]
+                for candidate, _ in self._nodes()
+                if candidate.kind == node.kind == "index" and candidate.parts[0].name == node.parts[0].name
             )
             for text in self.next_number(number, alike):
                 yield TextChange("other-input", node, self.put(number, text))
@@ -231,7 +231,8 @@ class KrlRewriter(Rewriter):
     def _pair(literal: ProgramNode, name: str) -> ProgramNode | None:
         if literal.kind != "aggregate":
             return None
-        return next((one.parts[0] for one in literal.parts if one.kind == "pair" and one.name == name), None)
+        pairs = (part for part in literal.parts if part.kind == "pair" and part.name == name)
+        return next((pair.parts[0] for pair in pairs), None)
 
     def _literal(self, target: ProgramNode, axis: int, metres: float) -> tuple[Edit, ...] | None:
         number = self._pair(target, "xyz"[axis])
@@ -242,7 +243,7 @@ class KrlRewriter(Rewriter):
 
     def _is_axes(self, target: ProgramNode) -> bool:
         if target.kind == "aggregate":
-            return any(one.name == "a1" for one in target.parts)
+            return any(part.name == "a1" for part in target.parts)
         return self._types.get(target.name, "") in ("e6axis", "axis") or target.name.startswith("$axis")
 
     def _is_position(self, target: ProgramNode) -> bool:

@@ -20,7 +20,7 @@ class TextDifference(ActiveFault):
 
     def prepare_process(self) -> None:
         """From now on. Raises LanguageError if the file was run here before, as the original."""
-        edits = [Edit(*one) for one in self.data["edits"]]
+        edits = [Edit(*fields) for fields in self.data["edits"]]
         self._edits = ActiveEdits(self.data["file"], self.data["digest"], edits, self._reached)
         self._has_acted = False
         if any(map(self._edits.is_of, were_read())):

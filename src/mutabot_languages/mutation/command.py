@@ -31,10 +31,10 @@ def diff(context: CommandContext, request: Request, words: _Words = None) -> Non
 
     Each is what `patch` takes, below a comment with its id, in the encoding of its file.
     """
-    for one in _chosen(request, words):
-        context.print(f"# {mutant_id(one)}")
-        for line in one.program.diff(one.difference):
-            context.print_bytes(f"{line}\n".encode(one.program.encoding))
+    for plan in _chosen(request, words):
+        context.print(f"# {mutant_id(plan)}")
+        for line in plan.program.diff(plan.difference):
+            context.print_bytes(f"{line}\n".encode(plan.program.encoding))
 
 
 def export(context: CommandContext, request: Request, folder: _Folder, words: _Words = None) -> None:
@@ -45,15 +45,15 @@ def export(context: CommandContext, request: Request, folder: _Folder, words: _W
     if folder.exists() and any(folder.iterdir()):
         raise UsageError(f"{folder} is not empty: name a new folder")
     index: dict[str, str] = {}
-    for number, one in enumerate(_chosen(request, words), start=1):
+    for number, plan in enumerate(_chosen(request, words), start=1):
         place = folder / str(number)
-        for program in [one.program, *one.others]:
+        for program in [plan.program, *plan.others]:
             target = place / program.file
             target.parent.mkdir(parents=True, exist_ok=True)
-            is_changed = program is one.program
-            text = program.changed(one.difference) if is_changed else program.text
+            is_changed = program is plan.program
+            text = program.changed(plan.difference) if is_changed else program.text
             target.write_bytes(text.encode(program.encoding))
-        index[str(number)] = mutant_id(one)
+        index[str(number)] = mutant_id(plan)
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "mutants.json").write_text(
         json.dumps(index, indent=1, ensure_ascii=False) + "\n", encoding="utf-8"
@@ -61,20 +61,20 @@ def export(context: CommandContext, request: Request, folder: _Folder, words: _W
     context.print(f"{len(index)} mutants in {folder}, each with all files of the program")
 
 
-def mutant_id(one: PlannedText) -> str:
+def mutant_id(plan: PlannedText) -> str:
     """The id that campaigns give it."""
-    variant = variant_of(one.difference)
-    return f"{one.site.id}:{one.difference.operator}{f'={variant}' if variant else ''}"
+    variant = variant_of(plan.difference)
+    return f"{plan.site.id}:{plan.difference.operator}{f'={variant}' if variant else ''}"
 
 
 def _chosen(request: Request, words: list[str] | None) -> list[PlannedText]:
     files = Project(request.root, request.configuration.program).program_files()
-    found = [one for one in planned_texts(request.root, files) if one.difference.reason is None]
+    found = [plan for plan in planned_texts(request.root, files) if plan.difference.reason is None]
     if not words:
         found = [
-            one for one in found if BY_NAME[one.difference.operator].family in (FAMILY, *request.families)
+            plan for plan in found if BY_NAME[plan.difference.operator].family in (FAMILY, *request.families)
         ]
-    chosen = [one for one in found if all(_stands(word, mutant_id(one)) for word in words or ())]
+    chosen = [plan for plan in found if all(_stands(word, mutant_id(plan)) for word in words or ())]
     if not chosen:
         what = f"with {' '.join(words)}" if words else "of these languages"
         raise UsageError(f"there is no mutant {what} in {', '.join(files) or 'the program'}")

@@ -74,7 +74,7 @@ class ProgramFile:
         start, end = difference.node.start, difference.node.end
         for edit in difference.edits:
             start, end = min(start, edit.start), max(end, edit.end)
-        inside = [Edit(one.start - start, one.end - start, one.text) for one in difference.edits]
+        inside = [Edit(edit.start - start, edit.end - start, edit.text) for edit in difference.edits]
         part = self.text[start:end]
         return _line(part), _line(applied(part, inside))
 
@@ -84,7 +84,7 @@ class ProgramFile:
 
     def diff(self, difference: TextChange) -> list[str]:
         """The difference as a unified diff without context: lines without line feeds, else as in the file."""
-        old, new = (one.split("\n") for one in (self.text, self.changed(difference)))
+        old, new = (text.split("\n") for text in (self.text, self.changed(difference)))
         return [*difflib.unified_diff(old, new, f"a/{self.file}", f"b/{self.file}", n=0, lineterm="")]
 
     def is_sound(self, difference: TextChange) -> bool:
@@ -92,7 +92,7 @@ class ProgramFile:
         around = self._around(difference)
         start, end = around
         part = self.text[start:end]
-        inside = [Edit(one.start - start, one.end - start, one.text) for one in difference.edits]
+        inside = [Edit(edit.start - start, edit.end - start, edit.text) for edit in difference.edits]
         changed = applied(part, inside)
         if changed == part:
             return False
@@ -101,8 +101,8 @@ class ProgramFile:
 
     def _around(self, difference: TextChange) -> tuple[int, int]:
         """The smallest routine, or statement of the file, that holds all edits."""
-        first = min(one.start for one in difference.edits)
-        last = max(one.end for one in difference.edits)
+        first = min(edit.start for edit in difference.edits)
+        last = max(edit.end for edit in difference.edits)
         for node in outer_nodes(self.parsed.tree):
             if node.start <= first and last <= node.end:
                 return node.start, node.end

@@ -50,8 +50,9 @@ def read_program(
         for diagnostic in parsed.diagnostics:
             tell(diagnostic.text)
         found.append(ProgramFile(file, language, content, encoding, text, parsed))
-    for one in found:
-        one.others.extend(other for other in found if other is not one and other.language is one.language)
+    for program in found:
+        alike = (other for other in found if other.language is program.language)
+        program.others.extend(other for other in alike if other is not program)
     return found
 
 
@@ -59,16 +60,16 @@ def mutants_of(program: ProgramFile, sizes: Sizes | None = None) -> Iterator[Pla
     """The mutants of a file, in the order of its text."""
     occurrences = _occurrences(program)
     rewriter = rewriter_of(program.language)(program, sizes)
-    made = sorted(rewriter.differences(), key=lambda one: (one.node.start, one.node.end))
+    made = sorted(rewriter.differences(), key=lambda change: (change.node.start, change.node.end))
     seen: set[tuple[str, tuple[object, ...]]] = set()
-    for one in made:
-        key = (one.operator, one.edits)
-        if key in seen or not program.is_sound(one):
+    for change in made:
+        key = (change.operator, change.edits)
+        if key in seen or not program.is_sound(change):
             continue
         seen.add(key)
-        site = _site(program, one.node, occurrences)
-        note = f" ({one.note})" if one.note else ""
-        yield PlannedText(program, tuple(program.others), site, one, f"{program.shown(one)}{note}")
+        site = _site(program, change.node, occurrences)
+        note = f" ({change.note})" if change.note else ""
+        yield PlannedText(program, tuple(program.others), site, change, f"{program.shown(change)}{note}")
 
 
 def planned_texts(root: Path, files: list[str]) -> Iterator[PlannedText]:
@@ -92,10 +93,10 @@ def _occurrences(program: ProgramFile) -> dict[_NodeKey, tuple[str, str, int]]:
             counts[routine, text] = counts.get((routine, text), 0) + 1
             found[node.start, node.end] = routine, text, counts[routine, text]
         inner = node.name if node.kind == "routine" else routine
-        below = [(one, routine) for one in node.parts] + [
-            (one, inner) for body in node.bodies for one in body
+        below = [(part, routine) for part in node.parts] + [
+            (statement, inner) for body in node.bodies for statement in body
         ]
-        waiting.extend(sorted(below, key=lambda one: one[0].start, reverse=True))
+        waiting.extend(sorted(below, key=lambda place: place[0].start, reverse=True))
     return found
 
 

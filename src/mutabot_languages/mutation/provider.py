@@ -65,12 +65,12 @@ class LanguageFaults(FaultProvider):
         is_early = _is_run_early(original)
         sites: set[Site] = set()
         for program in read_program(project.root, self._files):
-            for one in mutants_of(program):
-                rule = BY_NAME[one.difference.operator]
+            for text in mutants_of(program):
+                rule = BY_NAME[text.difference.operator]
                 if not project.asks_for(rule):
                     continue
-                planned.mutants.append(self._planned(rule, one, is_early=is_early))
-                sites.add(one.site)
+                planned.mutants.append(self._planned(rule, text, is_early=is_early))
+                sites.add(text.site)
         for site in sorted(sites):
             for round, tests in enumerate(original.tests):
                 planned.reach(round, site, tests)
@@ -82,20 +82,20 @@ class LanguageFaults(FaultProvider):
         for program in read_program(self._root, self._files):
             if program.file != mutant.site.span.file:
                 continue
-            for one in mutants_of(program, Sizes.only(magnitude)):
-                is_same = one.difference.operator == mutant.operator and one.site == mutant.site
-                if is_same and one.difference.variant == mutant.variant.rstrip("0123456789.medg"):
+            for text in mutants_of(program, Sizes.only(magnitude)):
+                is_same = text.difference.operator == mutant.operator and text.site == mutant.site
+                if is_same and text.difference.variant == mutant.variant.rstrip("0123456789.medg"):
                     is_early = planned.active is None or not planned.active.keys
-                    return self._planned(BY_NAME[mutant.operator], one, is_early=is_early)
+                    return self._planned(BY_NAME[mutant.operator], text, is_early=is_early)
         return super().at_magnitude(planned, magnitude)
 
-    def _planned(self, rule: Rule, one: PlannedText, *, is_early: bool) -> PlannedMutant:
-        difference = one.difference
+    def _planned(self, rule: Rule, text: PlannedText, *, is_early: bool) -> PlannedMutant:
+        difference = text.difference
         variant = variant_of(difference)
         made = self.mutant(
             rule,
-            one.site,
-            one.description,
+            text.site,
+            text.description,
             variant=variant,
             magnitude=difference.magnitude,
             unit=difference.unit,
@@ -103,8 +103,8 @@ class LanguageFaults(FaultProvider):
         if difference.magnitude is not None:
             made = replace(made, direction=difference.variant)
         data: dict[str, Any] = {
-            "file": one.program.file,
-            "digest": digest(one.program.content),
+            "file": text.program.file,
+            "digest": digest(text.program.content),
             "edits": [[edit.start, edit.end, edit.text] for edit in difference.edits],
         }
         # before any test nothing forks: a process of its own is the mutant from its beginning

@@ -68,8 +68,8 @@ class Rewriter:
             if parents:
                 yield node, parents
             inner = (*parents, node)
-            below = [*node.parts, *(one for body in node.bodies for one in body)]
-            waiting.extend((one, inner) for one in sorted(below, key=lambda one: one.start, reverse=True))
+            below = [*node.parts, *(statement for body in node.bodies for statement in body)]
+            waiting.extend((part, inner) for part in sorted(below, key=lambda part: part.start, reverse=True))
 
     # what a language says
 
@@ -104,8 +104,8 @@ class Rewriter:
 
         Of what a program nowhere names, nothing says what it would be.
         """
-        numbers = {int(one.value) for one in alike if one.kind == "number"}
-        others = sorted(numbers - {int(number.value)}, key=lambda one: (one < number.value, one))
+        numbers = {int(node.value) for node in alike if node.kind == "number"}
+        others = sorted(numbers - {int(number.value)}, key=lambda other: (other < number.value, other))
         yield from map(str, others[:1])
 
     def without(self, node: ProgramNode) -> tuple[Edit, ...]:
@@ -163,7 +163,7 @@ class Rewriter:
         """Whether a node stands by itself."""
         if parents[-1].kind == "if" and parents[-1].name == "compact":  # it has to have one
             return False
-        return any(one is node for body in parents[-1].bodies for one in body)
+        return any(statement is node for body in parents[-1].bodies for statement in body)
 
     def is_of_robot(self, node: ProgramNode) -> bool:
         """Whether the robot or its signals take part in a statement: an operator of its own drops these."""
@@ -194,7 +194,7 @@ class Rewriter:
                     )
 
     def _is_text(self, node: ProgramNode) -> bool:
-        return any(one.kind == "text" for one in node.walk())
+        return any(part.kind == "text" for part in node.walk())
 
     def _numbers(self, node: ProgramNode) -> Iterator[TextChange]:
         texts = {"0": "0", "plus": f"{node.value + 1:g}"} if isinstance(node.value, (int, float)) else {}

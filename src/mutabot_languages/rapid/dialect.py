@@ -249,7 +249,7 @@ def _of_positions(operator: str, left: Any, right: Any) -> Any:
         pairs = zip(left.items(), right.values(), strict=True)
         if operator in "+-":
             sign = 1 if operator == "+" else -1
-            return Structure.of("pos", {name: one + sign * other for (name, one), other in pairs})
+            return Structure.of("pos", {name: first + sign * second for (name, first), second in pairs})
         a, b = list(left.values()), list(right.values())
         if operator == "*" and len(a) == 3:
             cross = (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
@@ -258,11 +258,11 @@ def _of_positions(operator: str, left: Any, right: Any) -> Any:
     record, number = (left, right) if isinstance(left, Structure) else (right, left)
     if operator not in "*/":
         raise TypeError("not for a structure and a number")
-    return Structure.of("pos", {name: _of_numbers(operator, one, number) for name, one in record.items()})
+    return Structure.of("pos", {name: _of_numbers(operator, value, number) for name, value in record.items()})
 
 
 def _of_numbers(operator: str, left: Any, right: Any) -> Any:
-    if not all(isinstance(one, (int, float)) for one in (left, right)):
+    if not all(isinstance(operand, (int, float)) for operand in (left, right)):
         if isinstance(left, str) and isinstance(right, str) and operator in ("<", ">", "<=", ">="):
             raise TypeError("texts are compared by StrOrder")
         raise TypeError("only numbers can be calculated with")

@@ -76,7 +76,7 @@ def _move(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
         raise task.error(node, scope, f"{name} with the speed {pace * 1000:g} mm/s")
     part = pace / float(station.model.tool_limits.speed)
     if is_joint:
-        joints = [float(one) for one in _target(task, target, "jointtarget")["robax"].values()]
+        joints = [float(angle) for angle in _target(task, target, "jointtarget")["robax"].values()]
         joints += _seventh(task, _target(task, target, "jointtarget"))
         yield from task.move(node, scope, station.joint_move(joints, part))
     else:
@@ -108,7 +108,7 @@ def _seventh(task: ProgramTask, target: Any) -> list[float]:
 
 def _at_end(task: ProgramTask, node: ProgramNode, scope: RoutineScope, name: str, values: list[Any]) -> Steps:
     if name.endswith(("do", "ao", "go")) and len(values) > 5:
-        signals = [one for one in node.parts if one.kind != "option"]
+        signals = [part for part in node.parts if part.kind != "option"]
         signal = signals[-2].name
         task.station.write(task.site(node, scope), signal, values[-1])
     elif name.endswith("sync") and values and isinstance(values[-1], str):
@@ -118,7 +118,7 @@ def _at_end(task: ProgramTask, node: ProgramNode, scope: RoutineScope, name: str
 def _given(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Any:
     """The arguments of a motion; signals are not read."""
     values, named = list[Any](), dict[str, Any]()
-    plain = [one for one in node.parts if one.kind != "option"]
+    plain = [argument for argument in node.parts if argument.kind != "option"]
     skipped = plain[-2:-1] if node.name.endswith(("do", "ao", "go")) and len(plain) > 5 else []
     for part in node.parts:
         if part.kind == "option":
@@ -152,7 +152,7 @@ def _set(value: int) -> Callable[..., Any]:
 
 def _set_to(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
     """SetDO, SetGO, SetAO, with a delay."""
-    parts = [one for one in node.parts if one.kind != "option"]
+    parts = [part for part in node.parts if part.kind != "option"]
     value = yield from task.value(parts[1], scope)
     for option in node.parts:
         if option.kind == "option" and option.name == "sdelay" and option.parts:
@@ -211,7 +211,7 @@ def _options(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Any:
 
 
 def _wait_signal(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-    parts = [one for one in node.parts if one.kind != "option"]
+    parts = [part for part in node.parts if part.kind != "option"]
     wanted = yield from task.value(parts[1], scope)
     signal = _signal(task, node, scope, parts[0])
     site = task.site(node, scope)
@@ -226,7 +226,7 @@ def _wait_signal(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> S
 
 
 def _wait_until(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-    condition = next(one for one in node.parts if one.kind != "option")
+    condition = next(part for part in node.parts if part.kind != "option")
     yield from _wait_for(task, node, scope, lambda: task.value(condition, scope))
 
 
@@ -254,11 +254,11 @@ def _offs(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
 def _rel_tool(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
     values, named = yield from task.arguments(node, scope)
     target = _target(task, values[0], "robtarget")
-    shift = Frame(tuple(one / 1000 for one in values[1:4]))
+    shift = Frame(tuple(value / 1000 for value in values[1:4]))
     turn = IDENTITY
     for name, axis in (("rx", (1, 0, 0)), ("ry", (0, 1, 0)), ("rz", (0, 0, 1))):
         angle = math.radians(float(named.get(name) or 0.0))
-        turn = turn * Frame.of_vector((0, 0, 0), [one * angle for one in axis])
+        turn = turn * Frame.of_vector((0, 0, 0), [component * angle for component in axis])
     return put_frame(target, frame_of(target) * shift * turn)
 
 
@@ -337,7 +337,7 @@ def _of_poses(function: Callable[..., Frame]) -> Callable[..., Steps]:
 
     def call(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
         values, _ = yield from task.arguments(node, scope)
-        return _pose_record(task, function(*(frame_of(_target(task, one, "pose")) for one in values)))
+        return _pose_record(task, function(*(frame_of(_target(task, value, "pose")) for value in values)))
 
     return call
 
@@ -346,15 +346,15 @@ def _pose_vect(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Ste
     values, _ = yield from task.arguments(node, scope)
     frame = frame_of(_target(task, values[0], "pose"))
     vector = _target(task, values[1], "pos")
-    at = (frame * Frame(tuple(one / 1000 for one in vector.values()))).position
-    return Structure.of("pos", dict(zip("xyz", (one * 1000 for one in at), strict=True)))
+    at = (frame * Frame(tuple(number / 1000 for number in vector.values()))).position
+    return Structure.of("pos", dict(zip("xyz", (number * 1000 for number in at), strict=True)))
 
 
 def _def_frame(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
     """DefFrame of three points: the first is the origin, the second on x,
     the third in the plane of x and y."""
     values, _ = yield from task.arguments(node, scope)
-    places = [frame_of(_target(task, one, "robtarget")).position for one in values[:3]]
+    places = [frame_of(_target(task, value, "robtarget")).position for value in values[:3]]
     origin, on_x, in_plane = places
     x = _unit(tuple(p - q for p, q in zip(on_x, origin, strict=True)))
     towards = tuple(p - q for p, q in zip(in_plane, origin, strict=True))
@@ -367,7 +367,7 @@ def _unit(vector: Any) -> Any:
     length = math.hypot(*vector)
     if length < 1e-9:
         raise ValueError("points that fall together make no frame")
-    return tuple(one / length for one in vector)
+    return tuple(component / length for component in vector)
 
 
 # program flow
@@ -458,12 +458,12 @@ def value_text(value: Any, **_: Any) -> str:
         return "TRUE" if value else "FALSE"
     if isinstance(value, (dict, list)):
         inner = value.values() if isinstance(value, dict) else value
-        return f"[{','.join(value_text(one) for one in inner)}]"
+        return f"[{','.join(value_text(element) for element in inner)}]"
     return f"{value:g}" if isinstance(value, (int, float)) else f'"{value}"'
 
 
-def _distance(one: Any, other: Any) -> float:
-    a, b = (list(value.values()) if isinstance(value, dict) else value for value in (one, other))
+def _distance(first: Any, second: Any) -> float:
+    a, b = (list(value.values()) if isinstance(value, dict) else value for value in (first, second))
     return math.dist(a, b)
 
 
@@ -481,7 +481,7 @@ def _str_to_val(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> St
 
 
 def _bits(change: Callable[[int, int], int]) -> Callable[..., Any]:
-    return of_values(lambda one, other: change(int(one), int(other)))
+    return of_values(lambda first, second: change(int(first), int(second)))
 
 
 _MOVES = (

@@ -16,8 +16,8 @@ from mutabot_languages.core.tree import ProgramNode
 
 def arguments_of(node: ProgramNode) -> tuple[list[ProgramNode], dict[str, ProgramNode]]:
     """The arguments of an instruction in their order, and its options by their names."""
-    options = {one.name: one for one in node.parts if one.kind == "option"}
-    return [one for one in node.parts if one.kind != "option"], options
+    options = {part.name: part for part in node.parts if part.kind == "option"}
+    return [part for part in node.parts if part.kind != "option"], options
 
 
 def _number(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Hashable:
@@ -139,7 +139,7 @@ def _trigger(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps
     variable = task.find(parts[0].name, scope)
     if variable is None or "time" in options:
         raise task.unsupported(node, scope, f"{node.name} with Time" if variable else node.name)
-    signal = next((options[one] for one in ("dop", "gop", "aop") if one in options), None)
+    signal = next((options[option] for option in ("dop", "gop", "aop") if option in options), None)
     if signal is None:
         raise task.unsupported(node, scope, f"{node.name} without a signal")
     value = yield from task.value(parts[-1], scope)
@@ -152,17 +152,18 @@ def trigger_watch(task: ProgramTask, points: list[Any], end: Frame) -> Callable[
     station = task.station
 
     def here() -> Frame:
-        return station.forward([math.degrees(one) for one in station.cell.arm.setpoint])
+        return station.forward([math.degrees(angle) for angle in station.cell.arm.setpoint])
 
-    start, waiting = here(), [one for one in points if isinstance(one, TriggerPoint)]
+    start, waiting = here(), [point for point in points if isinstance(point, TriggerPoint)]
 
     def look(is_over: bool = False) -> None:
         at = here()
-        for one in [*waiting]:
-            way = start.distance(at) - one.metres if one.is_from_start else one.metres - at.distance(end)
+        for point in [*waiting]:
+            from_start, to_end = start.distance(at) - point.metres, point.metres - at.distance(end)
+            way = from_start if point.is_from_start else to_end
             if is_over or way >= 0:
-                waiting.remove(one)
-                one.act()
+                waiting.remove(point)
+                point.act()
 
     return look
 

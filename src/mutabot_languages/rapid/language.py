@@ -52,8 +52,8 @@ def _structure(dialect: Dialect, node: ProgramNode) -> None:
 def _main(machine: Machine, task: ProgramTask, routine: str) -> Steps:
     """The routine ``main``, or the first of the first file that takes no arguments."""
     members = _members(machine.units[0])
-    own = [one for one in members if one.kind == "routine" and one.value["kind"] == "proc"]
-    own.sort(key=lambda one: bool(one.parts))
+    own = [member for member in members if member.kind == "routine" and member.value["kind"] == "proc"]
+    own.sort(key=lambda node: bool(node.parts))
     yield from call_main(task, routine.lower() or "main", [] if routine else own)
 
 

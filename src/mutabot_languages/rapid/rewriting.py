@@ -49,7 +49,7 @@ class RapidRewriter(Rewriter):
     def _types(self) -> dict[str, str]:
         """The types of all data of the program, by name."""
         found: dict[str, str] = {}
-        for parsed in (*(one.parsed for one in self.program.others), self.program.parsed):
+        for parsed in (*(other.parsed for other in self.program.others), self.program.parsed):
             for node in parsed.tree.walk():
                 if node.kind == "declare":
                     found[node.name] = node.value["type"]
@@ -78,7 +78,7 @@ class RapidRewriter(Rewriter):
             yield from self._compared(node)
 
     def _call(self, node: ProgramNode) -> Iterator[TextChange]:
-        plain = [one for one in node.parts if one.kind != "option"]
+        plain = [part for part in node.parts if part.kind != "option"]
         if _MOTION.fullmatch(node.name):
             yield from self._motion(node, plain)
         elif node.name == "setdo" and len(plain) == 2:
@@ -96,7 +96,7 @@ class RapidRewriter(Rewriter):
             yield from self._reversed(node, plain[1:])
             if node.name == "reltool":
                 edits = (Edit(node.start, node.start + len(node.name), "Offs"),)
-                if not any(one.kind == "option" for one in node.parts):
+                if not any(part.kind == "option" for part in node.parts):
                     yield TextChange("other-frame", node, edits)
         if node.name in _WAITS:
             yield TextChange("forget-wait", node, self.put(node, "WaitTime 0"))
@@ -138,7 +138,9 @@ class RapidRewriter(Rewriter):
         if len(plain) > first + 3 and self.written(plain[first + 3]).lower() != "tool0":
             yield TextChange("other-tool", node, self.put(plain[first + 3], "tool0"))
         given = (
-            one for one in node.parts if one.kind == "option" and one.name == "wobj" and one.value is None
+            part
+            for part in node.parts
+            if part.kind == "option" and part.name == "wobj" and part.value is None
         )
         for option in given:
             if option.parts and self.written(option.parts[0]).lower() != "wobj0":
@@ -150,7 +152,7 @@ class RapidRewriter(Rewriter):
             return
         for factor in (0.1, 2.0):
             wanted = float(found[1]) * factor
-            near = min(_SPEEDS, key=lambda one: (abs(one - wanted), one))
+            near = min(_SPEEDS, key=lambda known_speed: (abs(known_speed - wanted), known_speed))
             if near != int(found[1]):
                 yield TextChange("scale-speed", node, self.put(speed, f"v{near}"), f"×{factor:g}")
 
@@ -172,7 +174,7 @@ class RapidRewriter(Rewriter):
 
     @staticmethod
     def _is_target(node: ProgramNode) -> bool:
-        shape = [len(one.parts) if one.kind == "list" else 0 for one in node.parts]
+        shape = [len(part.parts) if part.kind == "list" else 0 for part in node.parts]
         return node.kind == "list" and shape[:2] == [3, 4] and len(shape) >= 3
 
     def _is_pose(self, target: ProgramNode) -> bool:
@@ -193,7 +195,7 @@ class RapidRewriter(Rewriter):
             return None
         if target.kind == "list":
             return self._literal(target, axis, metres)
-        plain = [one for one in target.parts if one.kind != "option"]
+        plain = [part for part in target.parts if part.kind != "option"]
         if target.kind == "call" and target.name == "offs" and len(plain) == 4:
             value = signed_number(plain[1 + axis])
             if value is not None:

@@ -69,9 +69,9 @@ def shaped(value: Any, type: str, structures: Mapping[str, Components]) -> Any:
         if len(value) != len(components):
             raise ValueError(f"{type} has {len(components)} components, not {len(value)}")
         pairs = zip(components, value, strict=True)
-        return Structure.of(type, {name: shaped(one, inner, structures) for (name, inner), one in pairs})
+        return Structure.of(type, {name: shaped(part, inner, structures) for (name, inner), part in pairs})
     if isinstance(value, list):
-        made = RapidArray(shaped(one, type, structures) for one in value)
+        made = RapidArray(shaped(element, type, structures) for element in value)
         made.type = type
         return made
     return value
@@ -81,12 +81,12 @@ def frame_of(value: Any) -> Frame:
     """The frame of a pose or a target, which is in mm. Raises TypeError."""
     if not (isinstance(value, dict) and "trans" in value and "rot" in value):
         raise TypeError(f"expected a pose or a robtarget, found {value!r}")
-    return Frame.of_quaternion([one / 1000 for one in value["trans"].values()], list(value["rot"].values()))
+    return Frame.of_quaternion([mm / 1000 for mm in value["trans"].values()], list(value["rot"].values()))
 
 
 def put_frame(value: Structure, frame: Frame) -> Structure:
     """A copy of a pose or a target with this frame."""
     made = copy.deepcopy(value)
-    made["trans"] = Structure.of("pos", dict(zip("xyz", (one * 1000 for one in frame.position), strict=True)))
+    made["trans"] = Structure.of("pos", dict(zip("xyz", (m * 1000 for m in frame.position), strict=True)))
     made["rot"] = Structure.of("orient", dict(zip(("q1", "q2", "q3", "q4"), frame.rotation, strict=True)))
     return made

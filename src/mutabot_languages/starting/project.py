@@ -32,37 +32,37 @@ def project(root: Path, files: Sequence[Path]) -> tuple[dict[str, str], list[str
     Returns None if none of them is in a language of this package.
     """
     parsed = {file: _read(file) for file in files if language_for(file.name) is not None}
-    main = _main({file: one.tree for file, one in parsed.items()})
+    main = _main({file: parse.tree for file, parse in parsed.items()})
     language = language_for(main.name) if main is not None else None
     if main is None or language is None:
         return None
-    own = {file: one.tree for file, one in parsed.items() if language_for(file.name) is language}
+    own = {file: parse.tree for file, parse in parsed.items() if language_for(file.name) is language}
     loaded = _needed(main, language, own)
-    belonging = list(dict.fromkeys([*loaded, *(one for file in loaded for one in language.beside(file))]))
-    signals = signals_of([parsed.get(one) or _read(one) for one in belonging], language.name)
-    names = [one.relative_to(root).as_posix() for one in belonging]
+    belonging = list(dict.fromkeys([*loaded, *(path for file in loaded for path in language.beside(file))]))
+    signals = signals_of([parsed.get(path) or _read(path) for path in belonging], language.name)
+    names = [path.relative_to(root).as_posix() for path in belonging]
     beside = main.parent / "cell_map.toml"
     is_mapped = beside.exists()
     cell_map = beside.read_text(encoding="utf-8") if is_mapped else cell_map_text(main.name, signals)
     made = {"mutabot.toml": texts.CONFIGURATION.format(program=json.dumps(names, ensure_ascii=False))}
     if not is_mapped:
         made[beside.relative_to(root).as_posix()] = cell_map
-    told = [f"program: {', '.join(names)} ({language.name})"]
+    lines = [f"program: {', '.join(names)} ({language.name})"]
     if not any(root.glob("tests/**/test_*.py")):
         found = tried(loaded, cell_map)
         stem = re.sub(r"\W", "_", main.stem.lower())
         made[f"tests/test_{stem}.py"] = _test_text(
-            [one.relative_to(root).as_posix() for one in loaded], found
+            [path.relative_to(root).as_posix() for path in loaded], found
         )
-        told += _told(found, main.name)
-    left = [one.relative_to(root).as_posix() for one in files if one not in belonging]
+        lines += _told(found, main.name)
+    left = [file.relative_to(root).as_posix() for file in files if file not in belonging]
     if left:
         more = f" and {len(left) - _MOST_LEFT} more" if len(left) > _MOST_LEFT else ""
-        told.append(
+        lines.append(
             f"left out, as {main.name} needs nothing of them: {', '.join(left[:_MOST_LEFT])}{more}; for "
             "another program, name its files: mutabot init FILE…"
         )
-    return made, told
+    return made, lines
 
 
 def _read(file: Path) -> ParsedFile:
@@ -92,7 +92,7 @@ def _needed(main: Path, language: RobotLanguage, trees: dict[Path, ProgramNode])
     """The file, and those that have what it names and does not have itself, the nearest first."""
     dialect, found, waiting = language.dialect(), [main], [main]
     has = {file: _names(tree, "routine", *_data(file)) for file, tree in trees.items()}
-    near = sorted(trees, key=lambda one: (os.path.relpath(one, main.parent).count(os.sep), one))
+    near = sorted(trees, key=lambda path: (os.path.relpath(path, main.parent).count(os.sep), path))
     while waiting:
         tree = trees[waiting.pop(0)]
         lacking = _names(tree, "call", "name", "text") - _names(tree, "routine", "declare", "parameter")
@@ -113,12 +113,12 @@ def _data(file: Path) -> list[str]:
 def _names(tree: ProgramNode, *kinds: str) -> set[str]:
     """The names of nodes, and the texts: RAPID may call by them."""
     found = (node.value if node.kind == "text" else node.name for node in tree.walk() if node.kind in kinds)
-    return {str(one).lower() for one in found}
+    return {str(item).lower() for item in found}
 
 
 def _test_text(files: Iterable[str], found: ProgramTrial) -> str:
     first, *others = files
-    more = "".join(f", ROOT / {json.dumps(one)}" for one in others)
+    more = "".join(f", ROOT / {json.dumps(other)}" for other in others)
     given = {"program": first, "more": more, "arm": found.arm, "first": json.dumps(first)}
     if found.problem:
         return texts.TEST.format(**given, constants="", how="", checks="", name="ends")
@@ -148,11 +148,11 @@ def _told(found: ProgramTrial, name: str) -> list[str]:
     idle = (
         [] if found.seconds else ["it does nothing in the cell: name the file that does: mutabot init FILE…"]
     )
-    return [f"{name} {ends} with the arm {found.arm}", *(f"  {one}" for one in found.notes[:5]), *idle]
+    return [f"{name} {ends} with the arm {found.arm}", *(f"  {note}" for note in found.notes[:5]), *idle]
 
 
 def _numbers(values: Iterable[float]) -> str:
-    return f"({', '.join(f'{one:.4f}' for one in values)})"
+    return f"({', '.join(f'{value:.4f}' for value in values)})"
 
 
 def _rounded_up(seconds: float) -> str:

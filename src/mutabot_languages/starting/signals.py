@@ -47,32 +47,32 @@ def signals_of(files: Sequence[ParsedFile], language: str) -> list[NamedSignal]:
     """The signals that files in a language name, in the order of their names; each once, as it is written."""
     reader = {"rapid": _of_rapid, "krl": _of_krl, "urscript": _of_urscript}[language]
     found: dict[tuple[bool, str], NamedSignal] = {}
-    for one in reader([node for file in files for node in file.tree.walk()]):
-        known = found.get((one.is_output, one.name.lower()))
-        if known is None or (known.told == known.name != one.told):
-            found[one.is_output, one.name.lower()] = one
+    for signal in reader([node for file in files for node in file.tree.walk()]):
+        known = found.get((signal.is_output, signal.name.lower()))
+        if known is None or (known.told == known.name != signal.told):
+            found[signal.is_output, signal.name.lower()] = signal
     return [replace(found[key], name=_written(found[key].name, files)) for key in sorted(found, reverse=True)]
 
 
 def _written(name: str, files: Sequence[ParsedFile]) -> str:
     matches = (
-        re.search(rf"\b{name}\b", one.source.text, re.IGNORECASE) for one in files if name.isidentifier()
+        re.search(rf"\b{name}\b", file.source.text, re.IGNORECASE) for file in files if name.isidentifier()
     )
-    return next((one[0] for one in matches if one), name)
+    return next((match[0] for match in matches if match), name)
 
 
 def cell_map_text(name: str, signals: list[NamedSignal]) -> str:
     """The cell map of a program. What nothing tells of is asked for."""
-    outputs = [one for one in signals if one.is_output]
+    outputs = [named_signal for named_signal in signals if named_signal.is_output]
     lines = [_HEAD.format(name=name)]
-    for one in signals:
-        key = f"[{'out' if one.is_output else 'in'}.{json.dumps(one.name)}]"
-        if not one.is_output:
-            is_held = bool(_HOLDING.search(one.told)) and one.value
-            says = "holding = true" if is_held else f"constant = {str(one.value).lower()}"
+    for signal in signals:
+        key = f"[{'out' if signal.is_output else 'in'}.{json.dumps(signal.name)}]"
+        if not signal.is_output:
+            is_held = bool(_HOLDING.search(signal.told)) and signal.value
+            says = "holding = true" if is_held else f"constant = {str(signal.value).lower()}"
             lines.append(f"{key}\n{says}{'' if is_held else '  # what is it in the cell?'}\n")
-        elif _GRIPPER.search(one.told) or len(outputs) == 1:
-            says = "[1, 0]" if _OPENING.search(one.told) else "[0, 1]"
+        elif _GRIPPER.search(signal.told) or len(outputs) == 1:
+            says = "[1, 0]" if _OPENING.search(signal.told) else "[0, 1]"
             lines.append(f"{key}\ngripper = {says}  # what the gripper is told for 0 and for 1\n")
         else:
             lines.append(f"# {key}  # what is it in the cell?\n")
@@ -80,7 +80,7 @@ def cell_map_text(name: str, signals: list[NamedSignal]) -> str:
 
 
 def _of_rapid(nodes: list[ProgramNode]) -> Iterator[NamedSignal]:
-    declared = {one.name for one in nodes if one.kind in ("declare", "parameter", "routine", "for")}
+    declared = {node.name for node in nodes if node.kind in ("declare", "parameter", "routine", "for")}
 
     def named(node: ProgramNode, *, is_output: bool, value: bool = True) -> Iterator[NamedSignal]:
         is_own = (
@@ -90,10 +90,10 @@ def _of_rapid(nodes: list[ProgramNode]) -> Iterator[NamedSignal]:
             yield NamedSignal(node.name, is_output, node.name, value)
 
     outputs = {
-        one.name
+        name_node.name
         for node in nodes
         if node.kind == "call" and _RAPID_OUT.fullmatch(node.name)
-        for one in _signal_parts(node)
+        for name_node in _signal_parts(node)
     }
     for node in nodes:
         if node.kind == "call" and _RAPID_OUT.fullmatch(node.name):
@@ -108,12 +108,12 @@ def _of_rapid(nodes: list[ProgramNode]) -> Iterator[NamedSignal]:
 
 
 def _signal_parts(node: ProgramNode) -> list[ProgramNode]:
-    plain = [one for one in node.parts if one.kind != "option"]
+    plain = [part for part in node.parts if part.kind != "option"]
     return plain[-2:-1] if node.name.startswith("move") else plain[:1]
 
 
 def _of_krl(nodes: list[ProgramNode]) -> Iterator[NamedSignal]:
-    names = {_indexed(one.parts[0]): one.name for one in nodes if one.kind == "signal"}
+    names = {_indexed(node.parts[0]): node.name for node in nodes if node.kind == "signal"}
     low = {
         _indexed(node.parts[0])
         for node in nodes
@@ -123,8 +123,8 @@ def _of_krl(nodes: list[ProgramNode]) -> Iterator[NamedSignal]:
         name = _indexed(node)
         if name and name.startswith(("$IN", "$OUT", "$ANIN", "$ANOUT")):
             is_output = name.startswith(("$OUT", "$ANOUT"))
-            told = names.get(name, name)
-            yield NamedSignal(name, is_output, told, not {name, told} & low)
+            alias = names.get(name, name)
+            yield NamedSignal(name, is_output, alias, not {name, alias} & low)
 
 
 def _indexed(node: ProgramNode) -> str:
@@ -146,4 +146,4 @@ def _of_urscript(nodes: list[ProgramNode]) -> Iterator[NamedSignal]:
 
 def _wanted(parts: Sequence[ProgramNode]) -> bool:
     """Whether a signal is compared with something else than 0 and FALSE."""
-    return not any(one.kind in ("number", "constant") and not one.value for one in parts[:1])
+    return not any(part.kind in ("number", "constant") and not part.value for part in parts[:1])

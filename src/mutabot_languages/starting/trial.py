@@ -77,9 +77,9 @@ def is_out_of_reach(problem: str) -> bool:
 
 
 def _run(arm: str, arguments: list[Any]) -> ProgramTrial:
-    words = [sys.executable, "-c", _SCRIPT, json.dumps([arm, *arguments])]
+    command_line = [sys.executable, "-c", _SCRIPT, json.dumps([arm, *arguments])]
     try:
-        done = subprocess.run(words, capture_output=True, text=True, check=False, timeout=_PATIENCE)
+        done = subprocess.run(command_line, capture_output=True, text=True, check=False, timeout=_PATIENCE)
     except subprocess.TimeoutExpired:
         return ProgramTrial(arm, problem=f"the run took more than {_PATIENCE:g} s")
     if done.returncode:

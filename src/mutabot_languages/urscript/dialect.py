@@ -91,12 +91,14 @@ class UrDialect(Dialect):
         if node.kind == "option":
             raise task.error(node, scope, f"{node.name}= stands only in calls")
         values = yield from task.values(node.parts, scope)
-        return UrPose(float(one) for one in values) if node.kind == "pose" else values
+        return UrPose(float(value) for value in values) if node.kind == "pose" else values
 
     def assigned(self, variable: Any, value: Any) -> Any:
         """Lists are copied."""
         return (
-            type(value)(self.assigned(variable, one) for one in value) if isinstance(value, list) else value
+            type(value)(self.assigned(variable, element) for element in value)
+            if isinstance(value, list)
+            else value
         )
 
 
@@ -104,11 +106,11 @@ def _elementwise(operator: str, left: Any, right: Any) -> Any:
     if isinstance(left, list) and isinstance(right, list):
         if len(left) != len(right) or operator in "*/":
             raise TypeError("lists of different lengths")
-        made = [arithmetic(operator, one, other) for one, other in zip(left, right, strict=True)]
+        made = [arithmetic(operator, first, second) for first, second in zip(left, right, strict=True)]
     elif isinstance(left, list):
-        made = [arithmetic(operator, one, right) for one in left]
+        made = [arithmetic(operator, element, right) for element in left]
     else:
-        made = [arithmetic(operator, left, one) for one in right]
+        made = [arithmetic(operator, left, element) for element in right]
     return UrPose(made) if isinstance(left, UrPose) or isinstance(right, UrPose) else made
 
 
@@ -126,7 +128,7 @@ def arithmetic(operator: str, left: Any, right: Any) -> Any:
 
 
 def _are_numbers(*values: Any) -> bool:
-    return all(isinstance(one, (int, float)) for one in values)
+    return all(isinstance(value, (int, float)) for value in values)
 
 
 def text_of(value: Any) -> str:
@@ -134,7 +136,7 @@ def text_of(value: Any) -> str:
     if isinstance(value, bool):
         return "True" if value else "False"
     if isinstance(value, UrPose):
-        return f"p[{', '.join(f'{one:g}' for one in value)}]"
+        return f"p[{', '.join(f'{element:g}' for element in value)}]"
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
@@ -163,7 +165,7 @@ def move_to(
     station = task.station
     if not isinstance(target, list) or len(target) < 6 or not _are_numbers(*target):
         raise task.error(node, scope, f"{node.name} to {target!r}: expected a pose or six joint angles")
-    angles = None if isinstance(target, UrPose) else [math.degrees(one) for one in target]
+    angles = None if isinstance(target, UrPose) else [math.degrees(deg) for deg in target]
     seconds = float(given.get("t") or 0.0)
     if node.name == "movej":
         speed = float(given.get("v", 1.05))
@@ -218,17 +220,17 @@ def _set_tcp(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
 def _inverse(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
     given = yield from _given(task, node, scope, "x qnear maxPositionError maxOrientationError tcp")
     near = given.get("qnear")
-    degrees = [math.degrees(one) for one in near] if near else None
+    degrees = [math.degrees(deg) for deg in near] if near else None
     if degrees is not None and len(degrees) < task.station.joints:
         degrees = None
     found = task.station.inverse(frame_of(given["x"]), degrees)
-    return [math.radians(one) for one in found]
+    return [math.radians(deg) for deg in found]
 
 
 def _forward(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
     values, _ = yield from task.arguments(node, scope)
     if values:
-        return pose_of(task.station.forward([math.degrees(one) for one in values[0]]))
+        return pose_of(task.station.forward([math.degrees(value) for value in values[0]]))
     return pose_of(task.station.commanded(task.site(node, scope)))
 
 
@@ -290,8 +292,8 @@ def _pose_now(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> UrPos
 def _joints_now(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> list[float]:
     site = task.site(node, scope)
     if "target" in node.name:
-        return [math.radians(one) for one in task.station.call(site, task.station.cell.arm.commanded_joints)]
-    return [math.radians(one) for one in task.station.angles(site)]
+        return [math.radians(deg) for deg in task.station.call(site, task.station.cell.arm.commanded_joints)]
+    return [math.radians(deg) for deg in task.station.angles(site)]
 
 
 def _wrench(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Any:
@@ -310,21 +312,21 @@ def _halt(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Any:
     raise ControlFlow("exit")
 
 
-def _pose_add(one: Any, other: Any, sign: int = 1) -> UrPose:
-    a, b = frame_of(one), frame_of(other)
+def _pose_add(first: Any, second: Any, sign: int = 1) -> UrPose:
+    a, b = frame_of(first), frame_of(second)
     x, y, z = (p + sign * q for p, q in zip(a.position, b.position, strict=True))
     turn = b if sign > 0 else b.inverse()
     return pose_of(Frame((x, y, z), (a * turn).rotation))
 
 
 def _euler(roll: float, pitch: float, yaw: float) -> list[float]:
-    degrees = [math.degrees(one) for one in (yaw, pitch, roll)]
+    degrees = [math.degrees(deg) for deg in (yaw, pitch, roll)]
     return list(Frame.of_euler((0, 0, 0), *degrees).vector())
 
 
 def _rpy(values: Any) -> list[float]:
     yaw, pitch, roll = Frame.of_vector((0, 0, 0), values).euler()
-    return [math.radians(one) for one in (roll, pitch, yaw)]
+    return [math.radians(deg) for deg in (roll, pitch, yaw)]
 
 
 _PLAIN: dict[str, Callable[..., Any]] = {
@@ -350,7 +352,7 @@ _PLAIN: dict[str, Callable[..., Any]] = {
     "str_find": lambda text, part, start=0: text.find(part, start),
     "integer_to_binary_list": lambda value: [bool(int(value) >> bit & 1) for bit in range(32)],
     "binary_list_to_integer": lambda bits: sum(1 << at for at, bit in enumerate(bits) if bit),
-    "normalize": lambda value: [one / math.hypot(*value) for one in value],
+    "normalize": lambda value: [component / math.hypot(*value) for component in value],
     "make_list": lambda count, value=0, capacity=0: [value] * int(count),
     "abs": abs, "max": max, "min": min, "round": round,
 }  # fmt: skip

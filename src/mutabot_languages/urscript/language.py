@@ -31,11 +31,11 @@ def _main(machine: Machine, task: ProgramTask, routine: str) -> Steps:
     body = unit.tree.bodies[0]
     scope = RoutineScope(unit, "<module>")
     scope.names = machine.globals
-    own = [one for one in body if one.kind == "routine"]
-    calls = [one for one in body if one.kind == "call"]
-    yield from task.run([one for one in body if one.kind != "routine"], scope)
+    own = [node for node in body if node.kind == "routine"]
+    calls = [node for node in body if node.kind == "call"]
+    yield from task.run([node for node in body if node.kind != "routine"], scope)
     if own and not calls:
-        ends = [one for one in own if not one.parts]
+        ends = [node for node in own if not node.parts]
         if ends:
             yield from call_main(task, ends[-1].name, [])
         elif len(own) == len(body):

@@ -61,9 +61,9 @@ class URScriptParser(StatementParser):
                     continue
                 depth = 0
             kept.append(index)
-        self.kinds, self.words = [kinds[one] for one in kept], [words[one] for one in kept]
-        self.starts = [self.starts[one] for one in kept]
-        self.ends = [self.ends[one] for one in kept]
+        self.kinds, self.words = [kinds[n] for n in kept], [words[n] for n in kept]
+        self.starts = [self.starts[index] for index in kept]
+        self.ends = [self.ends[index] for index in kept]
 
     def statement(self) -> ProgramNode | None:
         """Read a statement; None for an empty line."""

@@ -45,9 +45,9 @@ class UrRewriter(Rewriter):
     def _first_label(self) -> int:
         """Where a program that PolyScope has written begins to be its user's."""
         starts = [
-            one.start
-            for one in self.program.parsed.tree.walk()
-            if one.kind == "empty" and one.name == "label"
+            node.start
+            for node in self.program.parsed.tree.walk()
+            if node.kind == "empty" and node.name == "label"
         ]
         return min(starts, default=-1)
 
@@ -55,7 +55,7 @@ class UrRewriter(Rewriter):
     def _values(self) -> dict[str, ProgramNode]:
         """The last value that is assigned to each name."""
         found: dict[str, ProgramNode] = {}
-        for parsed in (*(one.parsed for one in self.program.others), self.program.parsed):
+        for parsed in (*(other.parsed for other in self.program.others), self.program.parsed):
             for node in parsed.tree.walk():
                 if node.kind == "assign" and node.parts[0].kind == "name":
                     found[node.parts[0].name] = node.parts[1]
@@ -63,7 +63,7 @@ class UrRewriter(Rewriter):
 
     def is_generated(self, node: ProgramNode, parents: tuple[ProgramNode, ...]) -> bool:
         """Functions of URCaps, and what PolyScope writes before the program."""
-        if any(one.kind == "routine" and one.name.startswith(("rq_", "$")) for one in (*parents, node)):
+        if any(outer.kind == "routine" and outer.name.startswith(("rq_", "$")) for outer in (*parents, node)):
             return True
         return node.start < self._first_label and node.kind != "routine"
 
@@ -100,8 +100,10 @@ class UrRewriter(Rewriter):
 
     def _only_waits(self, node: ProgramNode) -> bool:
         body = node.bodies[0]
-        reads = any(one.kind == "call" and _INPUT.match(one.name) for one in node.parts[0].walk())
-        return reads and all(one.kind == "call" and one.name in ("sync", "sleep") for one in body)
+        reads = any(part.kind == "call" and _INPUT.match(part.name) for part in node.parts[0].walk())
+        return reads and all(
+            statement.kind == "call" and statement.name in ("sync", "sleep") for statement in body
+        )
 
     def _motion(self, node: ProgramNode) -> Iterator[TextChange]:
         target = node.parts[0]
@@ -124,7 +126,7 @@ class UrRewriter(Rewriter):
         other = {"movej": "movel", "movel": "movej"}[node.name]
         kept = [self.written(node.parts[0])]
         kept += [
-            self.written(one) for one in node.parts[1:] if one.kind == "option" and one.name in ("r", "t")
+            self.written(part) for part in node.parts[1:] if part.kind == "option" and part.name in ("r", "t")
         ]
         edits = (
             Edit(node.start, node.start + len(node.name), other),
@@ -152,7 +154,9 @@ class UrRewriter(Rewriter):
         yield TextChange("invert-input", node, self.put(node, f"(not {self.written(node)})"))
         number = node.parts[0]
         if number.kind == "number":
-            alike = (one.parts[0] for one, _ in self._nodes() if one.kind == "call" and one.name == node.name)
+            alike = (
+                call.parts[0] for call, _ in self._nodes() if call.kind == "call" and call.name == node.name
+            )
             for other in self.next_number(number, alike):
                 yield TextChange("other-input", node, self.put(number, other))
 

@@ -58,7 +58,10 @@ class DrawnPictures:
         self._empty = Image.new("RGB", (_WIDTH, _HEIGHT), _GROUND)
         draw = ImageDraw.Draw(self._empty)
         for (name, _, up), view in zip(_VIEWS, self._views, strict=True):
-            for block in sorted(recording.recording.blocks, key=lambda one: one.centre[3 - view.right - up]):
+            for block in sorted(
+                recording.recording.blocks,
+                key=lambda recorded_block: recorded_block.centre[3 - view.right - up],
+            ):
                 _draw_block(draw, view, block.centre, block.size)
             bottom = view.centre[1] + _HEIGHT / 4
             font_of_size(14).draw(draw, (_EDGE, bottom - 8), name, _TEXT, "lb")
@@ -153,10 +156,12 @@ def _draw_thing(
     corners = {}
     for signs in product((-0.5, 0.5), repeat=3):
         offset = _rotated(turn, [part * edge for part, edge in zip(signs, size, strict=True)])
-        corners[signs] = view.pixel([one + other for one, other in zip(place, offset, strict=True)])
-    for one, other in combinations(corners, 2):
-        if sum(map(ne, one, other)) == 1:  # they differ along one edge
-            draw.line((corners[one], corners[other]), fill=colour, width=3)
+        corners[signs] = view.pixel(
+            [coordinate + shift for coordinate, shift in zip(place, offset, strict=True)]
+        )
+    for first, second in combinations(corners, 2):
+        if sum(map(ne, first, second)) == 1:  # they differ along one edge
+            draw.line((corners[first], corners[second]), fill=colour, width=3)
 
 
 def _rotated(turn: Sequence[float], vector: Sequence[float]) -> list[float]:
@@ -166,6 +171,6 @@ def _rotated(turn: Sequence[float], vector: Sequence[float]) -> list[float]:
     return [v + w * t + c for v, t, c in zip(vector, twice, _cross(axis, twice), strict=True)]
 
 
-def _cross(one: Sequence[float], other: Sequence[float]) -> tuple[float, float, float]:
-    (a, b, c), (x, y, z) = one, other
+def _cross(first: Sequence[float], second: Sequence[float]) -> tuple[float, float, float]:
+    (a, b, c), (x, y, z) = first, second
     return b * z - c * y, c * x - a * z, a * y - b * x

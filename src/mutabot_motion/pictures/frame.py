@@ -139,7 +139,7 @@ class Frames:
         marks = [(self._view.fault, "fault", _FAULT), (self._view.apart, "apart", _APART)]
         taken = 0.0
         for time, name, colour in sorted(
-            (one for one in marks if one[0] is not None), key=lambda one: one[0] or 0
+            (mark for mark in marks if mark[0] is not None), key=lambda mark: mark[0] or 0
         ):
             assert time is not None
             x = self._x(time)

@@ -38,9 +38,11 @@ class _Parameters:
         self, original: Any, node: Any, namespace: str, parameters: Any, *args: Any, **kwargs: Any
     ) -> Any:
         several = list(parameters)
-        for one in several:
-            if len(one) > 1:
-                self._note(node, f"{namespace}.{one[0]}" if namespace else one[0], one[1])
+        for declaration in several:
+            if len(declaration) > 1:
+                self._note(
+                    node, f"{namespace}.{declaration[0]}" if namespace else declaration[0], declaration[1]
+                )
         return original(node, namespace, several, *args, **kwargs)
 
     def get(self, original: Any, node: Any, name: str) -> Any:
@@ -54,7 +56,7 @@ class _Parameters:
 
     def get_by_prefix(self, original: Any, node: Any, prefix: str) -> Any:
         whole = f"{prefix}." if prefix else ""
-        return {name: self._read(node, whole + name, one) for name, one in original(node, prefix).items()}
+        return {name: self._read(node, whole + name, value) for name, value in original(node, prefix).items()}
 
     def _note(self, node: Any, name: str, value: Any) -> None:
         """Record the value that a declaration gives; a type is no value."""

@@ -153,7 +153,9 @@ class _Topics:
             handler = self._messages.find(Form.RECEIVE, name, node_name)
             if handler is None:
                 return callback(message, *more)
-            return _nodes.where(node, code).deliver(handler, message, lambda one: callback(one, *more))
+            return _nodes.where(node, code).deliver(
+                handler, message, lambda delivered: callback(delivered, *more)
+            )
 
         return as_called(callback, received)
 

@@ -37,7 +37,7 @@ class Ros2Types(Types):
         return getattr(whole, part) if whole is not None and part else whole
 
     def names_in(self, module: ModuleType, part: str) -> Iterator[str]:
-        return (one for one in vars(module) if one[0].isupper() and "_" not in one)
+        return (name for name in vars(module) if name[0].isupper() and "_" not in name)
 
     def fields_of(self, message: Any) -> Mapping[str, str]:
         fields: Mapping[str, str] = message.get_fields_and_field_types()

@@ -24,7 +24,7 @@ def intercept(subscription: Any, deliver: Callable[[Any, Callable[[Any], Any]], 
     callback = subscription._callback  # as the program gave it
 
     def received(message: Any, *more: Any) -> Any:
-        return deliver(message, lambda one: callback(one, *more))
+        return deliver(message, lambda delivered: callback(delivered, *more))
 
     subscription.callback = as_called(callback, received)
 

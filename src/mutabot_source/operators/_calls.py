@@ -11,9 +11,10 @@ from mutabot_source.operator import TextParts
 def call(node: ast.Call, keywords: Iterable[ast.keyword], arguments: Iterable[ast.expr] = ()) -> TextParts:
     """Return a call with these keywords, and its own positional arguments or these."""
     given: list[TextParts] = [
-        ("*", one.value) if isinstance(one, ast.Starred) else (one,) for one in arguments or node.args
+        ("*", expression.value) if isinstance(expression, ast.Starred) else (expression,)
+        for expression in arguments or node.args
     ]
-    given += [(f"{one.arg}=" if one.arg is not None else "**", one.value) for one in keywords]
+    given += [(f"{keyword.arg}=" if keyword.arg is not None else "**", keyword.value) for keyword in keywords]
     parts: list[str | ast.expr] = [node.func, "("]
     for number, argument in enumerate(given):
         parts += [", "] if number else []

@@ -47,9 +47,9 @@ class ConditionalReplacement(ConventionalOperator):
             yield Draft("rightOp", (right,))
         else:
             for index in range(len(values) - 1):
-                words = [own] * (len(values) - 1)
-                words[index] = other
-                yield Draft(f"{other}{index + 1}", _joined(values, words))
+                operators = [own] * (len(values) - 1)
+                operators[index] = other
+                yield Draft(f"{other}{index + 1}", _joined(values, operators))
             for index in range(len(values)):
                 rest = values[:index] + values[index + 1 :]
                 yield Draft(f"without{index + 1}", _joined(rest, [own] * (len(rest) - 1)))
@@ -57,9 +57,9 @@ class ConditionalReplacement(ConventionalOperator):
         yield Draft("trueOp", ("True",))
 
 
-def _joined(values: Sequence[ast.expr], words: Iterable[str]) -> TextParts:
+def _joined(values: Sequence[ast.expr], operators: Iterable[str]) -> TextParts:
     parts: list[str | ast.expr] = [values[0]]
-    for word, value in zip(words, values[1:], strict=True):
+    for word, value in zip(operators, values[1:], strict=True):
         parts += [f" {word} ", value]
     return tuple(parts)
 
@@ -120,7 +120,9 @@ class RelationalReplacement(ConventionalOperator):
                 if other is not kind:
                     number = str(index + 1) if len(signs) > 1 else ""
                     changed = [*signs[:index], other, *signs[index + 1 :]]
-                    yield Draft(f"{variant}{number}", _joined(values, [_SIGNS[one][1] for one in changed]))
+                    yield Draft(
+                        f"{variant}{number}", _joined(values, [_SIGNS[operator][1] for operator in changed])
+                    )
         yield Draft("falseOp", ("False",))
         yield Draft("trueOp", ("True",))
 

@@ -14,7 +14,7 @@ _PAIRS = (
     "left right", "front back", "front rear", "upper lower", "first second", "leader follower",
     "master slave", "red blue", "start end", "pan tilt", "roll pitch", "width height", "x y", "source target",
 )  # fmt: skip
-_OTHERS = {one: other for pair in reversed(_PAIRS) for one, other in (pair.split(), pair.split()[::-1])}
+_OTHERS = {first: second for pair in reversed(_PAIRS) for first, second in (pair.split(), pair.split()[::-1])}
 _PART = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+|[^A-Za-z\d]+")
 
 

@@ -53,24 +53,27 @@ class ExchangedArguments(ConventionalOperator):
     def drafts(self, node: SyntaxNode, around: Surroundings) -> Iterable[Draft]:
         if not isinstance(node, ast.Call) or last_name(node.func) in _WITHOUT_ORDER:
             return
-        for number, (one, other) in enumerate(pairwise(node.args), start=1):
-            if _may_be_alike(one, other):
+        for number, (left, right) in enumerate(pairwise(node.args), start=1):
+            if _may_be_alike(left, right):
                 given = [*node.args]
-                given[number - 1 : number + 1] = [other, one]
+                given[number - 1 : number + 1] = [right, left]
                 yield Draft(f"{number}", call(node, node.keywords, given))
-        named = [one for one in node.keywords if one.arg is not None]
+        named = [keyword for keyword in node.keywords if keyword.arg is not None]
         for first, second in pairwise(named):
             if _may_be_alike(first.value, second.value):
                 other_way = {id(first): second.value, id(second): first.value}
-                keywords = [ast.keyword(one.arg, other_way.get(id(one), one.value)) for one in node.keywords]
+                keywords = [
+                    ast.keyword(keyword.arg, other_way.get(id(keyword), keyword.value))
+                    for keyword in node.keywords
+                ]
                 yield Draft(f"{first.arg}", call(node, keywords))
 
 
-def _may_be_alike(one: ast.expr, other: ast.expr) -> bool:
+def _may_be_alike(left: ast.expr, right: ast.expr) -> bool:
     """Return whether two expressions may have different values of the same kind, as far as the text shows."""
-    if isinstance(one, _OF_NO_KIND) or isinstance(other, _OF_NO_KIND) or ast.dump(one) == ast.dump(other):
+    if isinstance(left, _OF_NO_KIND) or isinstance(right, _OF_NO_KIND) or ast.dump(left) == ast.dump(right):
         return False
-    return _kind(one) == _kind(other)
+    return _kind(left) == _kind(right)
 
 
 def _kind(node: ast.expr) -> str:

@@ -41,8 +41,12 @@ class LostArgument(ConventionalOperator):
     )
 
     def drafts(self, node: SyntaxNode, around: Surroundings) -> Iterable[Draft]:
-        if not isinstance(node, ast.Call) or any(isinstance(one, ast.GeneratorExp) for one in node.args):
+        if not isinstance(node, ast.Call) or any(
+            isinstance(argument, ast.GeneratorExp) for argument in node.args
+        ):
             return
         for lost in node.keywords:
             if lost.arg is not None:
-                yield Draft(lost.arg, call(node, [one for one in node.keywords if one is not lost]))
+                yield Draft(
+                    lost.arg, call(node, [keyword for keyword in node.keywords if keyword is not lost])
+                )

@@ -42,7 +42,9 @@ class LostCheck(ConventionalOperator):
     def drafts(self, node: SyntaxNode, around: Surroundings) -> Iterable[Draft]:
         if not isinstance(node, ast.expr) or not around.is_condition or is_named_constant(node):
             return
-        if isinstance(node, ast.NamedExpr) or any(isinstance(one, ast.NamedExpr) for one in ast.walk(node)):
+        if isinstance(node, ast.NamedExpr) or any(
+            isinstance(inner, ast.NamedExpr) for inner in ast.walk(node)
+        ):
             return
         if not around.is_loop:
             yield Draft("always", ("True",))

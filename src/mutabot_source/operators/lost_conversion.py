@@ -48,11 +48,13 @@ class LostConversion(ConventionalOperator):
     def drafts(self, node: SyntaxNode, around: Surroundings) -> Iterable[Draft]:
         if isinstance(node, ast.Attribute) and node.attr in _ATTRIBUTES and not around.is_callee:
             yield Draft("", (node.value,))
-        if not isinstance(node, ast.Call) or any(isinstance(one, ast.Starred) for one in node.args):
+        if not isinstance(node, ast.Call) or any(isinstance(argument, ast.Starred) for argument in node.args):
             return
         name = last_name(node.func)
         if name in ("min", "max") and len(node.args) == 2 and not node.keywords:
-            yield from (Draft(f"{number}", (one,)) for number, one in enumerate(node.args, start=1))
+            yield from (
+                Draft(f"{number}", (expression,)) for number, expression in enumerate(node.args, start=1)
+            )
         elif _CONVERTING.search(name) and node.args and not _is_idle_statement(around):
             yield Draft("", (node.args[0],))
         elif _CONVERTING.search(name) and isinstance(node.func, ast.Attribute) and around.is_value:

@@ -64,7 +64,7 @@ class LostHandler(ConventionalOperator):
         if not isinstance(node, ast.Expr) or not isinstance(node.value, ast.Call):
             return
         found, name = node.value, last_name(node.value.func)
-        given = [*found.args, *(one.value for one in found.keywords)]
+        given = [*found.args, *(keyword.value for keyword in found.keywords)]
         if not given or (_AMBIGUOUS.search(name) and not any(map(_is_handler, given))):
             return
         if _TAKING_OFF.search(name):

@@ -48,7 +48,7 @@ class LostReset(ConventionalOperator):
 
 def _resets(node: SyntaxNode) -> bool:
     if isinstance(node, ast.Assign):
-        return all(isinstance(one, ast.Attribute) for one in node.targets) and _is_nothing(node.value)
+        return all(isinstance(target, ast.Attribute) for target in node.targets) and _is_nothing(node.value)
     return (
         isinstance(node, ast.AnnAssign)
         and isinstance(node.target, ast.Attribute)
@@ -73,7 +73,7 @@ def _is_nothing(node: ast.expr) -> bool:
         case ast.Constant():
             return not node.value
         case ast.List() | ast.Tuple() | ast.Set():
-            return all(_is_nothing(one) for one in node.elts)
+            return all(_is_nothing(element) for element in node.elts)
         case ast.Dict():
             return not node.keys
         case ast.Call():

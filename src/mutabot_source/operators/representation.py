@@ -96,7 +96,11 @@ def _of_call(node: ast.Call) -> Iterable[Draft]:
         and not node.keywords
     ):
         yield Draft(_OTHER_WAY[name], (node.func.value, f".{_OTHER_WAY[name]}(", node.args[0], ")"))
-    if _CONVERTING.match(name) and node.args and not any(isinstance(one, ast.Starred) for one in node.args):
+    if (
+        _CONVERTING.match(name)
+        and node.args
+        and not any(isinstance(argument, ast.Starred) for argument in node.args)
+    ):
         yield Draft("unconverted", _row(node.args))
 
 
@@ -113,7 +117,7 @@ def _other_axes(node: ast.expr) -> Iterable[tuple[str, str]]:
 
 
 def _of_row(node: ast.List | ast.Tuple) -> Iterable[Draft]:
-    names = [re.sub(r"^.*?([wxyz])$", r"\1", last_name(one)) for one in node.elts]
+    names = [re.sub(r"^.*?([wxyz])$", r"\1", last_name(element)) for element in node.elts]
     if not isinstance(node.ctx, ast.Load) or "".join(names) not in ("wxyz", "xyzw"):
         return
     first, *rest = node.elts

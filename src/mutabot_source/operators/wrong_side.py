@@ -38,5 +38,5 @@ class WrongSide(ConventionalOperator):
 
 
 def _is_transform(node: ast.expr) -> bool:
-    names = " ".join(getattr(one, "attr", getattr(one, "id", "")) for one in ast.walk(node)).lower()
+    names = " ".join(getattr(inner, "attr", getattr(inner, "id", "")) for inner in ast.walk(node)).lower()
     return any(part in names for part in ("rotation", "pose", "transform", "quaternion", "frame", "rot_"))

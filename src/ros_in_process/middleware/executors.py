@@ -70,9 +70,9 @@ def wait_for_ready_callbacks(
             for guard in gathered.guards:
                 if guard.handle.number in ready:
                     guard._executor_triggered = True
-            for one, node in gathered.ready_waitables(of_nodes, wait_set):
+            for waitable, node in gathered.ready_waitables(of_nodes, wait_set):
                 has_yielded = True
-                yield self._make_handler(one, node, self._take_waitable), one, node
+                yield self._make_handler(waitable, node, self._take_waitable), waitable, node
         for node in of_nodes:
             for entity, take in _ready(self, node, ready):
                 has_yielded = True
@@ -90,7 +90,11 @@ def _begun_tasks(executor: Any, nodes: list[Any]) -> Iterator[tuple[Any, Any, An
     for task, entity, node in list(executor._tasks):
         if not task.executing() and not task.done() and (node is None or node in nodes):
             yield task, entity, node
-    executor._tasks = [one for one in executor._tasks if not one[0].done() and not one[0].cancelled()]
+    executor._tasks = [
+        executor_task
+        for executor_task in executor._tasks
+        if not executor_task[0].done() and not executor_task[0].cancelled()
+    ]
 
 
 def _ready(executor: Any, node: Any, numbers: set[int]) -> Iterator[tuple[Any, Any]]:
@@ -133,39 +137,41 @@ class _GatheredEntities:
         rclpy: Any = sys.modules[_MODULE]
         is_ours = type(executor).can_execute is rclpy.Executor.can_execute
         may = _may_be_executed if is_ours else executor.can_execute
-        subscriptions = [one.handle for node in nodes for one in node.subscriptions if may(one)]
-        timers = [one.handle for node in nodes for one in node.timers if may(one)]
-        clients = [one.handle for node in nodes for one in node.clients if may(one)]
-        services = [one.handle for node in nodes for one in node.services if may(one)]
-        self._of_nodes = [one for node in nodes for one in node.guards if may(one)]
-        self.waitables = [one for node in nodes for one in node.waitables if may(one)]
-        self.guards = [*self._of_nodes, *(one for one in (executor._guard, executor._sigint_gc) if one)]
+        subscriptions = [
+            subscription.handle for node in nodes for subscription in node.subscriptions if may(subscription)
+        ]
+        timers = [timer.handle for node in nodes for timer in node.timers if may(timer)]
+        clients = [client.handle for node in nodes for client in node.clients if may(client)]
+        services = [service.handle for node in nodes for service in node.services if may(service)]
+        self._of_nodes = [guard for node in nodes for guard in node.guards if may(guard)]
+        self.waitables = [candidate for node in nodes for candidate in node.waitables if may(candidate)]
+        self.guards = [*self._of_nodes, *(guard for guard in (executor._guard, executor._sigint_gc) if guard)]
         self._events: list[Any] = []
         self._others: list[Any] = []
         handler = sys.modules["rclpy.event_handler"].EventHandler
-        for one in self.waitables:
-            is_event = type(one) is handler and not one._EventHandler__event.is_destroyed
-            (self._events if is_event else self._others).append(one)
+        for waitable in self.waitables:
+            is_event = type(waitable) is handler and not waitable._EventHandler__event.is_destroyed
+            (self._events if is_event else self._others).append(waitable)
         self.is_plain = type(executor) is rclpy.SingleThreadedExecutor and all(
-            type(one).__module__.startswith("rclpy.") for one in self._others
+            type(other).__module__.startswith("rclpy.") for other in self._others
         )
-        guards = [one.handle for one in self.guards]
+        guards = [guard.handle for guard in self.guards]
         self._members = [
             [handle for handle in handles if not handle.is_destroyed]
             for handles in (subscriptions, guards, timers, clients, services)
         ]
-        self._members.append([one._EventHandler__event for one in self._events])
+        self._members.append([event._EventHandler__event for event in self._events])
         self._handles = [handle for of_kind in self._members for handle in of_kind]
         # what it stands for, if that is everything and in groups whose rule is known
         self._nodes, self._entities, self._destroyed = nodes, entities, Destroyable.destroyed
-        self._groups = [one.callback_group for one in entities]
+        self._groups = [entity.callback_group for entity in entities]
         self._own_guards = (executor._guard, executor._sigint_gc)
         is_whole = len(self._handles) + len(self._others) == len(entities) + len(self.guards) - len(
             self._of_nodes
         )
         groups: Any = sys.modules["rclpy.callback_groups"]
         known = (groups.MutuallyExclusiveCallbackGroup, groups.ReentrantCallbackGroup)
-        self._may_be_kept = is_ours and is_whole and all(type(one) in known for one in self._groups)
+        self._may_be_kept = is_ours and is_whole and all(type(group) in known for group in self._groups)
 
     @classmethod
     def by(cls, executor: Any, nodes: list[Any]) -> _GatheredEntities:
@@ -195,10 +201,10 @@ class _GatheredEntities:
             and self._entities == entities
             and self._own_guards == (executor._guard, executor._sigint_gc)
             and all(
-                not one._executor_event
-                and one.callback_group is group
+                not entity._executor_event
+                and entity.callback_group is group
                 and getattr(group, "_active_entity", None) is None
-                for one, group in zip(entities, self._groups, strict=True)
+                for entity, group in zip(entities, self._groups, strict=True)
             )
         )
 
@@ -219,24 +225,28 @@ class _GatheredEntities:
 
     def _add_others(self, wait_set: WaitSet, in_use: ExitStack) -> None:
         """Let waitables that are not event handlers add themselves."""
-        for one in self._others:
+        for other in self._others:
             try:
-                in_use.enter_context(one)
-                wait_set.make_room(one.get_num_entities())
+                in_use.enter_context(other)
+                wait_set.make_room(other.get_num_entities())
             except InvalidHandle:
                 pass
-        for one in self._others:
-            one.add_to_wait_set(wait_set)
+        for other in self._others:
+            other.add_to_wait_set(wait_set)
 
     def ready_waitables(self, nodes: list[Any], wait_set: WaitSet) -> Iterator[tuple[Any, Any]]:
         """Yield the waitables that are ready after the wait, and their nodes."""
         may_have = self._others or wait_set.has_ready("event")
-        if not may_have and not any(one._ready_to_take_data for one in self._events):
+        if not may_have and not any(event._ready_to_take_data for event in self._events):
             return
         for node in nodes:
-            for one in node.waitables:
-                if one in self.waitables and one.is_ready(wait_set) and one.callback_group.can_execute(one):
-                    yield one, node
+            for waitable in node.waitables:
+                if (
+                    waitable in self.waitables
+                    and waitable.is_ready(wait_set)
+                    and waitable.callback_group.can_execute(waitable)
+                ):
+                    yield waitable, node
 
 
 def _may_be_executed(entity: Any) -> bool:

@@ -97,14 +97,18 @@ class _ServiceEndpoint(Endpoint):
     def _tell(self, event: int, request: rmw_request_id_t, message: Any) -> None:
         if self._events is None or self._event_clock is None:
             return
-        told = self.kind.Event()
-        told.info.event_type = event
-        told.info.stamp.sec, told.info.stamp.nanosec = divmod(self._event_clock.now(), 10**9)
-        told.info.client_gid[:] = request.writer.gid
-        told.info.sequence_number = request.sequence_number
+        event_message = self.kind.Event()
+        event_message.info.event_type = event
+        event_message.info.stamp.sec, event_message.info.stamp.nanosec = divmod(
+            self._event_clock.now(), 10**9
+        )
+        event_message.info.client_gid[:] = request.writer.gid
+        event_message.info.sequence_number = request.sequence_number
         if self._state is _CONTENTS:
-            (told.request if event in {REQUEST_SENT, REQUEST_RECEIVED} else told.response).append(message)
-        self._events.publish(told)
+            (
+                event_message.request if event in {REQUEST_SENT, REQUEST_RECEIVED} else event_message.response
+            ).append(message)
+        self._events.publish(event_message)
 
 
 def _meet(client: Client, service: Service) -> None:

@@ -122,7 +122,9 @@ class WaitSet(Destroyable):
 
     def _look(self, end: int | None) -> None:
         """Record which members are ready, and whether the time is up."""
-        self._ready = {kind: [one.is_ready for one in members] for kind, members in self._members.items()}
+        self._ready = {
+            kind: [member.is_ready for member in members] for kind, members in self._members.items()
+        }
         self.is_over = end is not None and SCHEDULER.now >= end
 
     def _is_any_ready(self) -> bool:

@@ -180,8 +180,8 @@ def _multiprocessing() -> ModuleType:
     queue = _queue_class("Queue")
 
     def pipe(duplex: bool = True) -> tuple[Connection, Connection]:
-        one, other = queue(), queue()
-        return Connection(one, other), Connection(other, one)
+        first, second = queue(), queue()
+        return Connection(first, second), Connection(second, first)
 
     module = ModuleType("multiprocessing", real.__doc__)
     names = ("Event", "Barrier", "Condition", "Semaphore", "BoundedSemaphore")

@@ -54,7 +54,7 @@ def project(folder: Path, robot: str = ROBOT + METHODS) -> Path:
 
 
 def named(found: dict[tuple[str, int], Outcome], part: str) -> Outcome:
-    return next(one for (mutant, _), one in found.items() if part in mutant)
+    return next(value for (mutant, _), value in found.items() if part in mutant)
 
 
 def test_a_fault_that_is_seen_on_the_way_alone_is_told(tmp_path: Path) -> None:
@@ -79,11 +79,11 @@ def test_a_fork_is_compared_on_the_way_in_the_tests_after_its_own_too(tmp_path: 
     only = ("*position#1:result:negate", "*move_by#1:dx:reverse")
     forked = by_forks(folder, only=only)
     replayed = by_forks(folder, only=only, engine="replay", fresh=True)
-    for pair, one in forked.items():
-        assert one.engine == "fork"
-        assert one.compared is not None
-        assert (one.compared.calls, one.compared.moments) == (6, 6)
-        assert (one.compared, one.way) == (replayed[pair].compared, replayed[pair].way)
+    for pair, outcome in forked.items():
+        assert outcome.engine == "fork"
+        assert outcome.compared is not None
+        assert (outcome.compared.calls, outcome.compared.moments) == (6, 6)
+        assert (outcome.compared, outcome.way) == (replayed[pair].compared, replayed[pair].way)
 
 
 @pytest.mark.parametrize(
@@ -106,7 +106,7 @@ def test_a_probe_that_changes_something_or_is_slow_is_read_at_the_end_alone(
     told = [line for line in progress.lines if "not along the way" in line]
     assert len(told) == 1
     assert why in told[0]
-    assert {one.way for one in found} == {None}
+    assert {outcome.way for outcome in found} == {None}
 
 
 def test_one_fork_server_serves_jobs_with_and_without_readings_along_the_way(tmp_path: Path) -> None:
@@ -152,7 +152,11 @@ def test_the_cost_of_a_reading_decides_how_often() -> None:
         return TestEnd("t", "passed", commands=commands, cpu=cpu, reading=reading, not_along=why)
 
     def stride(*ends: TestEnd) -> int | None:
-        return probe_intervals_of({(round, "t"): one for round, one in enumerate(ends)}).get(0, {}).get("t")
+        return (
+            probe_intervals_of({(round, "t"): outcome for round, outcome in enumerate(ends)})
+            .get(0, {})
+            .get("t")
+        )
 
     assert stride(end(0.0001)) == 1
     assert stride(end(0.0005)) == 4

@@ -51,9 +51,9 @@ def found(
     ],
 )
 def test_a_call_of_the_name_counts(text: str, function: str) -> None:
-    (one,) = found(text)
-    assert one.doubt == ""
-    assert one.site.span.function == function
+    (call,) = found(text)
+    assert call.doubt == ""
+    assert call.site.span.function == function
 
 
 @pytest.mark.parametrize(
@@ -89,8 +89,8 @@ def test_what_the_text_says_to_be_something_else_is_left_out(text: str) -> None:
     ],
 )
 def test_what_may_be_something_else_is_in_doubt(text: str, doubt: str) -> None:
-    (one,) = found(text)
-    assert doubt in one.doubt
+    (call,) = found(text)
+    assert doubt in call.doubt
 
 
 def test_what_tests_reach_tells_what_the_same_text_is() -> None:
@@ -101,12 +101,12 @@ def test_what_tests_reach_tells_what_the_same_text_is() -> None:
 
 @pytest.mark.parametrize("argument", ["'lift/3'", "f'lift/{height}'", "text='lift/3'"])
 def test_a_command_is_told_by_the_text_that_stands_there(argument: str) -> None:
-    (one,) = found(f"def f(link, height):\n    link.send({argument})")
-    assert (one.pattern, one.doubt) == ("lift/{height:g}", "")
+    (call,) = found(f"def f(link, height):\n    link.send({argument})")
+    assert (call.pattern, call.doubt) == ("lift/{height:g}", "")
 
 
 def test_of_operations_with_one_name_the_class_or_the_arguments_decide() -> None:
     other = Operation("robot:Belt.move")
     known = KnownCalls({"move": [MOVE, other]}, (), {}, ())
     text = "from robot import Belt\ndef f():\n    belt = Belt()\n    belt.move(1)"
-    assert [one.operation for one in calls_in(text, "mission.py", known)] == [other.target]
+    assert [call.operation for call in calls_in(text, "mission.py", known)] == [other.target]

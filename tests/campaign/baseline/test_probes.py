@@ -111,7 +111,7 @@ def test_a_probe_that_only_the_mutant_cannot_read_is_another_world(tmp_path: Pat
 
 
 def outcome(found: dict[tuple[str, int], Outcome], part: str) -> Outcome:
-    return next(one for (mutant, _), one in found.items() if part in mutant)
+    return next(value for (mutant, _), value in found.items() if part in mutant)
 
 
 def test_a_probe_of_a_class_reads_the_object_of_the_present_test(tmp_path: Path) -> None:
@@ -162,8 +162,8 @@ def test_a_probe_of_a_class_reads_the_object_of_the_present_test(tmp_path: Path)
     with locked_executor(request, Quiet()) as executor:
         campaign, _ = begin(request, executor, Quiet())
     seen = {
-        test.rpartition("::")[2]: dict(one.probes)
-        for (_, test), one in campaign.baseline.observations.items()
+        test.rpartition("::")[2]: dict(observation.probes)
+        for (_, test), observation in campaign.baseline.observations.items()
     }
     assert seen == {
         "test_a_keeps_an_arm": {"robot:Arm.x": 0.25},

@@ -70,13 +70,13 @@ def expected(round: int) -> set[tuple[str, ...]]:
         return str(derive(1, round, node))
 
     session, module, group = of(""), of(FILE), of(f"{FILE}::TestInAClass")
-    one, two, three = (
+    first, second, third = (
         of(f"{FILE}::{name}") for name in ("TestInAClass::test_one", "TestInAClass::test_two", "test_three")
     )
     return {
-        ("one", session, module, group, one, one),
-        ("two", session, module, group, two),
-        ("three", session, three),
+        ("one", session, module, group, first, first),
+        ("two", session, module, group, second),
+        ("three", session, third),
     }
 
 

@@ -40,4 +40,10 @@ def test_calls_are_named_and_counted_whatever_the_text_is_written_in(tmp_path: P
     sites = [place.site for place in sources.places(seen).values()]
     names = [(site.text, site.occurrence) for site in sites]
     assert names == [("arm.move", 1), ("arm.move", 2), ("arm.grip", 1), ("arm.pos", 1), ("arm.pos", 2)]
-    assert [sources.is_among(one.span, unused_calls) for one in seen] == [True, True, True, False, False]
+    assert [sources.is_among(sighting.span, unused_calls) for sighting in seen] == [
+        True,
+        True,
+        True,
+        False,
+        False,
+    ]

@@ -104,8 +104,8 @@ def test_a_budget_that_is_enough_gives_what_a_campaign_without_one_gives(project
     assert results.budget.is_whole
     assert (results.budget.run, results.budget.cut_off) == (results.budget.planned, 0)
     fresh = campaign(project, fresh=True)
-    assert [[one.verdict for one in result.outcomes] for result in results.mutants] == [
-        [one.verdict for one in result.outcomes] for result in fresh.mutants
+    assert [[outcome.verdict for outcome in result.outcomes] for result in results.mutants] == [
+        [outcome.verdict for outcome in result.outcomes] for result in fresh.mutants
     ]
 
 
@@ -120,7 +120,7 @@ def test_what_is_under_way_when_the_time_is_up_gets_no_verdict(
     results = campaign(project, budget=3.5)
     assert results.done < results.planned
     assert results.state == "out of time"
-    assert not any(one.verdict in (Verdict.ERROR, Verdict.TIMEOUT) for one in (
+    assert not any(outcome.verdict in (Verdict.ERROR, Verdict.TIMEOUT) for outcome in (
         outcome for result in results.mutants for outcome in result.outcomes
     ))  # fmt: skip
     assert (results.budget.run, results.budget.cut_off) == (0, results.done)

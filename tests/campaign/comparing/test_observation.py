@@ -19,8 +19,8 @@ def seen(*events: TraceCall, truncated: bool = False, **probes: Any) -> Observat
 
 
 def test_equal_worlds_are_indistinguishable() -> None:
-    one = seen(TraceCall("a", {"x": 1.0}, {"y": 2.0}), x=1.0, colour="red")
-    assert compare(one, one, [BOX]) == Difference(True, 0.0, ())
+    world = seen(TraceCall("a", {"x": 1.0}, {"y": 2.0}), x=1.0, colour="red")
+    assert compare(world, world, [BOX]) == Difference(True, 0.0, ())
 
 
 def test_a_difference_within_the_tolerance_is_none() -> None:
@@ -123,5 +123,5 @@ def test_values_that_differ_late_are_printed_with_as_many_digits_as_it_takes() -
 def test_of_what_was_returned_the_first_part_that_differs_is_told(
     before: object, after: object, line: str
 ) -> None:
-    one, other = (Observation((), {}, returned=[("go", (value,))]) for value in (before, after))
-    assert compare(one, other).divergence == (line,)
+    first, second = (Observation((), {}, returned=[("go", (value,))]) for value in (before, after))
+    assert compare(first, second).divergence == (line,)

@@ -35,7 +35,7 @@ def seen(values: Any, path: str = "") -> Observation:
 
 
 @pytest.mark.parametrize(
-    ("one", "before", "after"),
+    ("probe_of_turn", "before", "after"),
     [
         (probe("", **ROTATION_VECTOR), [0.0, math.pi, 0.0], [0.0, -math.pi, 0.0]),
         (probe("", **DEGREES), [180.0, 0.0, 180.0], [0.0, 180.0, 0.0]),
@@ -43,14 +43,16 @@ def seen(values: Any, path: str = "") -> Observation:
         (probe("[1]", kind=Kind.ORIENTATION, axis="z", unit="deg"), [7.0, 180.0], [7.0, -180.0]),
     ],
 )
-def test_the_same_orientation_written_otherwise_is_no_difference(one: Probe, before: Any, after: Any) -> None:
-    found = compare(seen(before), seen(after), [one])
+def test_the_same_orientation_written_otherwise_is_no_difference(
+    probe_of_turn: Probe, before: Any, after: Any
+) -> None:
+    found = compare(seen(before), seen(after), [probe_of_turn])
     assert found.indistinguishable
     assert found.distance == pytest.approx(0.0, abs=1e-6)
 
 
 @pytest.mark.parametrize(
-    ("one", "before", "after", "line"),
+    ("probe_of_turn", "before", "after", "line"),
     [
         (
             probe("[3:6]", **ROTATION_VECTOR),
@@ -67,34 +69,34 @@ def test_the_same_orientation_written_otherwise_is_no_difference(one: Probe, bef
     ],
 )
 def test_the_distance_of_orientations_is_the_angle_between_them(
-    one: Probe, before: Any, after: Any, line: str
+    probe_of_turn: Probe, before: Any, after: Any, line: str
 ) -> None:
-    found = compare(seen(before), seen(after), [one])
+    found = compare(seen(before), seen(after), [probe_of_turn])
     assert found.divergence == (line,)
-    assert found.distance == pytest.approx(2.0 / 0.5 if one.result[0].unit == "deg" else 0.2 / 0.01)
+    assert found.distance == pytest.approx(2.0 / 0.5 if probe_of_turn.result[0].unit == "deg" else 0.2 / 0.01)
 
 
 def test_what_lies_beside_an_orientation_is_compared_as_ever() -> None:
-    one = probe("[3:6]", **ROTATION_VECTOR)
+    turning = probe("[3:6]", **ROTATION_VECTOR)
     before, after = [0.0, 0.0, 0.0, 0.0, math.pi, 0.0], [0.0, 0.5, 0.0, 0.0, -math.pi, 0.0]
-    found = compare(seen(before), seen(after), [one])
+    found = compare(seen(before), seen(after), [turning])
     assert found.distance == pytest.approx(500.0)
     assert found.divergence == ("Arm.tool[1]: 0.5 instead of 0 (off by 0.5)",)
 
 
 def test_the_parts_of_an_orientation_may_have_names() -> None:
-    one = probe(".turn", **QUATERNION)
+    turning = probe(".turn", **QUATERNION)
     before = {".turn.w": 1.0, ".turn.x": 0.0, ".turn.y": 0.0, ".turn.z": 0.0, ".x": 1.0}
     after = {**before, ".turn.w": -1.0}
-    assert compare(seen(before), seen(after), [one]).indistinguishable
-    assert not compare(seen(before), seen({**after, ".x": 2.0}), [one]).indistinguishable
+    assert compare(seen(before), seen(after), [turning]).indistinguishable
+    assert not compare(seen(before), seen({**after, ".x": 2.0}), [turning]).indistinguishable
 
 
 def test_each_object_of_a_probe_has_its_own_orientation() -> None:
-    one = probe("", **ROTATION_VECTOR)
+    turning = probe("", **ROTATION_VECTOR)
     before, after = seen([0.0, math.pi, 0.0], "#2"), seen([0.0, -math.pi, 0.0], "#2")
-    assert compare(before, after, [one]).indistinguishable
-    assert not compare(before, seen([0.0, 1.0, 0.0], "#2"), [one]).indistinguishable
+    assert compare(before, after, [turning]).indistinguishable
+    assert not compare(before, seen([0.0, 1.0, 0.0], "#2"), [turning]).indistinguishable
 
 
 @pytest.mark.parametrize("after", [[0.0, 0.0], ["a", 0.0, 0.0], [math.nan, 0.0, 0.0]])

@@ -34,7 +34,7 @@ MISSION = """
 def survivors(folder: Path, tests: str) -> dict[str, Outcome]:
     """Survivors of the first round by their ids, equal for both engines."""
     found = by_forks(write_project(folder, MISSION, tests, vocabulary=PROBED))
-    return {mutant: one for (mutant, _), one in found.items() if one.verdict is Verdict.SURVIVED}
+    return {mutant: outcome for (mutant, _), outcome in found.items() if outcome.verdict is Verdict.SURVIVED}
 
 
 def test_a_mutant_that_changes_what_the_program_returns_can_be_told_apart(tmp_path: Path) -> None:
@@ -53,7 +53,7 @@ def test_a_mutant_that_changes_what_the_program_returns_can_be_told_apart(tmp_pa
                 pass
     """
     found = survivors(tmp_path, tests)
-    negated = {mutant: one for mutant, one in found.items() if mutant.endswith(":negate")}
+    negated = {mutant: value for mutant, value in found.items() if mutant.endswith(":negate")}
     (read,), (checked,) = (
         [negated[key] for key in negated if f":{name}:" in key] for name in ("run", "check")
     )
@@ -86,8 +86,8 @@ def test_a_value_returned_to_a_fixture_is_compared(tmp_path: Path) -> None:
             mission.when(Arm())
     """
     found = survivors(tmp_path, tests)
-    negated = [one for mutant, one in found.items() if "run" in mutant and mutant.endswith(":negate")]
-    assert [one.indistinguishable for one in negated] == [False]
+    negated = [value for mutant, value in found.items() if "run" in mutant and mutant.endswith(":negate")]
+    assert [outcome.indistinguishable for outcome in negated] == [False]
 
 
 @pytest.mark.needs("source")
@@ -106,9 +106,9 @@ def test_notes_and_mutants_of_the_text_stand_in_the_same_functions(tmp_path: Pat
     """
     folder = write_project(tmp_path, MISSION, tests, vocabulary=PROBED)
     found = by_forks(folder, families=("robot", "conventional"))
-    returned = [one.divergence for (mutant, _), one in found.items() if "arm" not in mutant]
+    returned = [outcome.divergence for (mutant, _), outcome in found.items() if "arm" not in mutant]
     assert any("run returned" in line for lines in returned for line in lines)
-    negate = next(one for (mutant, _), one in found.items() if ":when:" in mutant and "negate" in mutant)
+    negate = next(value for (mutant, _), value in found.items() if ":when:" in mutant and "negate" in mutant)
     assert negate.indistinguishable
     assert negate.compared is not None
     assert (negate.compared.calls, negate.compared.returned) == (1, 0)

@@ -60,7 +60,7 @@ def test_probes_of_the_programs_own_classes_are_read_on_the_way(engine: str, tmp
         project, engine=engine, rounds=1, families=("robot", "conventional"),
         only=("*visit:simulation.move#1:call:*", "*angle:*AOR=add"),
     )  # fmt: skip
-    found = {one.mutant.rpartition(":")[2]: one for one in outcomes(run_campaign(asked, Quiet()))}
+    found = {outcome.mutant.rpartition(":")[2]: outcome for outcome in outcomes(run_campaign(asked, Quiet()))}
     skipped, repeated = found["skip"], found["repeat"]
     assert "on the way, after call 1" in (skipped.divergence or ("",))[0]
     # the other test makes no such object, and is none of this mutant's business

@@ -93,15 +93,17 @@ TOOL = """
 def test_a_fork_has_the_descriptors_of_its_parent_and_what_the_collector_sees(tmp_path: Path) -> None:
     found = run(write_project(tmp_path, MISSION, TESTS), engine="fork", only=("skip", "repeat"))
     assert len(found) == 4
-    assert {one.verdict for one in found.values()} == {Verdict.SURVIVED}
+    assert {outcome.verdict for outcome in found.values()} == {Verdict.SURVIVED}
 
 
-@pytest.mark.parametrize("test", [COLLECTS, *(pytest.param(one, marks=pytest.mark.whole) for one in OTHERS)])
+@pytest.mark.parametrize(
+    "test", [COLLECTS, *(pytest.param(other, marks=pytest.mark.whole) for other in OTHERS)]
+)
 def test_whoever_asks_the_collector_first_finds_nothing_frozen(tmp_path: Path, test: str) -> None:
     first, *tests = re.split(r"(?=    def test_)", ASKS)
-    (asks,) = (one for one in tests if one.startswith(f"    def {test}("))
+    (asks,) = (text for text in tests if text.startswith(f"    def {test}("))
     found = run(write_project(tmp_path, TOOL + MISSION, first + asks), engine="fork", only=("skip", "repeat"))
-    assert {one.verdict for one in found.values()} == {Verdict.SURVIVED}
+    assert {outcome.verdict for outcome in found.values()} == {Verdict.SURVIVED}
 
 
 COLLECTS_FROZEN = """
@@ -149,7 +151,7 @@ def test_a_finalizer_that_raises_at_the_end_kills_where_warnings_are_errors(tmp_
     folder = write_project(tmp_path, LEAVES + MISSION, THROWS_AWAY)
     (folder / "pytest.ini").write_text("[pytest]\nfilterwarnings = error\n")
     found = run(folder, engine="fork", only=("skip",))
-    assert [one.verdict for one in found.values()] == [Verdict.KILLED, Verdict.KILLED]
+    assert [outcome.verdict for outcome in found.values()] == [Verdict.KILLED, Verdict.KILLED]
 
 
 UNLIKE = """
@@ -183,7 +185,7 @@ def test_where_an_identity_fails_in_a_fork_replay_judges(tmp_path: Path) -> None
     if os.geteuid():
         pytest.skip("only root's forks have a parent of another namespace")
     found = run(write_project(tmp_path, FUNCTIONS, UNLIKE), engine="auto", only=("reverse",))
-    assert {one.mutant.split(":")[1]: (one.verdict, one.engine) for one in found.values()} == {
+    assert {result.mutant.split(":")[1]: (result.verdict, result.engine) for result in found.values()} == {
         "forgets": (Verdict.SURVIVED, "replay"),
         "moves": (Verdict.SURVIVED, "replay"),
     }

@@ -62,7 +62,11 @@ SUITE = """
 def test_tests_that_a_mutant_makes_judge_it(tmp_path: Path, engine: str) -> None:
     write_project(tmp_path, MISSION, SUITE)
     ends = run(tmp_path, engine=engine)
-    found = {name.partition("#")[2]: (one.verdict, one.test) for name, one in ends.items() if "move" in name}
+    found = {
+        name.partition("#")[2]: (outcome.verdict, outcome.test)
+        for name, outcome in ends.items()
+        if "move" in name
+    }
     assert found == {
         "1:call:skip": (Verdict.KILLED, "tests/test_mission.py::test_place[0.0]"),
         "1:call:repeat": (Verdict.KILLED, "tests/test_mission.py::test_place[1.0]"),

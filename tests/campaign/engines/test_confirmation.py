@@ -67,17 +67,17 @@ def left_out(script: Script) -> set[str]:
 
 
 def ends(outcomes: list[Outcome]) -> set[tuple[Verdict, str | None, bool | None]]:
-    return {(one.verdict, one.test, one.confirmed) for one in outcomes}
+    return {(outcome.verdict, outcome.test, outcome.confirmed) for outcome in outcomes}
 
 
 @ENGINES
 def test_of_the_survivors_a_sample_is_confirmed(tmp_path: Path, script: Script, engine: str) -> None:
     outcomes, lines = campaign(tmp_path, engine=engine)
-    assert {one.verdict for one in outcomes} == {Verdict.SURVIVED}
-    confirmed = [one for one in outcomes if one.confirmed]
+    assert {outcome.verdict for outcome in outcomes} == {Verdict.SURVIVED}
+    confirmed = [outcome for outcome in outcomes if outcome.confirmed]
     assert 0 < len(confirmed) < MUTANTS / 2
-    assert sum(one.confirmed is False for one in outcomes) == MUTANTS - len(confirmed)
-    assert {one.tests for one in confirmed} == {OTHERS + 4}
+    assert sum(outcome.confirmed is False for outcome in outcomes) == MUTANTS - len(confirmed)
+    assert {outcome.tests for outcome in confirmed} == {OTHERS + 4}
     # what comes before the first hit is not left out: a fork has it from its parent
     assert OTHER_TEST in left_out(script)
     assert not {GOES, AGAIN, "tests/test_mission.py::test_before"} & left_out(script)
@@ -91,7 +91,7 @@ def test_the_sample_depends_on_the_seed(tmp_path: Path, script: Script) -> None:
     drawn = []
     for seed in (1, 1, 2):
         outcomes, _ = campaign(tmp_path, seed=seed, fresh=True, journal=f"{len(drawn)}.sqlite")
-        drawn.append({one.mutant for one in outcomes if one.confirmed})
+        drawn.append({outcome.mutant for outcome in outcomes if outcome.confirmed})
     assert drawn[0] == drawn[1] != drawn[2]
 
 
@@ -113,7 +113,7 @@ def test_an_end_that_comes_from_leaving_tests_out_does_not_count(
 ) -> None:
     script.mutated = lambda run: end if run.test == AGAIN and run.is_short else {}
     outcomes, _ = campaign(tmp_path, engine=engine)
-    assert {(one.verdict, one.confirmed, one.tests) for one in outcomes} == {
+    assert {(outcome.verdict, outcome.confirmed, outcome.tests) for outcome in outcomes} == {
         (Verdict.SURVIVED, None, OTHERS + 4)
     }
 
@@ -137,16 +137,16 @@ def test_a_kill_after_that_is_told_as_the_whole_suite_ends(tmp_path: Path, scrip
 def test_of_what_is_refused_at_first_a_sample_is_confirmed_too(tmp_path: Path, script: Script) -> None:
     script.mutated = lambda run: REFUSED if run.test == GOES else {}
     outcomes, _ = campaign(tmp_path)
-    assert {one.verdict for one in outcomes} == {Verdict.REFUSED}
-    assert {one.confirmed for one in outcomes} == {True, False}
+    assert {outcome.verdict for outcome in outcomes} == {Verdict.REFUSED}
+    assert {outcome.confirmed for outcome in outcomes} == {True, False}
 
 
 def test_an_error_while_it_is_confirmed_says_nothing_of_the_others(tmp_path: Path, script: Script) -> None:
     failed = {**CHECKED, "failure": "it went NaN"}
     script.mutated = lambda run: {} if run.is_short or run.test != OTHER_TEST else failed
     outcomes, _ = campaign(tmp_path)
-    assert {one.verdict for one in outcomes if one.confirmed} == {Verdict.ERROR}
-    assert sum(one.verdict is Verdict.SURVIVED for one in outcomes) > MUTANTS / 2
+    assert {outcome.verdict for outcome in outcomes if outcome.confirmed} == {Verdict.ERROR}
+    assert sum(outcome.verdict is Verdict.SURVIVED for outcome in outcomes) > MUTANTS / 2
 
 
 def test_a_campaign_that_goes_on_keeps_to_what_was_decided(tmp_path: Path, script: Script) -> None:
@@ -162,14 +162,14 @@ def test_a_campaign_that_goes_on_keeps_to_what_was_decided(tmp_path: Path, scrip
     script.tasks.clear()
     outcomes, _ = campaign(tmp_path)
     assert left_out(script)
-    assert {one.confirmed for one in outcomes} <= {True, False}
+    assert {outcome.confirmed for outcome in outcomes} <= {True, False}
     assert len(outcomes) == MUTANTS
 
 
 def test_another_run_confirms_more(tmp_path: Path, script: Script) -> None:
     first, _ = campaign(tmp_path)
     second, _ = campaign(tmp_path)
-    confirmed = [{one.mutant for one in some if one.confirmed} for some in (first, second)]
+    confirmed = [{outcome.mutant for outcome in some if outcome.confirmed} for some in (first, second)]
     assert confirmed[0] < confirmed[1]
 
 
@@ -177,19 +177,21 @@ def test_nothing_is_left_out_of_a_small_suite(tmp_path: Path, script: Script) ->
     script.original = lambda run: {"wall": 0.01 if "goes" in run.test else 0.2}
     outcomes, _ = campaign(tmp_path)
     assert not left_out(script)
-    assert {one.confirmed for one in outcomes} == {None}
+    assert {outcome.confirmed for outcome in outcomes} == {None}
 
 
 def test_a_search_for_thresholds_goes_by_the_whole_suite(tmp_path: Path, script: Script) -> None:
     script.mutated = lambda run: CHECKED if run.test == OTHER_TEST else {}
     outcomes, _ = campaign(tmp_path, only=("skip", "offset"), families=("robot", "graded"))
-    graded = {one.mutant for one in outcomes if "offset" in one.mutant}
+    graded = {outcome.mutant for outcome in outcomes if "offset" in outcome.mutant}
     assert graded
     assert left_out(script)  # of the others
     assert not graded & {mutant for task in script.tasks for mutant in task.job.reaching}
-    assert ends([one for one in outcomes if one.mutant in graded]) == {(Verdict.KILLED, OTHER_TEST, None)}
+    assert ends([outcome for outcome in outcomes if outcome.mutant in graded]) == {
+        (Verdict.KILLED, OTHER_TEST, None)
+    }
 
 
 def test_limited_time_confirms_as_well(tmp_path: Path, script: Script) -> None:
     outcomes, _ = campaign(tmp_path, budget=100_000.0)
-    assert {one.confirmed for one in outcomes} == {True, False}
+    assert {outcome.confirmed for outcome in outcomes} == {True, False}

@@ -114,7 +114,7 @@ def engines_of(folder: Path, script: Script, killed_in: dict[str, str]) -> tuple
     write_project(folder, FUNCTIONS, IN_ORDER)
     progress = Quiet()
     path = run_campaign(request_for(folder, engine="auto", only=("*:reverse",)), progress)
-    found = {one.mutant.split(":")[1]: one.engine for one in outcomes(path)}
+    found = {outcome.mutant.split(":")[1]: outcome.engine for outcome in outcomes(path)}
     return found, [line for line in progress.lines if "in a fork" in line]
 
 
@@ -169,7 +169,9 @@ def baseline_of(reached: dict[int, list[str]], early: set[int]) -> tuple[Baselin
     }
     baseline = Baseline(tests=[SUITE], ends=ends)
     mutants = {line: mutant_at(line) for line in reached}
-    planned = [PlannedMutant(one, active=Activation.of_call(Place.of(one))) for one in mutants.values()]
+    planned = [
+        PlannedMutant(mutant, active=Activation.of_call(Place.of(mutant))) for mutant in mutants.values()
+    ]
     baseline.add_planned({CALLS: Planned(planned)})
     baseline.early = {Place.of(mutants[line]) for line in early}
     for line, tests in reached.items():
@@ -179,7 +181,7 @@ def baseline_of(reached: dict[int, list[str]], early: set[int]) -> tuple[Baselin
 
 def acting(baseline: Baseline, mutants: list[Mutant], *, forked: bool) -> list[tuple[str, int, str]]:
     found = controls_of(baseline, mutants, forked=forked)
-    return sorted((one.name, one.place.site.span.line, one.subject) for one in found)
+    return sorted((control.name, control.place.site.span.line, control.subject) for control in found)
 
 
 def test_without_imports_controls_act_where_the_quickest_test_is() -> None:
@@ -201,8 +203,8 @@ def test_beside_an_identity_of_the_imports_the_other_one_is_forked_as_late_as_po
 
 def test_a_kill_by_the_first_test_awaits_controls_if_the_mutant_was_forked_before_any_test() -> None:
     baseline, (early, late) = baseline_of({1: [], 2: ["a::one"]}, {1})
-    controls = {one.mutant.id: one for one in controls_of(baseline, [early, late], forked=True)}
+    controls = {control.mutant.id: control for control in controls_of(baseline, [early, late], forked=True)}
     trust = ForkTrust(cast("Campaign", SimpleNamespace(baseline=baseline, progress=Quiet())), controls)
-    kills = {one.id: Outcome(one.id, 0, Verdict.KILLED, test="a::one") for one in (early, late)}
+    kills = {mutant.id: Outcome(mutant.id, 0, Verdict.KILLED, test="a::one") for mutant in (early, late)}
     assert trust.awaits(early, kills[early.id])
     assert not trust.awaits(late, kills[late.id])

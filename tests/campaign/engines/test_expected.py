@@ -103,7 +103,7 @@ def by_function(found: dict[tuple[str, int], Outcome]) -> dict[str, dict[str, Ou
 def test_all_that_makes_the_suite_fail_kills_and_nothing_else(tmp_path: Path) -> None:
     found = by_function(by_forks(write_project(tmp_path, MISSION, TESTS)))
     ends = {
-        name: {operator: (one.verdict, one.by) for operator, one in row.items()}
+        name: {operator: (value.verdict, value.by) for operator, value in row.items()}
         for name, row in found.items()
     }
     assert ends == EXPECTED
@@ -137,7 +137,7 @@ def test_a_test_that_may_fail_is_not_flaky_if_it_passes_now_and_then(
     progress = Quiet()
     path = run_campaign(request_for(folder, engine=engine), progress)
     assert not [line for line in progress.lines if "flaky" in line]
-    found = [one for one in outcomes(path) if one.verdict is not Verdict.NOT_COVERED]
+    found = [outcome for outcome in outcomes(path) if outcome.verdict is not Verdict.NOT_COVERED]
     assert {outcome.verdict for outcome in found} == {Verdict.SURVIVED}
     assert {outcome.indistinguishable for outcome in found} == {None}  # nobody knows
 
@@ -161,6 +161,6 @@ DIVERGES = """
 
 def test_a_test_in_which_the_simulator_is_to_fail_judges_nothing(tmp_path: Path) -> None:
     found = by_forks(write_project(tmp_path, MISSION, DIVERGES))
-    assert {(one.verdict, one.test) for one in found.values() if one.test is not None} == {
+    assert {(outcome.verdict, outcome.test) for outcome in found.values() if outcome.test is not None} == {
         (Verdict.KILLED, "tests/test_mission.py::test_moves")
     }

@@ -204,7 +204,9 @@ WHOLE = pytest.mark.whole
 )
 def test_both_engines_agree(tmp_path: Path, suite: str) -> None:
     write_project(tmp_path, MISSION, SUITES[suite])
-    found = [one for one in both_engines(tmp_path).values() if one.verdict is not Verdict.NOT_COVERED]
+    found = [
+        outcome for outcome in both_engines(tmp_path).values() if outcome.verdict is not Verdict.NOT_COVERED
+    ]
     assert {outcome.engine for outcome in found} == {"fork"}
     assert {outcome.verdict for outcome in found} & {Verdict.KILLED, Verdict.SURVIVED}
 
@@ -265,7 +267,9 @@ def test_where_forking_is_unsafe_the_test_falls_back_to_replay(
     write_project(tmp_path, "\n".join(mission), "\n".join(tests))
     progress = Quiet()
     request = request_for(tmp_path, engine="auto", only=("*:reverse",))
-    engines = {one.mutant.split(":")[1]: one.engine for one in outcomes(run_campaign(request, progress))}
+    engines = {
+        outcome.mutant.split(":")[1]: outcome.engine for outcome in outcomes(run_campaign(request, progress))
+    }
     assert engines == {"safe": "fork", **{f"unsafe_{number}": "replay" for number in range(len(reasons))}}
     told = dict(enumerate(reasons))
     for number, reason in told.items():
@@ -315,9 +319,9 @@ def test_a_fork_parent_that_dies_leaves_its_mutants_to_replay(tmp_path: Path, sc
     path = run_campaign(request_for(tmp_path, engine="auto"), progress)
     found = {outcome.mutant.split(":")[1]: outcome for outcome in outcomes(path)}
     assert any(
-        "fork parent of round 1 died: the process ended with exit code 3" in one for one in progress.lines
+        "fork parent of round 1 died: the process ended with exit code 3" in line for line in progress.lines
     )
-    assert {name: one.engine for name, one in found.items()} == {
+    assert {name: outcome.engine for name, outcome in found.items()} == {
         "back_off": "fork", "approach": "replay", "look": "replay",
     }  # fmt: skip
     assert Verdict.ERROR not in {outcome.verdict for outcome in found.values()}
@@ -410,7 +414,9 @@ def test_the_test_that_a_fork_begins_is_not_taken_for_its_parent_s(
         """,
     )
     found = outcomes(run_campaign(request_for(tmp_path, engine="fork", only=("reverse",)), Quiet()))
-    assert {(one.verdict, one.engine, one.tests) for one in found} == {(Verdict.SURVIVED, "fork", 2)}
+    assert {(outcome.verdict, outcome.engine, outcome.tests) for outcome in found} == {
+        (Verdict.SURVIVED, "fork", 2)
+    }
     assert told == ["test_first", "test_second"]
 
 
@@ -434,4 +440,6 @@ def test_processes_of_a_campaign_remember_together(tmp_path: Path) -> None:
         """,
     )
     found = outcomes(run_campaign(request_for(tmp_path, engine="fork", only=("reverse",)), Quiet()))
-    assert {(one.verdict, one.by, one.engine) for one in found} == {(Verdict.KILLED, "check", "fork")}
+    assert {(outcome.verdict, outcome.by, outcome.engine) for outcome in found} == {
+        (Verdict.KILLED, "check", "fork")
+    }

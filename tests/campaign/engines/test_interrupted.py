@@ -76,7 +76,7 @@ def interrupted(folder: Path) -> tuple[Verdicts, list[str]]:
         run_campaign(request, progress)
     with JournalReader.open(request.journal_path) as journal:
         assert journal.finished == "interrupted"
-        found = {one.mutant: one.verdict for one in journal.outcomes()}
+        found = {outcome.mutant: outcome.verdict for outcome in journal.outcomes()}
     return found, [line for line in progress.lines if line.startswith("#")]
 
 
@@ -138,11 +138,11 @@ def test_a_real_campaign_goes_on_where_it_was_interrupted(
         patch.setattr(_ForkRound, "take", taken)
         patch.setenv("WAITS", "yes")
         found, counted = interrupted(tmp_path)
-    assert found.keys() >= {one for one in ended if not is_control(one)}
+    assert found.keys() >= {mutant for mutant in ended if not is_control(mutant)}
     assert {*found.values()} == {Verdict.KILLED, Verdict.SURVIVED}
     assert len(counted) == len(found)
     request = request_for(tmp_path, engine="fork", repeats=False)
     with JournalReader.open(run_campaign(request, Quiet())) as journal:
         assert {mutant for mutant, _ in journal.reused()} == found.keys()
-        assert {one.mutant: one.verdict for one in journal.outcomes()}.items() >= found.items()
+        assert {outcome.mutant: outcome.verdict for outcome in journal.outcomes()}.items() >= found.items()
         assert len(journal.outcomes()) == len(journal.mutants()) > len(found)

@@ -154,17 +154,17 @@ def test_both_engines_agree_on_groups_doctests_subtests_and_limits_of_the_suite(
     some = ("*gathers*:reverse", "*:step:*:reverse", "*:stalls:*:reverse")
     alone = run(folder, engine="replay", fresh=True, only=some)
     assert len(alone) == len(some)
-    assert {key: facts(found[key]) for key in alone} == {key: facts(one) for key, one in alone.items()}
+    assert {key: facts(found[key]) for key in alone} == {key: facts(value) for key, value in alone.items()}
     table = by_function(found)
     ends = {
-        name: {operator: (one.verdict, one.by) for operator, one in row.items()}
+        name: {operator: (outcome.verdict, outcome.by) for operator, outcome in row.items()}
         for name, row in table.items()
     }
     assert ends == EXPECTED
-    engines = {name: {one.engine for one in row.values()} for name, row in table.items()}
+    engines = {name: {outcome.engine for outcome in row.values()} for name, row in table.items()}
     by_replay = {name for name, used in engines.items() if used == {"replay"}}
     # what a limit of wall clock ended on a busy machine was run once more, by replay
-    again = {name for name, row in table.items() if any(one.beside for one in row.values())}
+    again = {name for name, row in table.items() if any(outcome.beside for outcome in row.values())}
     assert again <= {"stalls", "stalls_too"}
     assert by_replay - again == {"stalls_too"} - again  # a thread cannot be forked
     assert (table["step"]["reverse"].message or "").startswith("arm.x: expected 0.125, got -0.125")
@@ -202,7 +202,7 @@ def test_a_fork_parent_that_waits_for_its_forks_is_not_overdue(tmp_path: Path) -
     folder = write_project(tmp_path, SLOW_FORKS, tests, vocabulary=MOVES)
     progress = Quiet()
     found = outcomes(run_campaign(request_for(folder, jobs=1, engine="fork"), progress))
-    assert {(one.verdict, one.by) for one in found} == {CHECK}
+    assert {(outcome.verdict, outcome.by) for outcome in found} == {CHECK}
     assert not [line for line in progress.lines if "other tests" in line or "flaky" in line]
 
 
@@ -211,7 +211,7 @@ def test_a_watchdog_that_only_prints_does_not_keep_a_fork_parent_from_forking(tm
     tests = LIMITED_TESTS.replace("MARK", "")
     folder = write_project(tmp_path, SLOW_FORKS, tests, vocabulary=MOVES, configuration=configuration)
     found = run(folder, engine="fork", only=("*:skip",))
-    assert {(one.verdict, one.by) for one in found.values()} == {CHECK}
+    assert {(outcome.verdict, outcome.by) for outcome in found.values()} == {CHECK}
 
 
 TEAR_DOWNS = """

@@ -75,4 +75,4 @@ TESTS = """
 def test_a_poll_loop_that_ends_is_no_time_out(tmp_path: Path, engine: str) -> None:
     project = write_project(tmp_path, POLLS, TESTS)
     found = outcomes(run_campaign(request_for(project, engine=engine, rounds=1, only=("*:skip",)), Quiet()))
-    assert {one.verdict for one in found} == {Verdict.SURVIVED}
+    assert {outcome.verdict for outcome in found} == {Verdict.SURVIVED}

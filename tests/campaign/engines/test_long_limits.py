@@ -32,7 +32,7 @@ def test_limits_of_weeks_are_waited_for(tmp_path: Path) -> None:
     limits = f"    timeout_seconds = {options.SECONDS}\n"
     folder = write_project(tmp_path, MISSION, TESTS, configuration=CONFIGURATION + limits)
     part = run(folder, engine="fork", only=("*:skip",))
-    assert {one.verdict for one in part.values()} == {Verdict.KILLED}
+    assert {outcome.verdict for outcome in part.values()} == {Verdict.KILLED}
     whole = run(folder, engine="fork")  # with the baseline that was kept
     assert len(whole) > len(part)
-    assert {one.verdict for one in whole.values()} == {Verdict.KILLED}
+    assert {outcome.verdict for outcome in whole.values()} == {Verdict.KILLED}

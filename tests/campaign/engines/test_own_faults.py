@@ -39,16 +39,16 @@ def test_a_mutant_that_cannot_be_judged_is_an_error(
 ) -> None:
     judged = verdict.judge
 
-    def broken(campaign: Any, one: Any) -> Any:
-        if one.mutant.id == CHOSEN:
+    def broken(campaign: Any, judgement: Any) -> Any:
+        if judgement.mutant.id == CHOSEN:
             raise RuntimeError("broken")
-        return judged(campaign, one)
+        return judged(campaign, judgement)
 
     monkeypatch.setattr(verdict, "judge", broken)
     found = run(project, engine=engine)
     assert found[CHOSEN].verdict is Verdict.ERROR
     assert "mutabot could not judge what it saw of it: RuntimeError: broken" in (found[CHOSEN].message or "")
-    others = {one.verdict for mutant, one in found.items() if mutant != CHOSEN}
+    others = {outcome.verdict for mutant, outcome in found.items() if mutant != CHOSEN}
     assert others == {Verdict.KILLED, Verdict.SURVIVED}
 
 
@@ -64,7 +64,7 @@ def test_a_report_of_a_worker_that_cannot_be_used_is_an_error(
 
     monkeypatch.setattr(replay, "run_of", broken)
     found = run(project, engine="replay")
-    assert [mutant for mutant, one in found.items() if one.verdict is Verdict.ERROR] == [CHOSEN]
+    assert [mutant for mutant, outcome in found.items() if outcome.verdict is Verdict.ERROR] == [CHOSEN]
 
 
 def test_a_report_of_a_fork_that_cannot_be_used_is_an_error(
@@ -79,7 +79,7 @@ def test_a_report_of_a_fork_that_cannot_be_used_is_an_error(
 
     monkeypatch.setattr(forks._ForkRound, "_fork_ended", broken)
     found = run(project, engine="fork")
-    assert [mutant for mutant, one in found.items() if one.verdict is Verdict.ERROR] == [CHOSEN]
+    assert [mutant for mutant, outcome in found.items() if outcome.verdict is Verdict.ERROR] == [CHOSEN]
 
 
 def test_a_test_of_the_fork_parent_that_cannot_be_used_is_left_to_replay(
@@ -90,12 +90,12 @@ def test_a_test_of_the_fork_parent_that_cannot_be_used_is_left_to_replay(
 
     monkeypatch.setattr(forks._ForkRound, "_test_ended", broken)
     found = run(project, engine="auto")
-    assert {one.engine for one in found.values()} == {"replay"}
-    assert {one.verdict for one in found.values()} == {Verdict.KILLED, Verdict.SURVIVED}
+    assert {outcome.engine for outcome in found.values()} == {"replay"}
+    assert {outcome.verdict for outcome in found.values()} == {Verdict.KILLED, Verdict.SURVIVED}
 
 
 def test_an_error_of_the_disk_is_none_of_the_mutant(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def full(campaign: Any, one: Any) -> Any:
+    def full(campaign: Any, judgement: Any) -> Any:
         raise JournalError("the disk is full")
 
     monkeypatch.setattr(verdict, "judge", full)

@@ -50,7 +50,7 @@ def campaign(folder: Path, **changes: Any) -> tuple[Results, dict[str, Outcome],
     path = run_campaign(request_for(folder, **changes), progress)
     with Journal.open(path) as journal:
         found = read_results(journal)
-    return found, {one.mutant: one for one in outcomes(path)}, progress
+    return found, {outcome.mutant: outcome for outcome in outcomes(path)}, progress
 
 
 @ENGINES
@@ -60,7 +60,7 @@ def test_a_kill_in_doubt_that_does_not_come_out_again_is_unstable(
     script.mutated = lambda run: CHECKED if run.mutant.id == FALSE and not run.before else {}
     write_project(tmp_path, MISSION, TESTS)
     results, found, progress = campaign(tmp_path, engine=engine, repeats=True)
-    assert {one.verdict for mutant, one in found.items() if mutant != FALSE} == {Verdict.SURVIVED}
+    assert {outcome.verdict for mutant, outcome in found.items() if mutant != FALSE} == {Verdict.SURVIVED}
     assert found[FALSE].verdict is Verdict.UNSTABLE
     message = found[FALSE].message or ""
     assert message.startswith(f"killed by check in {FLAKY}: assert ")
@@ -156,7 +156,7 @@ def test_more_runs_of_the_baseline_find_a_test_that_fails_at_random(tmp_path: Pa
     more = TESTS[TESTS.index("    def") :].replace("test_flaky", "test_moves")
     write_project(tmp_path, MISSION, TESTS + more, configuration=CONFIGURATION + "    unstable_limit = 0.5\n")
     _, _, progress = campaign(tmp_path, only=("*:reverse",), baseline=3)
-    assert any(f"excluded in round 1: {FLAKY}" in one for one in progress.lines)
+    assert any(f"excluded in round 1: {FLAKY}" in line for line in progress.lines)
 
 
 # What is in doubt

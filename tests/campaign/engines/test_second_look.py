@@ -143,9 +143,9 @@ def test_the_command_line_verifies_and_replays(
     assert "Round 1: not as in the journal" in out
     assert "it went wrong" in out
     assert main(["-C", str(tmp_path), "replay", "1", "--json"]) == 4
-    (one,) = json.loads(capsys.readouterr().out)["rounds"]
-    assert (one["round"], one["agrees"]) == (1, False)
-    assert (one["journal"]["verdict"], one["replay"]["verdict"]) == ("survived", "killed")
+    (row,) = json.loads(capsys.readouterr().out)["rounds"]
+    assert (row["round"], row["agrees"]) == (1, False)
+    assert (row["journal"]["verdict"], row["replay"]["verdict"]) == ("survived", "killed")
     script.mutated = lambda run: {}
     assert main(["-C", str(tmp_path), "replay", "1"]) == 0
     assert "Round 1: as in the journal" in capsys.readouterr().out

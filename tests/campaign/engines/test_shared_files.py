@@ -31,4 +31,4 @@ TESTS = """
 def test_runs_whose_files_are_not_private_never_meet(tmp_path: Path) -> None:
     folder = write_project(tmp_path, MISSION, TESTS, configuration=f"{CONFIGURATION}private_files = false\n")
     found = run(folder, jobs=4)
-    assert {one.verdict for one in found.values()} == {Verdict.SURVIVED}
+    assert {outcome.verdict for outcome in found.values()} == {Verdict.SURVIVED}

@@ -181,15 +181,15 @@ def test_who_had_too_little_time_is_not_judged() -> None:
 
 @pytest.mark.whole
 def test_time_in_the_queue_is_not_used() -> None:
-    with loops(10) as (one, *_):
-        used = TimeUsed.from_now([one])
-        while (used.remaining(1e9, 1.0, [one])[1] or 0.0) > 0:  # until it has run for that long
+    with loops(10) as (process, *_):
+        used = TimeUsed.from_now([process])
+        while (used.remaining(1e9, 1.0, [process])[1] or 0.0) > 0:  # until it has run for that long
             pass
         passed = process_time.monotonic() - used.began
         assert passed > 2.0
-        assert used.hindrance([one]) is not None
-        assert used.remaining(2 * passed, None, [one])[0] > 0
-        assert used.remaining(passed / process_time.MOST, None, [one])[0] <= 0  # whatever it had
+        assert used.hindrance([process]) is not None
+        assert used.remaining(2 * passed, None, [process])[0] > 0
+        assert used.remaining(passed / process_time.MOST, None, [process])[0] <= 0  # whatever it had
 
 
 def test_time_asleep_is_used(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -217,7 +217,7 @@ class Clock:
         monkeypatch.setattr(process_time, "accounts_of", self.accounts)
 
     def accounts(self, processes: Iterable[int]) -> dict[int, process_time.Account]:
-        return {one: process_time.Account(self.ran, self.queued) for one in processes}
+        return {process: process_time.Account(self.ran, self.queued) for process in processes}
 
     def passes(self, seconds: float, *, ran: float = 0.0, queued: float = 0.0) -> None:
         self.now, self.ran, self.queued = self.now + seconds, self.ran + ran, self.queued + queued

@@ -43,11 +43,11 @@ def plan_of(
 
 
 def reversals(plan: Plan) -> list[str]:
-    return [one.description.partition(": ")[2] for one in plan.mutants if one.operator == "reverse"]
+    return [mutant.description.partition(": ")[2] for mutant in plan.mutants if mutant.operator == "reverse"]
 
 
 def reason(plan: Plan) -> str:
-    (text,) = [one.reason for one in plan.left_out if one.id.endswith(":reverse")]
+    (text,) = [omission.reason for omission in plan.left_out if omission.id.endswith(":reverse")]
     return text
 
 
@@ -86,7 +86,7 @@ def test_what_the_vocabulary_says_is_a_magnitude_is_no_place_for_reverse(
     quantity: Quantity, value: Any
 ) -> None:
     plan = plan_of([quantity], {quantity.name: value})
-    assert not [one for one in (*plan.mutants, *plan.left_out) if one.id.endswith(":reverse")]
+    assert not [mutant for mutant in (*plan.mutants, *plan.left_out) if mutant.id.endswith(":reverse")]
 
 
 def test_a_speed_of_which_nothing_is_said_is_left_out_with_what_to_say() -> None:
@@ -129,7 +129,7 @@ def test_a_twist_of_speeds_has_no_fewer_mutants_than_one_of_translations(familie
         for is_right in (True, False)
     )
     assert len(right) >= len(wrong)
-    assert {one.quantity for one in right if one.operator == "reverse"} == {
+    assert {mutant.quantity for mutant in right if mutant.operator == "reverse"} == {
         "linear.x",
         "linear.y",
         "angular.z",

@@ -25,7 +25,7 @@ LEFT_OUT = [
 
 def test_only_what_would_change_nothing_stands_under_that() -> None:
     found = by_heading(LEFT_OUT)
-    assert {heading: [one.id for one in those] for heading, those in found.items()} == {
+    assert {heading: [omission.id for omission in those] for heading, those in found.items()} == {
         "would change nothing": ["b", "d"], "no call raises in the baseline": ["a", "c"],
     }  # fmt: skip
     first, second = skipped(LEFT_OUT)

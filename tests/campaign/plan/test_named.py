@@ -34,11 +34,11 @@ def mutants(text: str, *operations: Operation, role: Role = Role.PROGRAM) -> dic
     """The descriptions of mutants of calls at one site, by id."""
     site = Site(SPAN, text, 1, role)
     values = {"pose.position.y": 0.2}
-    hits = {Place(site, one.target): [Hit(values, values)] for one in operations}
+    hits = {Place(site, operation_named.target): [Hit(values, values)] for operation_named in operations}
     answers = {place: RecordedAnswers() for place in hits}
     plan = make_plan(Baseline(hits=hits, answers=answers), project(Vocabulary(operations)))
-    wanted: list[Mutant] = [one for one in plan.mutants if one.operator in ("reverse", "negate")]
-    return {one.id: one.description for one in wanted}
+    wanted: list[Mutant] = [mutant for mutant in plan.mutants if mutant.operator in ("reverse", "negate")]
+    return {mutant.id: mutant.description for mutant in wanted}
 
 
 def test_what_is_published_is_told_by_its_name_and_its_id_by_the_text() -> None:
@@ -75,5 +75,5 @@ def test_one_site_of_both_roles_has_mutants_of_both() -> None:
     hits = {place: [Hit({"pose.position.y": 0.2}, {})] for place in places}
     answers = {place: RecordedAnswers() for place in places}
     plan = make_plan(Baseline(hits=hits, answers=answers), project(Vocabulary((publish,))))
-    assert {one.site.role for one in plan.mutants} == set(Role)
-    assert len({one.id for one in plan.mutants}) == len(plan.mutants)
+    assert {mutant.site.role for mutant in plan.mutants} == set(Role)
+    assert len({mutant.id for mutant in plan.mutants}) == len(plan.mutants)

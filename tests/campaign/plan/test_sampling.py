@@ -77,19 +77,19 @@ def test_an_absurd_size_is_a_usage_error_that_names_it(size: str) -> None:
 @pytest.mark.parametrize("size", SIZES)
 def test_a_sample_keeps_order_and_numbers_and_draws_none_twice(size: str) -> None:
     chosen = drawn(MIXED, size)
-    assert chosen == [one for one in MIXED if one in chosen]
+    assert chosen == [member for member in MIXED if member in chosen]
 
 
 @pytest.mark.parametrize("size", SIZES)
 def test_no_family_and_role_goes_away_empty_if_there_is_enough(size: str) -> None:
-    found = Counter((one.family, one.site.role) for one in drawn(MIXED, size))
+    found = Counter((member.family, member.site.role) for member in drawn(MIXED, size))
     assert found["conventional", Role.PROGRAM] > 0
     assert found["robot", Role.PROGRAM] > 0
     assert found["robot", Role.ORACLE] > 0 or size == "1"
 
 
 def test_a_number_is_per_family_and_divided_as_its_roles_are() -> None:
-    found = Counter((one.family, one.site.role) for one in drawn(MIXED, "30"))
+    found = Counter((member.family, member.site.role) for member in drawn(MIXED, "30"))
     assert found == {
         ("robot", Role.PROGRAM): 20,
         ("robot", Role.ORACLE): 10,
@@ -111,25 +111,25 @@ def test_the_same_seed_draws_the_same_and_another_seed_others() -> None:
 
 
 def test_a_larger_sample_holds_the_smaller_one() -> None:
-    assert {one.id for one in drawn(MANY, "5%")} < {one.id for one in drawn(MANY, "20%")}
+    assert {member.id for member in drawn(MANY, "5%")} < {member.id for member in drawn(MANY, "20%")}
 
 
 def test_a_new_mutant_takes_the_place_of_one_other_at_most() -> None:
-    before = {one.id for one in drawn(MANY[:-1], "20")}
-    after = {one.id for one in drawn(MANY, "20")}
+    before = {member.id for member in drawn(MANY[:-1], "20")}
+    after = {member.id for member in drawn(MANY, "20")}
     assert len(before - after) <= 1
 
 
 def test_numbers_do_not_matter_so_that_edits_elsewhere_change_nothing() -> None:
-    renumbered = [mutant(one.number) for one in reversed(MANY)]
-    assert {one.id for one in drawn(renumbered, "20")} == {one.id for one in drawn(MANY, "20")}
+    renumbered = [mutant(member.number) for member in reversed(MANY)]
+    assert {member.id for member in drawn(renumbered, "20")} == {member.id for member in drawn(MANY, "20")}
 
 
 def test_every_mutant_is_as_likely_as_any_other() -> None:
     seeds = 2000
-    hits = Counter(one.id for seed in range(seeds) for one in drawn(MANY[:20], "5", seed))
+    hits = Counter(member.id for seed in range(seeds) for member in drawn(MANY[:20], "5", seed))
     # each is drawn in a quarter of the cases; the standard deviation is 19.4, and 5 of them are never met
-    assert all(abs(hits[one.id] - seeds / 4) < 5 * 19.4 for one in MANY[:20])
+    assert all(abs(hits[member.id] - seeds / 4) < 5 * 19.4 for member in MANY[:20])
 
 
 PROJECT = (

@@ -85,7 +85,7 @@ def test_a_selection_file_with_an_unknown_id_names_the_nearest(tmp_path: Path) -
 def test_a_selection_file_may_name_what_the_plan_leaves_out(tmp_path: Path) -> None:
     file = tmp_path / "published.txt"
     file.write_text(f"{LEFT_OUT[0].id}\n{SKIP.id}\n")
-    assert [one.id for one in select(MUTANTS, [f"@{file}"], left_out=LEFT_OUT)] == [SKIP.id]
+    assert [chosen.id for chosen in select(MUTANTS, [f"@{file}"], left_out=LEFT_OUT)] == [SKIP.id]
 
 
 @pytest.mark.parametrize("content", [None, b"\xff\xfe"])
@@ -136,7 +136,7 @@ def test_no_pattern_takes_long(pattern: str) -> None:
 
 OPERATORS = [
     *(("robot", name) for name in registry.names()),
-    *((rule.family, rule.name) for one in brought_providers() for rule in one.rules()),
+    *((rule.family, rule.name) for provider in brought_providers() for rule in provider.rules()),
 ]
 
 
@@ -151,4 +151,4 @@ def test_operators_of_all_families_can_be_chosen_by_name() -> None:
         assert select(mutants, [mutant.operator]) == [mutant]
         assert mutant not in select(mutants, (), [mutant.operator])
     for family in ("robot", "conventional", "text"):
-        assert select(mutants, [family]) == [one for one in mutants if one.family == family]
+        assert select(mutants, [family]) == [candidate for candidate in mutants if candidate.family == family]

@@ -94,7 +94,7 @@ def test_readings_of_calls_that_stand_alone_are_left_out(tmp_path: Path) -> None
     families = (ROBOT, CATALOGUE, GRADED)
     planned = plan_only(request_for(folder, families=families, rounds=1), Quiet())
     mutants, left_out = planned.mutants, planned.left_out
-    unread = [one.id.split(":")[2:] for one in left_out if one.reason == WHY]
+    unread = [omission.id.split(":")[2:] for omission in left_out if omission.reason == WHY]
     assert [site for site, *_, operator in unread if operator == "negate"] == [
         "arm.where#1", "arm.where#2", "arm.later#1", "arm.step#1", "arm.look#1", "arm.where#4",
     ]  # fmt: skip
@@ -104,11 +104,13 @@ def test_readings_of_calls_that_stand_alone_are_left_out(tmp_path: Path) -> None
         "offset",
         "spike",
     }
-    kept = {(one.site.text, one.site.occurrence) for one in mutants if one.operator == "negate"}
+    kept = {(mutant.site.text, mutant.site.occurrence) for mutant in mutants if mutant.operator == "negate"}
     assert kept == {
         ("arm.through", 1), ("arm.where", 3), ("arm.where", 5), ("arm.where", 6), ("arm.where", 7),
         ("arm.where", 8), ("arm.later", 2), ("arm.where", 9),
     }  # fmt: skip
-    others = {one.operator for one in mutants if (one.site.text, one.site.occurrence) == ("arm.step", 1)}
+    others = {
+        mutant.operator for mutant in mutants if (mutant.site.text, mutant.site.occurrence) == ("arm.step", 1)
+    }
     assert {"reverse", "skip", "repeat"} <= others
-    assert [one.operator for one in mutants if one.site.text == "arm.look"] == ["dropout"]
+    assert [mutant.operator for mutant in mutants if mutant.site.text == "arm.look"] == ["dropout"]

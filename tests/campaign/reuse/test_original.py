@@ -358,10 +358,10 @@ Said = tuple[Verdict, str | None, int, int, tuple[str, ...]]
 
 def said(path: Path) -> dict[tuple[str, int], Said]:
     return {
-        (one.mutant, one.round): (
-            one.verdict, one.test, one.hits, one.acted, tuple(kill.test for kill in one.kills)
+        (end.mutant, end.round): (
+            end.verdict, end.test, end.hits, end.acted, tuple(kill.test for kill in end.kills)
         )
-        for one in outcomes(path)
+        for end in outcomes(path)
     }  # fmt: skip
 
 
@@ -376,7 +376,7 @@ def test_halves_of_a_campaign_end_as_the_whole(tmp_path: Path, engine: str) -> N
         found |= said(run_campaign(request_for(halves, engine=engine, only=only), progress))
         assert any(HOLDS in line for line in progress.lines) == bool(number)
     assert found == wanted
-    assert {one[0] for one in found.values()} >= {Verdict.KILLED, Verdict.SURVIVED}
+    assert {facts[0] for facts in found.values()} >= {Verdict.KILLED, Verdict.SURVIVED}
 
 
 def test_notes_that_tests_open_count_and_no_others(tmp_path: Path) -> None:

@@ -47,8 +47,10 @@ def installed(site: Path, name: str, module: str, files: list[str], editable: Pa
         told["entry_points.txt"] = f"[mutabot]\nlab = {module}:EXTENSION\n"
     if editable is not None:
         told["direct_url.json"] = json.dumps({"url": editable.as_uri(), "dir_info": {"editable": True}})
-    told["RECORD"] = "".join(f"{one},,\n" for one in [*files, *(f"{info}/{one}" for one in told)])
-    write(site, {f"{info}/{one}": text for one, text in told.items()})
+    told["RECORD"] = "".join(
+        f"{file_name},,\n" for file_name in [*files, *(f"{info}/{file_name}" for file_name in told)]
+    )
+    write(site, {f"{info}/{file_name}": text for file_name, text in told.items()})
 
 
 def is_seen(name: str, file: Path, root: Path) -> bool:

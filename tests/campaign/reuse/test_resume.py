@@ -80,7 +80,7 @@ class Project:
         with Journal.open(self.journal) as journal:
             results = read_results(journal)
             assert results.done == results.planned
-            ran = {(one.mutant, one.round) for one in journal.outcomes()} - journal.reused()
+            ran = {(outcome.mutant, outcome.round) for outcome in journal.outcomes()} - journal.reused()
         lines = [line for line in self.progress.lines if line.startswith("#")]
         assert len(lines) == len(ran)
         return ran
@@ -169,16 +169,16 @@ def test_a_changed_function_runs_what_can_reach_it_again_and_a_data_file_everyth
 def test_comments_and_layout_run_nothing_again(project: Project) -> None:
     first = project.run()
     with Journal.open(project.journal) as journal:
-        places = {one.mutant: one.place for one in journal.outcomes()}
+        places = {outcome.mutant: outcome.place for outcome in journal.outcomes()}
     project.edit("mission.py", lambda text: "# a comment\n" + text.replace("(arm)", "(\n    arm,\n)"))
     project.edit("tests/test_mission.py", lambda text: "\n\n# another\n" + text)
     assert project.run() == set()
     assert project.note.startswith(f"reused all {len(first)} outcomes")
     with Journal.open(project.journal) as journal:
-        now = {one.mutant: one.place for one in journal.outcomes()}
+        now = {outcome.mutant: outcome.place for outcome in journal.outcomes()}
     project.run(fresh=True)
     with Journal.open(project.journal) as journal:
-        assert {one.mutant: one.place for one in journal.outcomes()} == now
+        assert {outcome.mutant: outcome.place for outcome in journal.outcomes()} == now
     assert now != places
 
 
@@ -223,8 +223,10 @@ def test_survivors_are_not_asked_again_by_tests_that_do_not_reach_them_and_that_
     project.edit("tests/test_right.py", ASSERTS_MORE)
     assert project.run() == of("right", first)
     with Journal.open(project.journal) as journal:
-        kept = [one for one in journal.outcomes() if (one.mutant, one.round) in journal.reused()]
-    survivors = sum(one.verdict is Verdict.SURVIVED for one in kept)
+        kept = [
+            outcome for outcome in journal.outcomes() if (outcome.mutant, outcome.round) in journal.reused()
+        ]
+    survivors = sum(outcome.verdict is Verdict.SURVIVED for outcome in kept)
     assert 0 < survivors < len(kept)
     assert (
         f"{survivors} of them are survivors that tests do not reach which may have changed: these are not "
@@ -318,10 +320,10 @@ def test_a_narrow_run_shows_its_mutants_beside_all_others(project: Project, fres
     narrow = project.run(only=("2",), fresh=fresh)
     assert len(narrow) == int(fresh)
     results = project.all_results()
-    assert [one.mutant for one in results.mutants] == [one.mutant for one in whole.mutants]
+    assert [mutant.mutant for mutant in results.mutants] == [mutant.mutant for mutant in whole.mutants]
     assert results.groups == whole.groups
     assert len(results.earlier) == len(first) - 1
-    assert not any(one.outdated for one in results.mutants)
+    assert not any(result.outdated for result in results.mutants)
     assert project.state() == ("complete", 1)
     assert project.run() == set()
     assert not project.all_results().earlier
@@ -331,14 +333,14 @@ def test_results_of_earlier_runs_are_marked_where_something_has_changed(project:
     project.run()
     project.edit("tests/test_right.py", ASSERTS_MORE)
     narrow = project.run(only=("5",))
-    outdated = {one.mutant.id for one in project.all_results().mutants if one.outdated}
-    earlier = {one.mutant.id for one in project.all_results().earlier}
+    outdated = {result.mutant.id for result in project.all_results().mutants if result.outdated}
+    earlier = {result.mutant.id for result in project.all_results().earlier}
     assert {mutant for mutant, _ in of("right", {(mutant, 0) for mutant in earlier})} == outdated
     assert outdated < earlier
     assert not outdated & {mutant for mutant, _ in narrow}
     project.edit("scene.json")
     project.run(only=("1",))
-    assert all(one.outdated for one in project.all_results().earlier)
+    assert all(result.outdated for result in project.all_results().earlier)
 
 
 @pytest.mark.needs("source")
@@ -346,14 +348,14 @@ def test_mutants_of_another_family_stay_until_the_program_has_them_no_longer(pro
     robots = {mutant for mutant, _ in project.run()}
     texts = {mutant for mutant, _ in project.run(families=("conventional",))}
     shown = project.all_results()
-    assert {one.mutant.id for one in shown.mutants} == robots | texts
-    assert {one.mutant.id for one in shown.earlier} == robots
-    assert not any(one.outdated for one in shown.mutants)
-    numbers = [one.mutant.number for one in shown.mutants]
+    assert {result.mutant.id for result in shown.mutants} == robots | texts
+    assert {result.mutant.id for result in shown.earlier} == robots
+    assert not any(result.outdated for result in shown.mutants)
+    numbers = [result.mutant.number for result in shown.mutants]
     assert len(numbers) == len(set(numbers))
     project.edit("robot.py", lambda text: text.replace("self.x = x", "'docstring'; self.x = x"))
     project.run(families=("conventional",))
-    assert {one.mutant.id for one in project.all_results().mutants if one.outdated} == robots
+    assert {result.mutant.id for result in project.all_results().mutants if result.outdated} == robots
     assert {mutant for mutant, _ in project.run(families=("robot", "conventional"))} == robots
 
 
@@ -362,9 +364,9 @@ def test_mutants_that_the_program_has_no_longer_are_not_shown(project: Project) 
     project.edit("mission.py", lambda text: text.replace("return arm.position()", "return 1"))
     project.run(only=("1",))
     shown = project.all_results()
-    assert {one.mutant.operation for one in shown.mutants} == {"robot:Arm.move_by"}
+    assert {result.mutant.operation for result in shown.mutants} == {"robot:Arm.move_by"}
     assert len(shown.mutants) == 6
-    assert sum(one.outdated for one in shown.mutants) == 3
+    assert sum(result.outdated for result in shown.mutants) == 3
 
 
 def test_an_interrupted_campaign_shows_what_was_there_before(
@@ -381,11 +383,11 @@ def test_an_interrupted_campaign_shows_what_was_there_before(
         project.run()
     shown = project.all_results()
     assert (shown.state, shown.done) == ("interrupted", len(first))
-    assert all(one.outdated for one in shown.mutants)
+    assert all(result.outdated for result in shown.mutants)
     project.edit("scene.json", lambda text: text.removesuffix("\n# edited\n"))
     with pytest.raises(KeyboardInterrupt):
         project.run(fresh=True)
-    assert not any(one.outdated for one in project.all_results().mutants)
+    assert not any(result.outdated for result in project.all_results().mutants)
 
 
 def test_errors_and_unstable_outcomes_are_never_reused(project: Project) -> None:

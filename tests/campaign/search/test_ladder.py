@@ -30,7 +30,7 @@ def run(rows: list[dict[int, MagnitudeResult]], **details: object) -> LadderSear
     search = LadderSearch(SIZE, len(rows), **details)  # type: ignore[arg-type]
     for rounds in (range(1), range(1, len(rows))):
         for _ in range(1000):
-            due = [(one, step) for one in range(max(rounds, default=-1) + 1) for step in search.due(one)]
+            due = [(end, step) for end in range(max(rounds, default=-1) + 1) for step in search.due(end)]
             if not due:
                 break
             for round, step in due:
@@ -42,12 +42,12 @@ def run(rows: list[dict[int, MagnitudeResult]], **details: object) -> LadderSear
 
 
 def floats(row: dict[int, MagnitudeResult]) -> dict[float, MagnitudeResult]:
-    return {float(step): one for step, one in row.items()}
+    return {float(step): value for step, value in row.items()}
 
 
 @given(thresholds)
 def test_a_monotone_round_has_the_bracket_of_its_whole_ladder(found: list[int]) -> None:
-    rows = [truth(one) for one in found]
+    rows = [truth(threshold) for threshold in found]
     search = run(rows)
     for round, row in enumerate(rows):
         assert bracket_of(floats(search.found[round])) == bracket_of(floats(row))
@@ -55,7 +55,7 @@ def test_a_monotone_round_has_the_bracket_of_its_whole_ladder(found: list[int]) 
 
 @given(thresholds, st.integers(1, SIZE))
 def test_a_refusal_bounds_the_search_and_is_no_detection(found: list[int], refused: int) -> None:
-    rows = [truth(one, refused) for one in found]
+    rows = [truth(threshold, refused) for threshold in found]
     search = run(rows)
     for round, row in enumerate(rows):
         ours, whole = bracket_of(floats(search.found[round])), bracket_of(floats(row))
@@ -91,7 +91,7 @@ def test_whatever_is_seen_the_search_ends(rows: list[list[MagnitudeResult]]) -> 
 
 @given(thresholds, st.integers(0, SIZE - 1))
 def test_a_demanded_magnitude_is_run_in_every_round(found: list[int], demanded: int) -> None:
-    search = run([truth(one) for one in found], always=frozenset({demanded}))
+    search = run([truth(threshold) for threshold in found], always=frozenset({demanded}))
     assert all(demanded in row for row in search.found.values())
 
 

@@ -64,14 +64,14 @@ def test_the_outcomes_are_those_of_a_whole_campaign(campaigns: Path, tmp_path: P
     with Journal.open(target) as found, Journal.open(campaigns / "whole" / "journal.sqlite") as whole:
         ours, theirs = read_results(found), read_results(whole)
         assert ours.state == theirs.state == "complete"
-        assert {(one.mutant, one.round): plain(one) for one in found.outcomes()} == {
-            (one.mutant, one.round): plain(one) for one in whole.outcomes()
+        assert {(outcome.mutant, outcome.round): plain(outcome) for outcome in found.outcomes()} == {
+            (outcome.mutant, outcome.round): plain(outcome) for outcome in whole.outcomes()
         }
     assert ours.groups == theirs.groups
     assert ours.graded
-    assert [one.mutant for one in ours.everything] == [one.mutant for one in theirs.everything]
+    assert [result.mutant for result in ours.everything] == [result.mutant for result in theirs.everything]
     assert ours.controls
-    assert all(one.ok for one in ours.controls)
+    assert all(control.ok for control in ours.controls)
 
 
 def test_the_recordings_are_merged_too(campaigns: Path, tmp_path: Path) -> None:
@@ -95,8 +95,8 @@ def test_a_run_goes_on_from_the_merged_journal(campaigns: Path, tmp_path: Path) 
     path = run_campaign(request_for(root, **CHANGES), told)
     with Journal.open(path) as journal, Journal.open(campaigns / "whole" / "journal.sqlite") as whole:
         assert journal.reused()
-        assert {(one.mutant, one.round) for one in journal.outcomes()} == {
-            (one.mutant, one.round) for one in whole.outcomes()
+        assert {(outcome.mutant, outcome.round) for outcome in journal.outcomes()} == {
+            (outcome.mutant, outcome.round) for outcome in whole.outcomes()
         }
 
 
@@ -106,7 +106,9 @@ def test_a_shard_is_no_whole_campaign(campaigns: Path) -> None:
     assert found.state == "shard 2 of 2"
     assert found.done < found.planned
     assert found.shard is not None
-    assert {one.mutant.number for one in found.everything if one.outcomes} <= set(found.shard.mutants)
+    assert {result.mutant.number for result in found.everything if result.outcomes} <= set(
+        found.shard.mutants
+    )
 
 
 def test_shards_part_the_plan_and_no_ladder(campaigns: Path) -> None:
@@ -118,9 +120,11 @@ def test_shards_part_the_plan_and_no_ladder(campaigns: Path) -> None:
             found = read_results(journal)
         assert found.shard is not None
         parts.append(set(found.shard.mutants))
-    assert parts[0] | parts[1] == {one.number for one in whole}
+    assert parts[0] | parts[1] == {mutant.number for mutant in whole}
     assert not parts[0] & parts[1]
-    ladders = [{one.ladder for one in whole if one.ladder and one.number in part} for part in parts]
+    ladders = [
+        {mutant.ladder for mutant in whole if mutant.ladder and mutant.number in part} for part in parts
+    ]
     assert any(ladders)
     assert not ladders[0] & ladders[1]
 

@@ -80,7 +80,7 @@ class Project:
         self.progress = Quiet()
         run_campaign(request_for(self.folder, **changes), self.progress)
         with Journal.open(self.journal) as journal:
-            return {(one.mutant, one.round) for one in journal.outcomes()} - journal.reused()
+            return {(outcome.mutant, outcome.round) for outcome in journal.outcomes()} - journal.reused()
 
     def notes(self) -> str:
         return "\n".join(self.progress.lines)

@@ -97,8 +97,8 @@ def test_any_vocabulary_is_loaded_or_refused(
     for vocabulary in found:
         assert from_data(Vocabulary, json.loads(json.dumps(to_data(vocabulary)))) == vocabulary
         for operation in vocabulary.operations:
-            assert set(operation.described) >= {one.path.root for one in operation.arguments}
-            assert all(one.name for one in operation.patterns)
+            assert set(operation.described) >= {argument.path.root for argument in operation.arguments}
+            assert all(pattern.name for pattern in operation.patterns)
 
 
 @COMMON

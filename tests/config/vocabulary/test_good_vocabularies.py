@@ -358,14 +358,19 @@ def test_an_argument_may_decide_about_the_mode(tmp_path: Path) -> None:
     assert not operation.arguments
     assert operation.command
     facts = [
-        (one.text, one.notation, [(q.name, q.mode) for q in one.arguments], [q.name for q in one.result])
-        for one in operation.patterns
+        (
+            pattern.text,
+            pattern.notation,
+            [(q.name, q.mode) for q in pattern.arguments],
+            [q.name for q in pattern.result],
+        )
+        for pattern in operation.patterns
     ]
     assert facts == [
         ("rel=true", None, [("dx", Mode.BY), ("speed", None)], ["result"]),
         ("rel=false", None, [("dx", Mode.TO), ("speed", None)], ["result"]),
     ]
-    assert {type(q) for one in operation.patterns for q in one.arguments} == {Quantity}
+    assert {type(q) for pattern in operation.patterns for q in pattern.arguments} == {Quantity}
     assert from_data(Operation, to_data(operation)) == operation
 
 
@@ -381,13 +386,13 @@ def test_two_arguments_that_decide_make_a_command_of_each_combination(tmp_path: 
     arguments.y = {{ kind = "translation", unit = "m", {mode("b")} }}
     """
     patterns = only(tmp_path, text).patterns
-    assert [one.text.partition(" ")[2] for one in patterns] == [
+    assert [pattern.text.partition(" ")[2] for pattern in patterns] == [
         "[a=true, b=true]",
         "[a=true, b=false]",
         "[a=false, b=true]",
         "[a=false, b=false]",
     ]
-    assert {one.notation for one in patterns} == {"go/{x:g}/{y:g}"}
+    assert {pattern.notation for pattern in patterns} == {"go/{x:g}/{y:g}"}
     assert patterns[1].name == "go/{x}/{y} [a=true, b=false]"
 
 

@@ -34,8 +34,8 @@ result = { kind = "position", axis = "x", unit = "m" }
 def test_a_method_is_an_operation_of_a_kind_of_its_own(tmp_path: Path) -> None:
     (tmp_path / "robot.toml").write_text(GOOD, encoding="utf-8")
     operations = load_vocabulary(["robot.toml"], tmp_path).operations
-    assert {one.kind for one in operations} == {"methods"}
-    by_name = {one.name: one for one in operations}
+    assert {operation.kind for operation in operations} == {"methods"}
+    by_name = {operation.name: operation for operation in operations}
     assert by_name["*.move_by"].current == "*:*.position"
     assert by_name["*.open"].opposite == by_name["*.close"].target == "*:*.close"
     assert by_name["*.open"].source.startswith("robot.toml:8")

@@ -25,7 +25,7 @@ def loaded(folder: Path, text: str) -> Vocabulary:
 
 
 def entry(folder: Path, text: str) -> dict[str, Operation]:
-    return {one.target: one for one in loaded(folder, "[[operation]]\n" + text).operations}
+    return {operation.target: operation for operation in loaded(folder, "[[operation]]\n" + text).operations}
 
 
 def refused(folder: Path, text: str) -> str:
@@ -51,13 +51,16 @@ def test_what_is_received_is_read(tmp_path: Path) -> None:
     assert list(found) == ["receive /colour of /mission", "subscribe /colour of /mission"]
     (quantity,) = found["receive /colour of /mission"].result
     assert (quantity.name, str(quantity.path)) == ("data", ".data")
-    assert not any(one.command for one in found.values())
+    assert not any(operation.command for operation in found.values())
 
 
 def test_a_service_writes_its_request_and_reads_its_response(tmp_path: Path) -> None:
     text = 'service = "/gripper"\nrequest.data = { kind = "output", values = [false, true] }\n'
     call = entry(tmp_path, text + 'response.success = { kind = "flag" }')["call /gripper"]
-    assert [str(one.path) for one in (*call.arguments, *call.result)] == ["request.data", ".success"]
+    assert [str(argument.path) for argument in (*call.arguments, *call.result)] == [
+        "request.data",
+        ".success",
+    ]
     assert call.command
 
 
@@ -75,13 +78,19 @@ def test_an_action_is_all_that_is_done_with_it(tmp_path: Path) -> None:
         '{ kind = "rotation", axis = "j1..j2", unit = "rad", mode = "to" }\n'
         'result.error_code = { kind = "label", values = [0, -1] }',
     )
-    assert [one.partition(" ")[0] for one in found] == ["goal", "feedback", "result", "cancel", "client"]
-    assert [one.name for one in found["goal /arm/follow"].arguments] == [
+    assert [target.partition(" ")[0] for target in found] == [
+        "goal",
+        "feedback",
+        "result",
+        "cancel",
+        "client",
+    ]
+    assert [argument.name for argument in found["goal /arm/follow"].arguments] == [
         "trajectory.points[-1].positions[0]",
         "trajectory.points[-1].positions[1]",
     ]
-    assert [one.name for one in found["feedback /arm/follow"].result] == ["points[-1].x"]
-    assert [one.name for one in found["result /arm/follow"].result] == ["error_code"]
+    assert [quantity.name for quantity in found["feedback /arm/follow"].result] == ["points[-1].x"]
+    assert [quantity.name for quantity in found["result /arm/follow"].result] == ["error_code"]
     assert found["cancel /arm/follow"].command
 
 
@@ -108,7 +117,7 @@ def test_paths_lead_into_the_value_of_a_parameter(tmp_path: Path) -> None:
     value."[1:4]" = { kind = "position", axis = "xyz", unit = "m" }
     """
     found = entry(tmp_path, text)["parameter limits"].result
-    assert [(one.name, one.axis) for one in found] == [
+    assert [(quantity.name, quantity.axis) for quantity in found] == [
         ("[0]", None),
         ("[1]", "x"),
         ("[2]", "y"),
@@ -133,8 +142,10 @@ def test_a_field_may_hold_text_commands(tmp_path: Path) -> None:
     )["publish /cmd"]
     lift, go = found.patterns
     assert found.message == "message.data"
-    assert (lift.opposite, [one.name for one in lift.arguments]) == ("drop/{h:g}", ["h"])
-    assert [(one.name, str(one.path)) for one in go.arguments] == [("pose.x", "message.pose.x")]
+    assert (lift.opposite, [argument.name for argument in lift.arguments]) == ("drop/{h:g}", ["h"])
+    assert [(argument.name, str(argument.path)) for argument in go.arguments] == [
+        ("pose.x", "message.pose.x")
+    ]
 
 
 def test_an_argument_may_decide_about_a_mode_of_a_field(tmp_path: Path) -> None:
@@ -142,7 +153,9 @@ def test_an_argument_may_decide_about_a_mode_of_a_field(tmp_path: Path) -> None:
     found = entry(
         tmp_path, f'service = "/move"\nrequest.x = {{ kind = "translation", unit = "m", mode = {mode} }}'
     )["call /move"]
-    assert [[(one.argument, one.value) for one in each.when] for each in found.patterns] == [
+    assert [
+        [(condition.argument, condition.value) for condition in each.when] for each in found.patterns
+    ] == [
         [("request.relative", "true")],
         [("request.relative", "false")],
     ]

@@ -40,8 +40,8 @@ def test_a_file_of_ones_own_goes_before_a_shipped_one(names: list[str], tmp_path
         f'[[operation]]\ncall = "{URX}"\n'
         'arguments."tpose[2]" = { kind = "translation", axis = "z", unit = "m", mode = "by" }\n'
     )
-    found = {one.target: one for one in load_vocabulary(names, tmp_path).operations}
-    assert [one.name for one in found[URX].arguments] == ["tpose[2]"]
+    found = {operation.target: operation for operation in load_vocabulary(names, tmp_path).operations}
+    assert [argument.name for argument in found[URX].arguments] == ["tpose[2]"]
     assert len(found) == len(load_vocabulary(["urx"], tmp_path).operations)
 
 
@@ -86,9 +86,12 @@ def parts_of(name: str, call: str, folder: Path) -> dict[str, list[str]]:
     """What a shipped vocabulary says of a call: its quantities with kind and unit, by the case it is in."""
     operation = load_vocabulary([name], folder).operation(call)
     assert operation is not None
-    cases = [(one.text, (*one.arguments, *one.result)) for one in operation.patterns]
+    cases = [(pattern.text, (*pattern.arguments, *pattern.result)) for pattern in operation.patterns]
     found = cases or [("", (*operation.arguments, *operation.result))]
-    return {text: [f"{one.name} {one.kind} {one.unit}" for one in quantities] for text, quantities in found}
+    return {
+        text: [f"{quantity.name} {quantity.kind} {quantity.unit}" for quantity in quantities]
+        for text, quantities in found
+    }
 
 
 def test_pybullet_has_both_places_of_a_link(tmp_path: Path) -> None:
@@ -120,7 +123,7 @@ def test_xarm_is_in_the_units_that_the_call_says(tmp_path: Path) -> None:
 def test_the_orientations_of_universal_robots_are_rotation_vectors(name: str, tmp_path: Path) -> None:
     """They mean something only as a whole; only joints turn about an axis each."""
     for operation in load_vocabulary([name], tmp_path).operations:
-        patterns = [(*one.arguments, *one.result) for one in operation.patterns]
+        patterns = [(*pattern.arguments, *pattern.result) for pattern in operation.patterns]
         for quantity in (
             part for parts in [(*operation.arguments, *operation.result), *patterns] for part in parts
         ):

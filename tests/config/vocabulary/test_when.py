@@ -29,7 +29,10 @@ def test_entries_for_one_callable_are_one_operation_with_a_pattern_each(tmp_path
     operation = only(tmp_path, text)
     grip, move = operation.patterns
     assert (grip.name, move.name) == ("kind=gripper", "kind=move")
-    assert [one.kind.value for each in (grip, move) for one in each.arguments] == ["opening", "translation"]
+    assert [argument.kind.value for each in (grip, move) for argument in each.arguments] == [
+        "opening",
+        "translation",
+    ]
     assert (grip.command, move.command, operation.command) == (False, True, True)
     assert (grip.idle, move.idle, operation.idle) == (3, None, None)
     assert operation.is_partial
@@ -43,7 +46,7 @@ def test_several_cases_all_have_to_fit(tmp_path: Path) -> None:
     when = 'when = [{ argument = "self.name", value = "left" }, { argument = "cmd[\'on\']", value = true }]\n'
     (pattern,) = only(tmp_path, f"[[operation]]\n{CALL}{when}").patterns
     assert pattern.name == "self.name=left, cmd['on']=true"
-    assert [(one.argument, one.value) for one in pattern.when] == [
+    assert [(condition.argument, condition.value) for condition in pattern.when] == [
         ("self.name", "left"),
         ("cmd['on']", "true"),
     ]
@@ -88,7 +91,7 @@ def test_a_field_of_a_request_may_decide(tmp_path: Path) -> None:
     text = 'service = "/do"\nwhen = { argument = "what", value = "grip" }\n'
     operation = loaded(tmp_path, f"[[operation]]\n{text}").operation("call /do")
     assert operation is not None
-    assert [one.argument for one in operation.patterns[0].when] == ["request.what"]
+    assert [condition.argument for condition in operation.patterns[0].when] == ["request.what"]
 
 
 @pytest.mark.parametrize(

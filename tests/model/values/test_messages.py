@@ -67,7 +67,7 @@ class Ros2:
 
     class Trajectory(Message):
         __slots__ = ["_points"]
-        points = _checked("points", lambda value: all(isinstance(one, Ros2.Point) for one in value))
+        points = _checked("points", lambda value: all(isinstance(item, Ros2.Point) for item in value))
 
 
 class Ros1:

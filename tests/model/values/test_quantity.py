@@ -51,7 +51,7 @@ def test_a_value_is_printed_with_its_unit(unit: str | None, value: Any, text: st
 
 
 @pytest.mark.parametrize(
-    ("one", "other", "texts"),
+    ("first", "second", "texts"),
     [
         (-0.32741, 0.32741, ("-0.32741 m", "0.32741 m")),
         (-0.3274104, -0.3274101, ("-0.3274104 m", "-0.3274101 m")),
@@ -61,10 +61,10 @@ def test_a_value_is_printed_with_its_unit(unit: str | None, value: Any, text: st
     ],
 )
 def test_two_values_are_printed_with_as_many_digits_as_tell_them_apart(
-    one: float, other: float, texts: tuple[str, str]
+    first: float, second: float, texts: tuple[str, str]
 ) -> None:
     quantity = Quantity("x", Path.parse("x", rooted=True), Kind.POSITION, unit="m")
-    assert quantity.texts(one, other) == texts
+    assert quantity.texts(first, second) == texts
 
 
 def test_long_numbers_are_written_without_a_power_of_ten() -> None:

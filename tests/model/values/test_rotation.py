@@ -61,20 +61,20 @@ def test_quaternions_are_read_in_their_order_and_of_any_length(order: str) -> No
 
 
 def test_the_distance_is_the_angle_between_two_orientations() -> None:
-    one, other = ROTATIONS[0], ROTATIONS[1]
-    found = read("quaternion", "xyzw", one.as_quat()).distance(read("quaternion", "xyzw", other.as_quat()))
-    assert found == pytest.approx((one.inv() * other).magnitude())
+    first, second = ROTATIONS[0], ROTATIONS[1]
+    found = read("quaternion", "xyzw", first.as_quat()).distance(read("quaternion", "xyzw", second.as_quat()))
+    assert found == pytest.approx((first.inv() * second).magnitude())
 
 
 def test_half_a_turn_either_way_is_the_same_orientation() -> None:
-    one, other = (read("rotation_vector", None, [0.0, angle, 0.0]) for angle in (math.pi, -math.pi))
-    assert one.distance(other) < 1e-9
-    assert one.distance(one.inverse) < 1e-9
+    first, second = (read("rotation_vector", None, [0.0, angle, 0.0]) for angle in (math.pi, -math.pi))
+    assert first.distance(second) < 1e-9
+    assert first.distance(first.inverse) < 1e-9
 
 
 def test_a_tiny_distance_keeps_its_digits() -> None:
-    one, other = (read("rotation_vector", None, [0.0, 0.0, angle]) for angle in (0.5, 0.5 + 1e-9))
-    assert one.distance(other) == pytest.approx(1e-9, rel=1e-3)
+    first, second = (read("rotation_vector", None, [0.0, 0.0, angle]) for angle in (0.5, 0.5 + 1e-9))
+    assert first.distance(second) == pytest.approx(1e-9, rel=1e-3)
 
 
 @pytest.mark.parametrize("values", [[1.0, 2.0], [0.0] * 4, "abcd", [1, 2, 3, math.nan], None, [1, 2, 3, "w"]])

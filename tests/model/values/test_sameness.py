@@ -84,16 +84,16 @@ OTHERS = [
 ]
 
 
-@pytest.mark.parametrize(("quantity", "one", "other"), SAME)
-def test_the_robot_cannot_tell_them_apart(quantity: Quantity, one: Any, other: Any) -> None:
-    assert quantity.is_same(one, other)
-    assert quantity.is_same(other, one)
+@pytest.mark.parametrize(("quantity", "first", "second"), SAME)
+def test_the_robot_cannot_tell_them_apart(quantity: Quantity, first: Any, second: Any) -> None:
+    assert quantity.is_same(first, second)
+    assert quantity.is_same(second, first)
 
 
-@pytest.mark.parametrize(("quantity", "one", "other"), OTHERS)
-def test_the_robot_can_tell_them_apart(quantity: Quantity, one: Any, other: Any) -> None:
-    assert not quantity.is_same(one, other)
-    assert not quantity.is_same(other, one)
+@pytest.mark.parametrize(("quantity", "first", "second"), OTHERS)
+def test_the_robot_can_tell_them_apart(quantity: Quantity, first: Any, second: Any) -> None:
+    assert not quantity.is_same(first, second)
+    assert not quantity.is_same(second, first)
 
 
 @pytest.mark.parametrize("order", ["xyz", "ZYX", "zxz"])

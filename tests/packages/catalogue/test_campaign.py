@@ -38,7 +38,7 @@ def folder(tmp_path: Path) -> Path:
 def test_a_refusal_goes_unreported_only_where_a_call_raises(folder: Path) -> None:
     planned = plan_only(request_for(folder, families=("catalogue",)), Quiet())
     mutants, left_out = planned.mutants, planned.left_out
-    planned = [one.id for one in mutants if one.operator == "unreported-refusal"]
+    planned = [mutant.id for mutant in mutants if mutant.operator == "unreported-refusal"]
     assert planned == ["mission.py:run:arm.move_by#2:call:unreported-refusal"]
-    reasons = [one.reason for one in left_out if one.id.endswith("unreported-refusal")]
+    reasons = [omission.reason for omission in left_out if omission.id.endswith("unreported-refusal")]
     assert reasons == ["no call raises in the baseline"]

@@ -17,7 +17,9 @@ SHARED = {"extension", "values"}
 
 
 def test_each_operator_is_declared_under_its_name() -> None:
-    modules = [one for one in modules_in(Path(mutabot_catalogue.__file__).parent) if one not in SHARED]
+    modules = [
+        module for module in modules_in(Path(mutabot_catalogue.__file__).parent) if module not in SHARED
+    ]
     found = {
         kind.name: f"mutabot_catalogue.{module}:{kind.__name__}"
         for module in modules

@@ -30,11 +30,11 @@ def planned(operation: Operation, *hits: Hit, role: Role = Role.PROGRAM, family:
 
 def kinds(plan: Plan) -> list[str]:
     """Operators and variants of the mutants."""
-    return [one.id.partition(":call:")[2] or one.id.rpartition(":")[2] for one in plan.mutants]
+    return [mutant.id.partition(":call:")[2] or mutant.id.rpartition(":")[2] for mutant in plan.mutants]
 
 
 def reasons(plan: Plan, operator: str) -> list[str]:
-    return [one.reason for one in plan.left_out if operator in one.id]
+    return [omission.reason for omission in plan.left_out if operator in omission.id]
 
 
 def test_a_message_that_is_published_once_has_no_other_before_it() -> None:

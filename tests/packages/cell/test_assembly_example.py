@@ -113,4 +113,6 @@ def test_a_pin_that_is_pushed_against_the_holes_side_resists_with_the_friction_o
 def test_its_equipment_has_a_vocabulary_beside_the_cells() -> None:
     configuration = load_configuration(EXAMPLE)
     found = load_vocabulary(configuration.vocabulary, configuration.root)
-    assert {"station:Spindle.torque", "mutabot_cell.arm:Arm.push"} <= {one.target for one in found.operations}
+    assert {"station:Spindle.torque", "mutabot_cell.arm:Arm.push"} <= {
+        operation.target for operation in found.operations
+    }

@@ -58,20 +58,20 @@ def many(height: float) -> tuple[Box, ...]:
     row = [(0.3 + 0.1 * number, -0.8, height) for number in range(5)]
     upper = [(x, y, z + 0.05) for x, y, z in row]
     places = [*row, *upper, (-0.6, 0.3, 0.76)]
-    return tuple(Box(name=f"box {one}", position=place, jitter=0.0) for one, place in enumerate(places))
+    return tuple(Box(name=f"box {index}", position=place, jitter=0.0) for index, place in enumerate(places))
 
 
 def test_parts_that_sleep_on_a_belt_are_carried_when_it_starts_and_the_others_sleep_on() -> None:
     cell = Cell(1, scene=Scene(parts=many(1.0)))
     cell.wait(3.0)
     asleep = cell.simulation.data.nbody_awake
-    before = [cell.truth.box_position(f"box {one}").y for one in range(11)]
+    before = [cell.truth.box_position(f"box {index}").y for index in range(11)]
     cell.belt().run(0.1)
     cell.wait(1.0)
     assert cell.simulation.data.nbody_awake == asleep + 10
     cell.belt().stop()
     cell.wait(3.0)
-    moved = [cell.truth.box_position(f"box {one}").y - y for one, y in enumerate(before)]
+    moved = [cell.truth.box_position(f"box {index}").y - y for index, y in enumerate(before)]
     assert moved[:10] == pytest.approx([cell.truth.belt_position()] * 10, abs=5e-4)
     assert moved[10] == 0.0
     assert cell.simulation.data.nbody_awake == asleep, "on a belt that stands they sleep again"

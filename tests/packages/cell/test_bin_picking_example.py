@@ -71,5 +71,5 @@ def test_what_its_vision_finds_has_a_vocabulary_beside_the_cells() -> None:
     configuration = load_configuration(EXAMPLE)
     found = load_vocabulary(configuration.vocabulary, configuration.root)
     assert {"vision:locate", "mutabot_cell.depth_camera:StereoCamera.picture"} <= {
-        one.target for one in found.operations
+        operation.target for operation in found.operations
     }

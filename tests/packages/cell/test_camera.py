@@ -39,7 +39,7 @@ def test_a_cell_is_filmed_while_it_moves(tmp_path: Path) -> None:
         pytest.skip("no egl on this machine")
     assert (done.returncode, done.stdout.strip()) == (0, "[]"), done.stderr
     pictures = list(Film(file).pictures())
-    assert [one.time for one in pictures] == pytest.approx([0.0, 0.07, 0.15], abs=0.011)
+    assert [picture.time for picture in pictures] == pytest.approx([0.0, 0.07, 0.15], abs=0.011)
     assert (pictures[0].width, pictures[0].height) == (600, 450)
     assert len(set(pictures[0].pixels)) > 50, "more than one colour"
 

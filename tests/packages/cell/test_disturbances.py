@@ -37,20 +37,20 @@ def pairs(cell: Cell) -> dict[tuple[str, str], float]:
     model = cell.simulation.model
     ends = zip(model.pair_geom1.tolist(), model.pair_geom2.tolist(), strict=True)
     return {
-        (model.geom(one).name, model.geom(other).name): float(model.pair_friction[number, 0])
-        for number, (one, other) in enumerate(ends)
+        (model.geom(first).name, model.geom(second).name): float(model.pair_friction[number, 0])
+        for number, (first, second) in enumerate(ends)
     }
 
 
 def test_the_paper_s_list_is_offered() -> None:
-    names = {one.name for one in PARAMETERS}
+    names = {parameter.name for parameter in PARAMETERS}
     assert names >= {
         "table height", "conveyor x", "payload", "centre of mass", "belt speed", "belt jitter", "camera bias",
         "camera scale", "camera drift", "camera dropout", "occlusion", "actuation delay",
     }  # fmt: skip
 
 
-@pytest.mark.parametrize("parameter", PARAMETERS, ids=lambda one: one.name)
+@pytest.mark.parametrize("parameter", PARAMETERS, ids=lambda parameter: parameter.name)
 def test_each_shipped_parameter_applies_or_says_what_is_not_there(parameter: ParameterTable) -> None:
     assert parameter.apply is not None
     module, _, name = parameter.apply.partition(":")
@@ -74,9 +74,11 @@ def test_each_shipped_parameter_applies_or_says_what_is_not_there(parameter: Par
 def test_a_heavier_part_is_as_one_that_was_built_so() -> None:
     with Cell(3) as cell, Cell(3, scene=Scene(parts=(Box(mass=0.4),))) as built:
         disturb(cell, "part_mass", "offset", 0.3)
-        one, other = cell.simulation.model, built.simulation.model
+        expected, actual = cell.simulation.model, built.simulation.model
         for field in ("body_mass", "body_inertia", "body_invweight0", "dof_invweight0", "body_subtreemass"):
-            np.testing.assert_allclose(getattr(one, field), getattr(other, field), rtol=1e-9, err_msg=field)
+            np.testing.assert_allclose(
+                getattr(expected, field), getattr(actual, field), rtol=1e-9, err_msg=field
+            )
         np.testing.assert_array_equal(cell.simulation.data.qpos, built.simulation.data.qpos)
 
 
@@ -84,9 +86,9 @@ def test_friction_in_the_grip_is_that_of_pairs_with_pads_alone() -> None:
     with Cell(3) as cell:
         before = pairs(cell)
         disturb(cell, "friction_of_pads", "scale", -0.5)
-        changed = {one for one, friction in pairs(cell).items() if friction != before[one]}
+        changed = {key for key, friction in pairs(cell).items() if friction != before[key]}
     assert changed
-    assert all(any("pad" in name for name in one) for one in changed)
+    assert all(any("pad" in name for name in pair) for pair in changed)
 
 
 def test_a_worn_gripper_stays_worn_when_its_force_is_set() -> None:
@@ -231,12 +233,12 @@ def test_nothing_changes_by_nothing() -> None:
     with Cell(3) as cell, Cell(3) as other:
         disturb(cell, "part_mass", "offset", 0.0)
         disturb(cell, "base_position", "offset", 0.0, axis="x")
-        for one in (cell, other):
-            one.arm.move_by(y=0.02)
+        for changed_cell in (cell, other):
+            changed_cell.arm.move_by(y=0.02)
         state = mujoco.mjtState.mjSTATE_PHYSICS
         found = []
-        for one in (cell, other):
-            values = np.zeros(mujoco.mj_stateSize(one.simulation.model, state))
-            mujoco.mj_getState(one.simulation.model, one.simulation.data, values, state)
+        for changed_cell in (cell, other):
+            values = np.zeros(mujoco.mj_stateSize(changed_cell.simulation.model, state))
+            mujoco.mj_getState(changed_cell.simulation.model, changed_cell.simulation.data, values, state)
             found.append(values)
         np.testing.assert_array_equal(*found)

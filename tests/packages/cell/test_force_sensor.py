@@ -147,8 +147,8 @@ def test_it_reads_once_per_tick_with_the_makers_noise() -> None:
     for _ in range(400):
         cell.simulation.tick()
         readings.append(cell.force_sensor.wrench())
-    assert statistics.stdev(one.fx for one in readings) == pytest.approx(0.1, rel=0.15)
-    assert statistics.stdev(one.ty for one in readings) == pytest.approx(0.005, rel=0.15)
+    assert statistics.stdev(reading.fx for reading in readings) == pytest.approx(0.1, rel=0.15)
+    assert statistics.stdev(reading.ty for reading in readings) == pytest.approx(0.005, rel=0.15)
 
 
 def test_beyond_its_range_it_reads_the_end_of_it() -> None:

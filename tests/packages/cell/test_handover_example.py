@@ -134,5 +134,5 @@ def test_its_equipment_has_a_vocabulary_beside_the_cells() -> None:
     configuration = load_configuration(EXAMPLE)
     found = load_vocabulary(configuration.vocabulary, configuration.root)
     assert {"station:Zone.request", "mutabot_cell.arm:Arm.start_move_to"} <= {
-        one.target for one in found.operations
+        operation.target for operation in found.operations
     }

@@ -87,10 +87,10 @@ def test_a_copy_of_the_whole_state_goes_on_bit_identically_with_parts_asleep() -
     model, data = cell.simulation.model, cell.simulation.data
     copy = mujoco.MjData(model)
     mujoco.mj_copyData(copy, model, data)
-    for one in (data, copy):
-        one.joint("box 4").qvel[0] = 0.3
+    for copied in (data, copy):
+        copied.joint("box 4").qvel[0] = 0.3
         for _ in range(200):
-            mujoco.mj_step(model, one)
+            mujoco.mj_step(model, copied)
     assert copy.qpos.tobytes() == data.qpos.tobytes()
 
 

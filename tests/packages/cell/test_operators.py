@@ -70,7 +70,7 @@ def test_a_left_handed_pose_is_mirrored_whichever_way_its_orientation_is_written
     rpy = quantity("rpy", Kind.EULER, None, "deg", order="xyz")
     parts = Operation("robot:Arm.move_to", (y, *thetas))
     whole = Operation("robot:Arm.put", (y, rpy))
-    values = {"y": 0.2, **{one.name: angle for one, angle in zip(thetas, angles, strict=True)}}
+    values = {"y": 0.2, **{theta.name: angle for theta, angle in zip(thetas, angles, strict=True)}}
     found = written("left-handed", Subject(parts, quantity=y), values)
     assert found.pop("y") == -0.2
     assert rotation_from_euler(*found.values()) == pytest.approx(expected)
@@ -92,8 +92,8 @@ def test_euler_angles_in_the_reverse_order_are_the_product_of_the_same_turns(ang
 def test_a_quaternion_in_the_other_order_and_back_is_the_same(order: str) -> None:
     back = "xyzw" if order == "wxyz" else "wxyz"
     numbers = [0.1, -0.5, 0.7, math.sqrt(1 - 0.75)]
-    for one in (order, back):
-        turned = quantity("turned", Kind.QUATERNION, order=one)
+    for written_order in (order, back):
+        turned = quantity("turned", Kind.QUATERNION, order=written_order)
         subject = Subject(Operation("robot:Arm.orient", (turned,)), quantity=turned)
         numbers = written("quaternion-order", subject, {"turned": numbers})["turned"]
     assert numbers == pytest.approx([0.1, -0.5, 0.7, 0.5])

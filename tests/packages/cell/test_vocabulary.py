@@ -53,7 +53,7 @@ def test_mutants_are_made_of_suction_force_and_light_barriers(tmp_path: Path) ->
     command = [sys.executable, "-m", "mutabot", "-C", str(tmp_path), "list", "--json"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
-    found = {(one["call"], one["operator"]) for one in json.loads(done.stdout)["mutants"]}
+    found = {(mutant["call"], mutant["operator"]) for mutant in json.loads(done.stdout)["mutants"]}
     assert found >= {
         ("cell.suction.on", "skip"),
         ("cell.suction.on", "opposite"),

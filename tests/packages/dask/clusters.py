@@ -110,10 +110,10 @@ def shipment_of(folder: Path) -> Shipment:
 
 def ends(path: Path) -> Ends:
     """All outcomes of a journal, bar what differs between equal runs."""
-    found = {(one.mutant, one.round): to_data(one) for one in outcomes(path)}
+    found = {(outcome.mutant, outcome.round): to_data(outcome) for outcome in outcomes(path)}
     return {
-        key: {name: item for name, item in one.items() if name not in _ACCIDENTAL}
-        for key, one in found.items()
+        key: {name: item for name, item in value.items() if name not in _ACCIDENTAL}
+        for key, value in found.items()
     }
 
 

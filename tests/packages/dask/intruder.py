@@ -42,7 +42,7 @@ def submit(address: str, security: Any, file: str) -> None:
 
 
 async def send_to_all(addresses: list[str], security: Any, file: str) -> None:
-    tasks = [asyncio.ensure_future(send(one, security, file)) for one in addresses]
+    tasks = [asyncio.ensure_future(send(address, security, file)) for address in addresses]
     done, _ = await asyncio.wait(tasks, timeout=5 * PATIENCE)
     for task in done:
         task.exception()

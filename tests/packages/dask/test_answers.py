@@ -274,7 +274,9 @@ def test_a_thousand_odd_answers_cost_no_other_outcome(seed: int) -> None:
     odd = {2 * number: odd_bytes(chance) for number in range(1, 501)}
     there = FakeCluster(odd)
     dispatch = Dispatch(there, iter([task(number) for number in range(1, 1001)]))  # type: ignore[arg-type]
-    results = {one.result.task.key: one.result for one in dispatch.answers() if isinstance(one, Answer)}
+    results = {
+        answer.result.task.key: answer.result for answer in dispatch.answers() if isinstance(answer, Answer)
+    }
     assert set(results) == set(range(1, 1001))
     for number, found in results.items():
         if number not in odd:

@@ -140,7 +140,7 @@ def test_a_process_that_is_killed_from_outside_each_time_is_an_error(
     project = write(tmp_path / "project", mission="def run(arm):\n    arm.move_by(0.5)\n", tests=tests)
     plain, found, _ = run_twice(project, there, engine="replay", only=("reverse",))
     assert found == plain
-    assert Verdict.ERROR in {one["verdict"] for one in found.values()}
+    assert Verdict.ERROR in {end["verdict"] for end in found.values()}
 
 
 @pytest.mark.whole
@@ -161,7 +161,7 @@ def test_a_machine_on_which_tests_fail_without_any_mutant_kills_nothing(
     project = write(tmp_path / "project", mission="def run(arm):\n    arm.move_by(0.5)\n", tests=tests)
     plain, found, told = run_twice(project, there, engine="replay", only=("reverse",))
     assert found == plain
-    assert "error" not in {one["verdict"] for one in found.values()}
+    assert "error" not in {end["verdict"] for end in found.values()}
     text = "\n".join(told.lines)
     assert "fails there without any mutant: " in text
     assert "no licence on this machine" in text

@@ -57,14 +57,18 @@ def ran(names: tuple[str, ...], fails: Fails, units: int = 14) -> tuple[FakeClus
     return (
         there,
         link,
-        {one.result.task.key: one.result for one in dispatch.answers() if isinstance(one, Answer)},
+        {
+            answer.result.task.key: answer.result
+            for answer in dispatch.answers()
+            if isinstance(answer, Answer)
+        },
     )
 
 
 @pytest.mark.parametrize("bad", [("bad",), ("bad", "worse"), ("bad", "worse", "worst")])
 def test_a_worker_at_which_two_units_fail_gets_no_more(bad: tuple[str, ...]) -> None:
     there, link, results = ran((*bad, "good"), lambda worker, mutant: worker != "good")
-    assert all(one.lost is None for one in results.values())
+    assert all(result.lost is None for result in results.values())
     assert len(results) == 14
     for worker in bad:
         assert sum(name == worker for name, _ in link.given) == 2
@@ -82,7 +86,7 @@ def test_no_unit_goes_twice_to_a_worker_that_it_was_lost_at() -> None:
 
 def test_units_that_fail_everywhere_leave_no_worker_out() -> None:
     there, _, results = ran(("one", "two"), lambda worker, mutant: mutant in (8, 9, 10, 11))
-    assert {number for number, one in results.items() if one.lost is not None} == {8, 9, 10, 11}
+    assert {number for number, result in results.items() if result.lost is not None} == {8, 9, 10, 11}
     assert there.roster.usable == ["one", "two"]
 
 
@@ -95,5 +99,5 @@ def test_a_worker_that_fails_later_is_left_out_as_well() -> None:
         return worker == "one" and len(seen) > 6
 
     there, _, results = ran(("one", "two"), fails)
-    assert all(one.lost is None for one in results.values())
+    assert all(result.lost is None for result in results.values())
     assert there.roster.usable == ["two"]

@@ -89,9 +89,9 @@ def test_forged_outcomes_are_an_error_of_that_unit_alone(
         finally:
             process.kill()
     found = outcomes(project / ".mutabot" / "journal.sqlite")
-    (forged,) = (one for one in found if one.verdict is Verdict.ERROR)
+    (forged,) = (outcome for outcome in found if outcome.verdict is Verdict.ERROR)
     assert "does not fit" in str(forged.message)
-    assert [one.verdict for one in found if one is not forged] == [Verdict.KILLED] * 3
+    assert [outcome.verdict for outcome in found if outcome is not forged] == [Verdict.KILLED] * 3
     told = capsys.readouterr().err
     assert told.count("is not used: its answer does not fit") == 1
     assert told.count("the campaign goes on on this machine") == 1

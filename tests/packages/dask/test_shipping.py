@@ -43,7 +43,7 @@ def committed(folder: Path, *names: str) -> Path:
     write_project(folder, "def run(arm):\n    arm.move_by(0.5)\n", "def test_run():\n    pass\n")
     put(folder, "data/table.json", "tests/conftest.py", *names)
     put(folder, ".gitignore", content=b"local_settings.py\n")
-    if not any((one / ".git").exists() for one in (folder, *folder.parents)):
+    if not any((above / ".git").exists() for above in (folder, *folder.parents)):
         git(folder, "init", "-q")
     git(folder, "add", "-A", ".")
     git(folder, "commit", "-qm", "first")
@@ -54,8 +54,10 @@ def committed(folder: Path, *names: str) -> Path:
 def members(bundle: Bundle) -> dict[str, tuple[tarfile.TarInfo, bytes]]:
     """Everything in a bundle, as a worker would read it."""
     with tarfile.open(fileobj=io.BytesIO(bundle.data)) as tar:
-        files = ((one, tar.extractfile(one) if one.isfile() else None) for one in tar.getmembers())
-        return {one.name: (one, file.read() if file is not None else b"") for one, file in files}
+        files = (
+            (member, tar.extractfile(member) if member.isfile() else None) for member in tar.getmembers()
+        )
+        return {member.name: (member, file.read() if file is not None else b"") for member, file in files}
 
 
 def sent(folder: Path) -> dict[str, tuple[tarfile.TarInfo, bytes]]:
@@ -64,7 +66,7 @@ def sent(folder: Path) -> dict[str, tuple[tarfile.TarInfo, bytes]]:
     found = members(bundle)
     assert not [name for name, (_, content) in found.items() if SECRET in content]
     assert SECRET not in bundle.data
-    return {os.path.relpath(name, bundle.inner): one for name, one in found.items()}
+    return {os.path.relpath(name, bundle.inner): value for name, value in found.items()}
 
 
 def configured(folder: Path, files: str) -> Shipment:

@@ -91,22 +91,22 @@ def log(folder: Path) -> list[dict[str, object]]:
 @pytest.mark.whole
 def test_a_campaign_runs_one_mutant_at_a_time_between_safe_states(folder: Path, server: RobotServer) -> None:
     assert mutabot(folder, "run", "--hardware", "yes", "-o", "hardware.stop=[]") == 0
-    told = ["begin" if "begin" in one else "end" if "end" in one else one.get("safe") for one in log(folder)
-            if "sent" not in one]  # fmt: skip
+    told = ["begin" if "begin" in row else "end" if "end" in row else row.get("safe") for row in log(folder)
+            if "sent" not in row]  # fmt: skip
     assert told == ["before", "begin", "after", "end"] * (len(told) // 4)
     assert len((folder / "safe.log").read_text(encoding="utf-8").splitlines()) == len(told) // 2
     found = outcomes(folder / ".mutabot" / "journal.sqlite")
-    assert {one.engine for one in found} == {"replay"}
-    assert [one for one in server.lines() if one.startswith("at") and "-" in one] == []
+    assert {outcome.engine for outcome in found} == {"replay"}
+    assert [line for line in server.lines() if line.startswith("at") and "-" in line] == []
 
 
 @pytest.mark.whole
 def test_every_command_that_reached_the_robot_is_in_the_log(folder: Path, server: RobotServer) -> None:
     mutabot(folder, "run", "--hardware", "yes", "-o", "hardware.stop=[]")
     server.settle()
-    sent = [one["sent"] for one in log(folder) if "sent" in one]
-    assert sent.count("robot:Arm.move_to") == sum(one.startswith("at") for one in server.lines())
-    assert sent.count("robot:Arm.grip") == sum(one in ("open", "closed") for one in server.lines())
+    sent = [entry["sent"] for entry in log(folder) if "sent" in entry]
+    assert sent.count("robot:Arm.move_to") == sum(line.startswith("at") for line in server.lines())
+    assert sent.count("robot:Arm.grip") == sum(line in ("open", "closed") for line in server.lines())
 
 
 @pytest.mark.whole
@@ -115,11 +115,11 @@ def test_a_surprise_stops_the_campaign_and_the_next_run_goes_on_after_it(
 ) -> None:
     assert mutabot(folder, "run", "--hardware", "yes") == 4
     assert "stopped at a surprise: a guard kept a command back" in capsys.readouterr().err
-    known = {one.mutant for one in outcomes(folder / ".mutabot" / "journal.sqlite")}
-    before = len([one for one in log(folder) if "begin" in one and one.get("mutant") in known])
+    known = {outcome.mutant for outcome in outcomes(folder / ".mutabot" / "journal.sqlite")}
+    before = len([entry for entry in log(folder) if "begin" in entry and entry.get("mutant") in known])
     while mutabot(folder, "run", "--hardware", "yes") == 4:
         pass
-    again = [one["mutant"] for one in log(folder) if "begin" in one and one.get("mutant") in known]
+    again = [entry["mutant"] for entry in log(folder) if "begin" in entry and entry.get("mutant") in known]
     assert (len(again), before) == (len(known), len(known))
 
 
@@ -139,7 +139,7 @@ def test_a_missing_heartbeat_stops_the_campaign_at_once(
     assert process.returncode == 4
     assert "no heartbeat: cell_io:is_alive raises RuntimeError: drive 2 is off" in error
     late = [
-        one for one in server.received if one[0] > came + 5.0
+        message for message in server.received if message[0] > came + 5.0
     ]  # a period, the question, and a busy machine
     assert late == []
 
@@ -148,7 +148,10 @@ def test_a_missing_heartbeat_stops_the_campaign_at_once(
     "number",
     [
         signal.SIGINT,
-        *(pytest.param(one, marks=pytest.mark.whole) for one in (signal.SIGTERM, signal.SIGKILL)),
+        *(
+            pytest.param(signal_number, marks=pytest.mark.whole)
+            for signal_number in (signal.SIGTERM, signal.SIGKILL)
+        ),
     ],
 )
 def test_nothing_more_is_sent_when_the_controller_ends(
@@ -167,7 +170,7 @@ def test_nothing_more_is_sent_when_the_controller_ends(
     assert len(server.received) - count <= (1 if number == signal.SIGKILL else 0)
     if number != signal.SIGKILL:
         assert "stop" in log(folder)[-2] or "stop" in log(folder)[-1]
-        assert any(one.get("safe") == "after" for one in log(folder))
+        assert any(entry.get("safe") == "after" for entry in log(folder))
 
 
 @pytest.mark.whole
@@ -177,7 +180,7 @@ def test_a_motion_that_was_stopped_is_not_repeated_unasked(folder: Path, server:
     with (folder / ".mutabot" / "hardware.jsonl").open("a", encoding="utf-8") as file:
         file.write(json.dumps({"begin": True, "mutant": first[0].mutant}) + "\n")
     mutabot(folder, "run", "--fresh", "--hardware", "yes", "-o", "hardware.stop=[]")
-    found = {one.mutant: one for one in outcomes(folder / ".mutabot" / "journal.sqlite")}
+    found = {outcome.mutant: outcome for outcome in outcomes(folder / ".mutabot" / "journal.sqlite")}
     assert "no motion is repeated unasked" in str(found[first[0].mutant].message)
 
 
@@ -214,7 +217,7 @@ def test_a_guard_that_the_original_violates_is_told_before_a_mutant_moves(
     narrow = ("-o", "guard.box=[{x=[0.5,0.7]}]", "-o", f"hardware.stop={surprises}")
     assert mutabot(folder, "run", "--hardware", "yes", *narrow) != 0
     assert "x leads to 0.4 m, the workspace is 0.5 to 0.7 m" in capsys.readouterr().err
-    assert [one for one in log(folder) if "mutant" in one or "sent" in one] == []
+    assert [entry for entry in log(folder) if "mutant" in entry or "sent" in entry] == []
     assert server.received == []
 
 

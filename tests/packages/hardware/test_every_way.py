@@ -120,7 +120,7 @@ class Robot:
 
     def outside(self) -> list[dict[str, float]]:
         """What lies outside the guard, by more than what units and text round off."""
-        return [one for one in self.received if not all(_is_within(*pair) for pair in one.items())]
+        return [values for values in self.received if not all(_is_within(*pair) for pair in values.items())]
 
 
 def _is_within(name: str, value: float) -> bool:
@@ -156,7 +156,7 @@ def _ways(number: Callable[[float], float]) -> dict[str, Made]:
 def operations(tmp_path: Path) -> dict[str, Operation]:
     (tmp_path / "robot.toml").write_text(dedent(VOCABULARY), encoding="utf-8")
     found = load_vocabulary(["robot.toml"], tmp_path).operations
-    return {one.target: one for one in found}
+    return {operation.target: operation for operation in found}
 
 
 def _adapter(operation: Operation) -> Adapter:
@@ -207,7 +207,9 @@ def _sent(adapter: Adapter, robot: Robot, random: Random, *, by_values: bool) ->
 
 def _changed(operations: dict[str, Operation], many: int, seed: int) -> Iterator[tuple[str, bool]]:
     random, robot = Random(seed), Robot()
-    adapters = [_adapter(one) for target, one in operations.items() if target in _ways(lambda scale: 0.5)]
+    adapters = [
+        _adapter(operation) for target, operation in operations.items() if target in _ways(lambda scale: 0.5)
+    ]
     assert len(adapters) == len(_ways(lambda scale: 0.5))
     for number in range(many):
         adapter = adapters[number % len(adapters)]
@@ -225,8 +227,8 @@ def test_no_mutated_command_outside_passes_whichever_way_it_goes(
     for target, is_passed in _changed(operations, many, seed=1):
         (passed if is_passed else kept)[target] += 1
     ways = _ways(lambda scale: 0.5)
-    assert min(passed[one] for one in ways) > many / 1000
-    assert min(kept[one] for one in ways) > many / 1000
+    assert min(passed[way] for way in ways) > many / 1000
+    assert min(kept[way] for way in ways) > many / 1000
 
 
 def test_without_a_guard_each_way_leads_outside(operations: dict[str, Operation]) -> None:

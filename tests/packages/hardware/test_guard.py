@@ -134,11 +134,13 @@ def test_no_mutated_command_outside_reaches_the_robot(
     server.settle()
     places = [line.split() for line in server.lines() if line.startswith("at")]
     speeds = [float(line.split()[1]) for line in server.lines() if line.startswith("speed")]
-    outside = [one for one in places if not (0.2 <= float(one[1]) <= 0.7 and 0.1 <= float(one[2]) <= 0.9)]
+    outside = [
+        place for place in places if not (0.2 <= float(place[1]) <= 0.7 and 0.1 <= float(place[2]) <= 0.9)
+    ]
     assert len(places) > least
     assert outside == []
-    assert [one for one in speeds if not one <= 0.25 or math.isnan(one)] == []
-    assert sum(one.verdict is Verdict.GUARDED for one in found) > 1
+    assert [speed for speed in speeds if not speed <= 0.25 or math.isnan(speed)] == []
+    assert sum(outcome.verdict is Verdict.GUARDED for outcome in found) > 1
 
 
 SIMPLE = """
@@ -165,7 +167,7 @@ def test_a_mutant_that_a_guard_stops_is_outside_the_score(
     names = ("arm.move_to#1:x:reverse", "arm.grip#1:closed:opposite", "arm.move_by#1:call:skip")
     only = tuple(f"program.py:pick:{name}" for name in names)
     made = outcomes_of(write_project(tmp_path, SIMPLE, CHECKED), engine, only=only)
-    found = {one.mutant: one for one in made}
+    found = {outcome.mutant: outcome for outcome in made}
     stopped = found["program.py:pick:arm.move_to#1:x:reverse"]
     assert stopped.verdict is Verdict.GUARDED
     assert not stopped.verdict.is_valid
@@ -189,7 +191,7 @@ def test_a_program_that_catches_everything_does_not_hide_that_a_guard_stopped_it
     tests = CHECKED.replace('assert arm.pose() == {"x": 0.6000000000000001, "z": 0.6}', "pass")
     only = ("program.py:pick:arm.move_to#1:x:reverse",)
     found = outcomes_of(write_project(tmp_path, program, tests), "auto", only=only)
-    assert [one.verdict for one in found] == [Verdict.GUARDED]
+    assert [outcome.verdict for outcome in found] == [Verdict.GUARDED]
 
 
 def test_what_a_wrong_reading_leads_to_is_stopped_as_well(tmp_path: Path, server: RobotServer) -> None:
@@ -205,7 +207,7 @@ def test_what_a_wrong_reading_leads_to_is_stopped_as_well(tmp_path: Path, server
 
 
 @pytest.mark.parametrize(
-    "engine", ["auto", *(pytest.param(one, marks=pytest.mark.whole) for one in ("fork", "replay"))]
+    "engine", ["auto", *(pytest.param(name, marks=pytest.mark.whole) for name in ("fork", "replay"))]
 )
 def test_a_guard_that_the_original_violates_is_told_before_anything_is_mutated(
     tmp_path: Path, server: RobotServer, engine: str
@@ -222,9 +224,9 @@ def test_a_guard_that_the_original_violates_is_told_before_anything_is_mutated(
 def test_outcomes_found_without_a_guard_are_not_those_with_one(tmp_path: Path, server: RobotServer) -> None:
     write_project(tmp_path, SIMPLE, CHECKED, guard="")
     name = "program.py:pick:arm.move_to#1:x:reverse"
-    before = {one.mutant: one.verdict for one in outcomes_of(tmp_path, "auto")}
+    before = {outcome.mutant: outcome.verdict for outcome in outcomes_of(tmp_path, "auto")}
     write_project(tmp_path, SIMPLE, CHECKED)
-    after = {one.mutant: one.verdict for one in outcomes_of(tmp_path, "auto")}
+    after = {outcome.mutant: outcome.verdict for outcome in outcomes_of(tmp_path, "auto")}
     assert (before[name], after[name]) == (Verdict.KILLED, Verdict.GUARDED)
 
 

@@ -110,7 +110,10 @@ def test_forbidden_operations_do_not_pass() -> None:
 def test_a_command_passes_only_after_the_one_that_has_to_come_before() -> None:
     table = {"operations": ["robot:drill"], "after": ["robot:clamp"], "until": ["robot:release"]}
     guard = TableGuard({"order": [table]})
-    found = [why(guard, operation=one) is None for one in (DRILL, CLAMP, DRILL, RELEASE, DRILL, CLAMP, DRILL)]
+    found = [
+        why(guard, operation=operation) is None
+        for operation in (DRILL, CLAMP, DRILL, RELEASE, DRILL, CLAMP, DRILL)
+    ]
     assert found == [False, True, True, True, False, True, True]
     guard.start_test()
     assert why(guard, operation=DRILL) == "is allowed only after robot:clamp"

@@ -38,7 +38,7 @@ _SOME: dict[str, Any] = {
 )
 def vendor(request: pytest.FixtureRequest) -> Vendor:
     found = VENDORS[request.param]
-    missing = [one for one in found.packages if find_spec(one) is None]
+    missing = [package for package in found.packages if find_spec(package) is None]
     if missing:
         pytest.skip(f"{', '.join(missing)} is not installed: requirements-reports.lock, or make foreign")
     return found
@@ -64,11 +64,11 @@ def test_no_mutant_outside_the_guard_reaches_the_controller(
     vendor: Vendor, controller: Controller, tmp_path: Path
 ) -> None:
     found = campaign(vendor.write(tmp_path), **_SOME)
-    kept = [one for one in found if one.verdict is Verdict.GUARDED]
+    kept = [outcome for outcome in found if outcome.verdict is Verdict.GUARDED]
     assert vendor.outside(controller) == []
     assert len(controller.of(vendor.moving)) > 2  # the original's, and those of mutants within the guard
     assert kept
-    assert {str(one.message).split(": ")[0] for one in kept} == {vendor.operation}
+    assert {str(outcome.message).split(": ")[0] for outcome in kept} == {vendor.operation}
 
 
 @pytest.mark.whole
@@ -87,11 +87,13 @@ def test_a_campaign_on_hardware_sends_what_the_log_says_and_nothing_else(
         main(["-C", str(folder), "run", "--hardware", "yes", "-o", "hardware.stop=[]", "--only", "repeat"])
         == 0
     )
-    sent = [one for one in log(folder) if one.get("sent") == vendor.operation]
+    sent = [entry for entry in log(folder) if entry.get("sent") == vendor.operation]
     assert sent
     assert vendor.outside(controller) == []
-    assert len(sent) == len([one for one in controller.received if one.name.startswith(vendor.counted)])
-    assert {one.engine for one in outcomes(folder / ".mutabot" / "journal.sqlite")} == {"replay"}
+    assert len(sent) == len(
+        [message for message in controller.received if message.name.startswith(vendor.counted)]
+    )
+    assert {outcome.engine for outcome in outcomes(folder / ".mutabot" / "journal.sqlite")} == {"replay"}
 
 
 def test_a_command_that_the_guard_cannot_read_does_not_reach_the_controller(

@@ -94,7 +94,7 @@ def toolbox(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def operations(folder: Path) -> dict[str, Any]:
-    return {one.target: one for one in load_vocabulary(["robot.toml"], folder).operations}
+    return {operation.target: operation for operation in load_vocabulary(["robot.toml"], folder).operations}
 
 
 def test_what_only_makes_or_computes_something_is_no_operation(toolbox: Path) -> None:
@@ -229,9 +229,12 @@ def fieldbus(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_writes_to_tags_and_objects_are_messages_with_the_values_seen(fieldbus: Path) -> None:
     found = {
-        name: (one.message, {pattern.text: [q.values for q in pattern.arguments] for pattern in one.patterns})
+        name: (
+            operation.message,
+            {pattern.text: [q.values for q in pattern.arguments] for pattern in operation.patterns},
+        )
         for name in ("Plc.__setitem__", "Plc.write", "Variable.raw")
-        for one in [operations(fieldbus)[f"plc:{name}"]]
+        for operation in [operations(fieldbus)[f"plc:{name}"]]
     }
     paths = {name: str(message) for name, (message, _) in found.items()}
     assert paths == {"Plc.__setitem__": "tag", "Plc.write": "tags_values[0][0]", "Variable.raw": "self"}
@@ -258,10 +261,13 @@ def test_what_nobody_passes_is_no_part_of_a_message(tmp_path: Path) -> None:
         "test_program.py": "import program\ndef test_it(): program.run()\n",
     }
     propose(write(tmp_path, files))
-    found = {name.partition(":")[2]: one for name, one in operations(tmp_path).items()}
+    found = {name.partition(":")[2]: operation for name, operation in operations(tmp_path).items()}
     assert {
-        name: [(pattern.text, [str(one.path) for one in pattern.arguments]) for pattern in one.patterns]
-        for name, one in found.items()
+        name: [
+            (pattern.text, [str(argument.path) for argument in pattern.arguments])
+            for pattern in value.patterns
+        ]
+        for name, value in found.items()
     } == {"publish": [("cell/speed", ["payload"])], "write_register": [("289", ["value", "signed"])]}
 
 

@@ -99,7 +99,9 @@ def test_what_it_does_not_say_stands_beside_it(bullet: Path) -> None:
 
 def test_check_tells_in_one_line_what_of_it_no_test_reaches(bullet: Path) -> None:
     propose(bullet, [Path("program.py")])
-    described = {one.target.partition(":")[2] for one in load_vocabulary(("pybullet",), bullet).operations}
+    described = {
+        operation.target.partition(":")[2] for operation in load_vocabulary(("pybullet",), bullet).operations
+    }
     missing = described - {"setJointMotorControl2", "stepSimulation", "getJointState"}
     with (bullet / "pybullet.py").open("a") as file:
         file.writelines(f"def {name}(*args): ...\n" for name in sorted(missing))

@@ -177,7 +177,9 @@ def everything() -> list[Use]:
 def test_a_vocabulary_takes_the_entries_as_they_are(tmp_path: Path) -> None:
     text = vocabulary_text(entries(uses(everything())), ["mission.py"])
     (tmp_path / "robot.toml").write_text(text, encoding="utf-8")
-    found = {one.target: one for one in load_vocabulary(["robot.toml"], tmp_path).operations}
+    found = {
+        operation.target: operation for operation in load_vocabulary(["robot.toml"], tmp_path).operations
+    }
     mains = {"publish", "receive", "call", "goal", "parameter", "tick", "sleep", "transform"}
     assert [target for target in found if target.partition(" ")[0] in mains] == [
         "publish /arm/goal",
@@ -277,7 +279,7 @@ class Flag:
 def test_messages_of_both_generations_are_described_without_their_packages() -> None:
     parts = Values()
     look(parts, Path1(), message=True)
-    found = {path: (one.type, one.values) for path, one in parts.parts.items()}
+    found = {path: (value.type, value.values) for path, value in parts.parts.items()}
     assert found == {
         "header.stamp": ("time", [2.5]),
         "header.frame_id": ("string", ["base"]),

@@ -135,7 +135,7 @@ def write(folder: Path, files: Mapping[str, str]) -> Path:
 
 
 def operations(project: Path) -> dict[str, Any]:
-    return {one.target: one for one in load_vocabulary(["robot.toml"], project).operations}
+    return {operation.target: operation for operation in load_vocabulary(["robot.toml"], project).operations}
 
 
 @pytest.fixture
@@ -190,7 +190,10 @@ def test_every_way_to_reach_an_operation_is_followed(proposed: tuple[Path, str])
 
 def test_arguments_get_kind_axis_unit_and_mode_from_their_names(proposed: tuple[Path, str]) -> None:
     move = operations(proposed[0])["robot:Arm.move_by"]
-    found = {one.name: (one.kind, one.axis, one.unit, one.mode) for one in move.arguments}
+    found = {
+        argument.name: (argument.kind, argument.axis, argument.unit, argument.mode)
+        for argument in move.arguments
+    }
     assert found == {
         "dx": (Kind.TRANSLATION, "x", "m", Mode.BY),
         "dy": (Kind.TRANSLATION, "y", "m", Mode.BY),
@@ -201,7 +204,7 @@ def test_arguments_get_kind_axis_unit_and_mode_from_their_names(proposed: tuple[
 
 def test_fields_of_an_argument_are_absolute_targets(proposed: tuple[Path, str]) -> None:
     found = operations(proposed[0])["robot:Arm.go_to"].arguments
-    assert {(one.name, one.unit, one.mode) for one in found} == {
+    assert {(quantity.name, quantity.unit, quantity.mode) for quantity in found} == {
         ("target.x", "mm", Mode.TO),
         ("target.y", "mm", Mode.TO),
         ("target.yaw", "deg", Mode.TO),
@@ -210,13 +213,15 @@ def test_fields_of_an_argument_are_absolute_targets(proposed: tuple[Path, str]) 
 
 def test_results_are_read_from_values_and_names(proposed: tuple[Path, str]) -> None:
     found = operations(proposed[0])
-    assert {(one.name, one.kind, one.unit) for one in found["robot:Arm.pose"].result} == {
+    assert {(quantity.name, quantity.kind, quantity.unit) for quantity in found["robot:Arm.pose"].result} == {
         (".x", Kind.POSITION, "mm"),
         (".y", Kind.POSITION, "mm"),
         (".yaw", Kind.ORIENTATION, "deg"),
     }
-    assert [(one.kind, one.unit) for one in found["robot:Arm.distance_mm"].result] == [(Kind.DISTANCE, "mm")]
-    assert [(one.name, one.axis) for one in found["robot:Camera.locate"].result] == [
+    assert [(quantity.kind, quantity.unit) for quantity in found["robot:Arm.distance_mm"].result] == [
+        (Kind.DISTANCE, "mm")
+    ]
+    assert [(quantity.name, quantity.axis) for quantity in found["robot:Camera.locate"].result] == [
         ("[0]", "x"),
         ("[1]", "y"),
         ("[2]", "z"),
@@ -278,7 +283,7 @@ def test_text_commands_become_patterns(tmp_path: Path) -> None:
     propose(tmp_path)
     assert load_configuration(tmp_path).tests == ("test_sorter.py",)
     found = operations(tmp_path)
-    patterns = {one.text: one for one in found["link:send"].patterns}
+    patterns = {pattern.text: pattern for pattern in found["link:send"].patterns}
     assert set(patterns) == {"pick", "release", "lift/{height:g}", "drop/{height:g}", "turn/{angle:g}"}
     assert patterns["pick"].opposite == "release"
     assert patterns["lift/{height:g}"].opposite == "drop/{height:g}"
@@ -287,7 +292,7 @@ def test_text_commands_become_patterns(tmp_path: Path) -> None:
     asked = '{ kind = "translation", axis = "z", unit = "m", mode = "by" }'
     assert f"# question: the unit: m, cm, mm? {asked}" in (tmp_path / "robot.toml").read_text()
     assert not found["link:read"].command
-    assert [one.values for one in found["link:read"].patterns[0].result] == [("red", "blue")]
+    assert [quantity.values for quantity in found["link:read"].patterns[0].result] == [("red", "blue")]
 
 
 VENDOR = """
@@ -409,7 +414,10 @@ def test_a_program_below_src_is_found(vendor: Path) -> None:
 )
 def test_the_names_that_vendors_use_are_understood(vendor: Path, target: str, expected: list[Any]) -> None:
     operation = operations(vendor)[f"vendor:{target}"]
-    found = [(one.name, one.kind, one.axis, one.unit, one.mode) for one in operation.arguments]
+    found = [
+        (argument.name, argument.kind, argument.axis, argument.unit, argument.mode)
+        for argument in operation.arguments
+    ]
     assert found == expected
     assert operation.command
 
@@ -418,7 +426,7 @@ def test_the_names_that_vendors_use_are_understood(vendor: Path, target: str, ex
 def test_a_pose_that_is_read_is_understood(vendor: Path, target: str) -> None:
     found = operations(vendor)[f"vendor:Robot.{target}"]
     assert not found.command
-    assert [(one.kind, one.axis, one.unit) for one in found.result] == [
+    assert [(quantity.kind, quantity.axis, quantity.unit) for quantity in found.result] == [
         (Kind.POSITION, axis, "m") for axis in "xyz"
     ]
 
@@ -505,7 +513,7 @@ def test_values_come_from_the_program_where_the_tests_call_the_same(tmp_path: Pa
         "tests/test_it.py": test,
     }
     propose(write(tmp_path, files))
-    assert [one.text for one in operations(tmp_path)["link:send"].patterns] == ["lift/{height:g}"]
+    assert [pattern.text for pattern in operations(tmp_path)["link:send"].patterns] == ["lift/{height:g}"]
 
 
 def test_tests_that_cannot_run_are_told_precisely_and_files_are_written(project: Path) -> None:
@@ -703,7 +711,7 @@ def test_programs_that_the_tests_start_as_processes_are_watched_there(tmp_path: 
     told = "\n".join(propose(write(tmp_path, files)))
     assert "calls 1 callable," in told
     (found,) = operations(tmp_path).values()
-    assert (found.target, [one.name for one in found.arguments]) == ("robot:Arm.move_by", ["x"])
+    assert (found.target, [argument.name for argument in found.arguments]) == ("robot:Arm.move_by", ["x"])
 
 
 def test_a_process_of_an_interpreter_that_has_no_mutabot_is_watched_as_well(tmp_path: Path) -> None:
@@ -762,10 +770,12 @@ def test_where_the_tests_stand_in_for_the_robot_methods_are_proposed(tmp_path: P
     for name, text in STAND_INS.items():
         (tmp_path / name).write_text(textwrap.dedent(text), encoding="utf-8")
     lines = propose(tmp_path)
-    operations = {one.target: one for one in load_vocabulary(["robot.toml"], tmp_path).operations}
+    operations = {
+        operation.target: operation for operation in load_vocabulary(["robot.toml"], tmp_path).operations
+    }
     assert set(operations) == {"*:*.move_by", "robot:Lamp.set_output", "*:*.rotate"}
     assert str(operations["*:*.move_by"].signature) == "(dx, speed=0.1)"
-    assert [one.name for one in operations["*:*.rotate"].arguments] == ["yaw_deg"]
+    assert [argument.name for argument in operations["*:*.rotate"].arguments] == ["yaw_deg"]
     (mocked,) = (line for line in lines if line.startswith("seen on mocks or fakes"))
     assert set(mocked.rpartition(": ")[2].split(", ")) == {"robot:Lamp.set_output", "move_by", "rotate"}
     assert mocked.startswith("seen on mocks or fakes, proposed as what they stand for, or by name")

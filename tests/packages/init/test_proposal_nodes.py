@@ -73,9 +73,10 @@ def operation(project: Path, name: str) -> Any:
 
 
 def test_the_nodes_of_an_object_are_commands_with_what_is_written_beside_them(project: Path) -> None:
-    found = {one.text: one.arguments for one in operation(project, "Node.write_value").patterns}
+    found = {pattern.text: pattern.arguments for pattern in operation(project, "Node.write_value").patterns}
     assert {
-        text: [(one.kind, one.axis, one.values) for one in written] for text, written in found.items()
+        text: [(quantity.kind, quantity.axis, quantity.values) for quantity in written]
+        for text, written in found.items()
     } == {
         "ns=2;s=Belt.Speed": [(Kind.OUTPUT, None, (0.5, 0.0))],
         "ns=2;s=Gate.Open": [(Kind.OUTPUT, None, (False, True))],
@@ -86,7 +87,7 @@ def test_the_nodes_of_an_object_are_commands_with_what_is_written_beside_them(pr
 def test_what_a_node_reads_is_told_by_its_name_and_values(project: Path) -> None:
     reading = operation(project, "Node.read_value")
     assert not reading.command
-    assert {one.text: [part.kind for part in one.result] for one in reading.patterns} == {
+    assert {pattern.text: [part.kind for part in pattern.result] for pattern in reading.patterns} == {
         "ns=2;s=Gauge.Height": [Kind.DISTANCE],
         "ns=2;s=Door.IsOpen": [Kind.FLAG],
     }
@@ -94,7 +95,7 @@ def test_what_a_node_reads_is_told_by_its_name_and_values(project: Path) -> None
 
 def test_registers_are_told_apart_by_their_numbers(project: Path) -> None:
     writing = operation(project, "Registers.write_register")
-    assert {one.text: [part.values for part in one.arguments] for one in writing.patterns} == {
+    assert {pattern.text: [part.values for part in pattern.arguments] for pattern in writing.patterns} == {
         "40001": [(100, 200)],
         "40007": [(False, True)],
     }
@@ -102,7 +103,7 @@ def test_registers_are_told_apart_by_their_numbers(project: Path) -> None:
 
 def test_an_object_whose_text_changes_is_no_node(project: Path) -> None:
     found = operation(project, "Arm.set_x")
-    assert [one.name for one in found.arguments] == ["x"]
+    assert [argument.name for argument in found.arguments] == ["x"]
     assert found.message is None
 
 
@@ -154,6 +155,6 @@ def test_the_draft_says_which_calls_are_no_commands_of_it(tmp_path: Path) -> Non
     propose(tmp_path)
     assert "# 1 more call without one name in tag" in (tmp_path / "robot.toml").read_text()
     (writing,) = load_vocabulary(["robot.toml"], tmp_path).operations
-    assert {one.text: [part.values for part in one.arguments] for one in writing.patterns} == {
+    assert {pattern.text: [part.values for part in pattern.arguments] for pattern in writing.patterns} == {
         "Valve.Open": [(False, True)]
     }

@@ -108,7 +108,8 @@ def test_only_what_a_change_can_have_altered_runs_again(name: str, project: Path
     for file, text in changed.items():
         (folder / file).write_text(text, newline="")
     said = mutabot(folder, "--since", "HEAD")
-    found = re.search(r"since HEAD .*?: (\d+) to run, (\d+) taken over(?: \d+ to run: (.*?) mutants 0/)?", said)
+    pattern = r"since HEAD .*?: (\d+) to run, (\d+) taken over(?: \d+ to run: (.*?) mutants 0/)?"
+    found = re.search(pattern, said)
     assert found, said
     assert (int(found[1]) > 0, found[3] or "") == (why != "", why)
     # those that the tests before have killed

@@ -47,7 +47,7 @@ def test_words_texts_and_comments_are_marked(file: str) -> None:
     found = re.finditer(
         pattern.replace("[^]", r"[\s\S]"), text, (re.I if "i" in flags else 0) | (re.M if "m" in flags else 0)
     )
-    assert [f"{KINDS[(one.lastindex or 1) - 1]} {one[0]}" for one in found] == marked
+    assert [f"{KINDS[(token.lastindex or 1) - 1]} {token[0]}" for token in found] == marked
 
 
 @pytest.mark.parametrize("file", CASES)

@@ -25,7 +25,8 @@ def ran(folder: Path, name: str, text: str, inputs: dict[str, Any] | None = None
     (folder / name).write_text(text, encoding="latin-1")
     cell = Cell(seed=1, noise=False)
     given = {
-        key: (lambda one=one: one(cell)) if callable(one) else one for key, one in (inputs or {}).items()
+        key: (lambda function=value: function(cell)) if callable(value) else value
+        for key, value in (inputs or {}).items()
     }
     return cell, load(folder / name).run(cell, inputs=given)
 

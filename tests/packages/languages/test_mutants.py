@@ -22,20 +22,22 @@ def planned(folder: Path, language: str) -> list[PlannedText]:
 
 
 def described(found: list[PlannedText], operator: str) -> list[str]:
-    return [one.description for one in found if one.difference.operator == operator]
+    return [
+        planned_text.description for planned_text in found if planned_text.difference.operator == operator
+    ]
 
 
 @pytest.mark.parametrize("language", FILES)
 def test_each_changes_one_line_and_reads_as_well_as_the_original(language: str, tmp_path: Path) -> None:
     found = planned(tmp_path, language)
     assert len(found) > 80
-    for one in found:
-        diff = one.program.diff(one.difference)
+    for planned_text in found:
+        diff = planned_text.program.diff(planned_text.difference)
         assert [line[0] for line in diff[2:]] == ["@", "-", "+"], diff
-        changed = one.program.changed(one.difference)
-        assert one.program.language.read("", changed).diagnostics == ()
-        kept = one.program.text
-        for edit in sorted(one.difference.edits, key=lambda edit: -edit.start):
+        changed = planned_text.program.changed(planned_text.difference)
+        assert planned_text.program.language.read("", changed).diagnostics == ()
+        kept = planned_text.program.text
+        for edit in sorted(planned_text.difference.edits, key=lambda edit: -edit.start):
             kept = kept[: edit.start] + edit.text + kept[edit.end :]
         assert kept == changed
 
@@ -44,8 +46,13 @@ def test_each_changes_one_line_and_reads_as_well_as_the_original(language: str, 
 def test_ids_are_different(language: str, tmp_path: Path) -> None:
     found = planned(tmp_path, language)
     keys = [
-        (one.site.id, one.difference.operator, one.difference.variant, one.difference.magnitude)
-        for one in found
+        (
+            planned_text.site.id,
+            planned_text.difference.operator,
+            planned_text.difference.variant,
+            planned_text.difference.magnitude,
+        )
+        for planned_text in found
     ]
     assert len(keys) == len(set(keys))
 
@@ -57,13 +64,17 @@ def test_they_read_as_an_engineer_would_write_them(tmp_path: Path) -> None:
     assert "PTP XP1 C_PTP deleted" in described(krl, "drop-statement")
     assert "movej(over, a=1.4, v=1.05) → movel(over)" in described(script, "swap-motion")
     assert "WaitDI part, 1\\MaxTime:=2 → WaitDI part, 0\\MaxTime:=2" in described(rapid, "invert-input")
-    blends = [one for one in (*rapid, *krl) if one.difference.operator == "change-blend"]
+    blends = [
+        planned_text for planned_text in (*rapid, *krl) if planned_text.difference.operator == "change-blend"
+    ]
     assert blends
-    assert all("cannot be observed" in (one.difference.reason or "") for one in blends)
+    assert all("cannot be observed" in (planned_text.difference.reason or "") for planned_text in blends)
 
 
 def test_every_operator_is_one_that_is_declared_and_most_have_mutants(tmp_path: Path) -> None:
-    used = {one.difference.operator for language in FILES for one in planned(tmp_path, language)}
+    used = {
+        planned_text.difference.operator for language in FILES for planned_text in planned(tmp_path, language)
+    }
     assert used <= set(BY_NAME)
     assert set(BY_NAME) - used <= {"replace-arithmetic", "drop-any", "other-input"}
 
@@ -95,16 +106,18 @@ def test_another_input_is_one_that_the_program_reads(
 
 
 def test_what_inline_forms_and_the_ini_fold_write_has_none(tmp_path: Path) -> None:
-    assert not [one for one in planned(tmp_path, "krl") if "bas" in one.description.lower()]
+    assert not [
+        planned_text for planned_text in planned(tmp_path, "krl") if "bas" in planned_text.description.lower()
+    ]
 
 
 def test_another_magnitude_is_made_of_the_same_fault(tmp_path: Path) -> None:
     written(tmp_path, "rapid")
     (program,) = read_program(tmp_path, ["pick.mod"])
     found = [
-        one.description
-        for one in mutants_of(program, Sizes.only(7.5))
-        if one.difference.operator == "shift-target" and one.difference.variant == "z-"
+        planned_text.description
+        for planned_text in mutants_of(program, Sizes.only(7.5))
+        if planned_text.difference.operator == "shift-target" and planned_text.difference.variant == "z-"
     ]
     assert "Offs(pOver,0,0,-107.5)" in found[1]
 
@@ -135,9 +148,9 @@ def test_they_have_verdicts(engine: str, tmp_path: Path) -> None:
     command = [sys.executable, "-m", "mutabot", "run", "--json", "--engine", engine, "-o", "repeats=false"]
     done = subprocess.run([*command, *options], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
-    found = {one["description"]: one["rounds"][0] for one in json.loads(done.stdout)["mutants"]}
-    verdicts = {text: one["verdict"] for text, one in found.items()}
-    assert {one["engine"] for one in found.values()} == {engine}
+    found = {mutant["description"]: mutant["rounds"][0] for mutant in json.loads(done.stdout)["mutants"]}
+    verdicts = {text: end["verdict"] for text, end in found.items()}
+    assert {end["engine"] for end in found.values()} == {engine}
     assert verdicts["LIN XP1 deleted"] == "killed"
     assert verdicts["LIN XP1 → PTP XP1"] == "survived"
     assert verdicts["WAIT FOR $IN[25]==TRUE → WAIT SEC 0"] == "survived"
@@ -156,7 +169,9 @@ def test_what_the_program_does_not_come_to_is_not_covered(engine: str, tmp_path:
     (tmp_path / "mutabot.toml").write_text(f'{settings}families = ["program-conventional"]\n')
     command = [sys.executable, "-m", "mutabot", "run", "--json", "--engine", engine, "-o", "repeats=false"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
-    verdicts = {one["description"]: one["rounds"][0]["verdict"] for one in json.loads(done.stdout)["mutants"]}
+    verdicts = {
+        mutant["description"]: mutant["rounds"][0]["verdict"] for mutant in json.loads(done.stdout)["mutants"]
+    }
     assert verdicts["x + 5 → x - 5"] == "not covered"
     assert verdicts["x > 1 → x >= 1"] == "killed"
 
@@ -173,7 +188,7 @@ def test_a_variable_that_has_lost_its_value_is_an_error_of_the_program(engine: s
     (tmp_path / "mutabot.toml").write_text(f'{settings}families = ["program-conventional"]\n')
     command = [sys.executable, "-m", "mutabot", "run", "--json", "--engine", engine, "-o", "repeats=false"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
-    ends = {one["description"]: one["rounds"][0] for one in json.loads(done.stdout)["mutants"]}
+    ends = {mutant["description"]: mutant["rounds"][0] for mutant in json.loads(done.stdout)["mutants"]}
     assert ends["x = 1 deleted"]["verdict"] == "killed"
     assert "a.script:2: x has no value" in ends["x = 1 deleted"]["message"]
     assert ends["x = y deleted"]["verdict"] == "survived"
@@ -224,7 +239,7 @@ def test_a_printed_difference_has_the_bytes_of_its_file_so_that_patch_takes_it(t
 )
 def test_a_comment_in_the_program_s_own_language_accepts_mutants_of_its_line(name: str, text: str) -> None:
     found = comments_in(name, text)
-    assert [(one.operator, one.numbers, one.why) for one in found] == [
+    assert [(finding.operator, finding.numbers, finding.why) for finding in found] == [
         ("skip", (3, 3), "why"),
         ("*", (3, 3), "why"),
     ]

@@ -36,17 +36,21 @@ def test_tokens_and_trivia_are_the_whole_text_to_the_byte(name: str, text: str) 
 
 @pytest.mark.parametrize(("name", "text"), PROGRAMS)
 def test_programs_are_read_without_diagnostics(name: str, text: str) -> None:
-    assert [one.text for one in read(name, text).diagnostics] == []
+    assert [diagnostic.text for diagnostic in read(name, text).diagnostics] == []
 
 
 @pytest.mark.parametrize(("name", "text"), PROGRAMS)
 def test_a_file_without_any_token_is_read_to_its_end(name: str, text: str) -> None:
     language = language_for(name)
     assert language is not None
-    found = [one for one in language.parser.lexis.pattern.finditer(text) if one.lastgroup not in TRIVIA]
+    found = [
+        candidate
+        for candidate in language.parser.lexis.pattern.finditer(text)
+        if candidate.lastgroup not in TRIVIA
+    ]
     chosen = random.Random(0).sample(found, min(60, len(found)))
-    for one in chosen:
-        cut = text[: one.start()] + text[one.end() :]
+    for token in chosen:
+        cut = text[: token.start()] + text[token.end() :]
         parsed = read(name, cut)
         for node in parsed.tree.walk():
             assert 0 <= node.start <= node.end <= len(cut)
@@ -55,7 +59,7 @@ def test_a_file_without_any_token_is_read_to_its_end(name: str, text: str) -> No
 def test_a_diagnostic_names_place_expectation_and_routine() -> None:
     text = "MODULE M\n  PROC main()\n    WaitTime 1;\n    n := ;\n    Reset d;\n  ENDPROC\nENDMODULE\n"
     parsed = read("m.mod", text)
-    assert [one.text for one in parsed.diagnostics] == [
+    assert [diagnostic.text for diagnostic in parsed.diagnostics] == [
         "m.mod:4:10: expected an expression, found ';' (in PROC main)"
     ]
     kinds = [node.kind for node in parsed.tree.bodies[0][0].bodies[0][0].bodies[0]]

@@ -64,7 +64,7 @@ def test_show_marks_the_statement_in_its_file(project: Path) -> None:
     for mutant in json.loads(mutabot(project, "results", "--json"))["mutants"]:
         text, line = PLACES[mutant["site"].partition(":")[0]]
         shown = mutabot(project, "show", mutant["id"])
-        (marked,) = (one for one in shown.splitlines() if one.startswith(">"))
+        (marked,) = (candidate for candidate in shown.splitlines() if candidate.startswith(">"))
         assert marked.split("│")[0].split() == [">", str(line)]
         assert text in marked
         assert "Gr" not in marked
@@ -73,10 +73,10 @@ def test_show_marks_the_statement_in_its_file(project: Path) -> None:
 
 def test_sarif_has_the_statement_at_its_place(project: Path, tmp_path: Path) -> None:
     found: list[Any] = json.loads(report(project, tmp_path, "sarif"))["runs"][0]["results"]
-    places = [one["locations"][0]["physicalLocation"] for one in found]
-    assert {one["artifactLocation"]["uri"] for one in places} == PLACES.keys()
-    for one in places:
-        file, region = one["artifactLocation"]["uri"], one["region"]
+    places = [item["locations"][0]["physicalLocation"] for item in found]
+    assert {item["artifactLocation"]["uri"] for item in places} == PLACES.keys()
+    for place in places:
+        file, region = place["artifactLocation"]["uri"], place["region"]
         line = FILES[file].splitlines()[region["startLine"] - 1]
         assert line[region["startColumn"] - 1 : region["endColumn"] - 1] == PLACES[file][0]
 
@@ -86,7 +86,7 @@ def test_each_format_names_file_and_line(format: str, project: Path, tmp_path: P
     text = report(project, tmp_path, format)
     if format == "csv":
         rows = [*csv.DictReader(text.splitlines())]
-        assert {(one["file"], int(one["line"])) for one in rows} == {
+        assert {(row["file"], int(row["line"])) for row in rows} == {
             (file, line) for file, (_, line) in PLACES.items()
         }
     elif format == "jsonl":
@@ -97,14 +97,14 @@ def test_each_format_names_file_and_line(format: str, project: Path, tmp_path: P
 
 def test_accepted_mutants_of_robot_programs_are_survivors_no_more(project: Path) -> None:
     mutants = json.loads(mutabot(project, "results", "--json"))["mutants"]
-    ids = [one["id"] for one in mutants if one["site"].startswith("a.mod")]
+    ids = [mutant["id"] for mutant in mutants if mutant["site"].startswith("a.mod")]
     mutabot(project, "accept", *ids, "--why", "only the time differs")
     text = FILES["b.src"].replace("WAIT SEC 0.5", "WAIT SEC 0.5 ; mutabot: accept *: as well")
     (project / "b.src").write_bytes(text.encode("latin-1"))
     shown = mutabot(project, "run", "--only", "scale-wait", "-o", "repeats=false")
     assert "c.script" in shown
     mutants = json.loads(mutabot(project, "results", "--json"))["mutants"]
-    accepted = {one["site"].partition(":")[0]: one.get("accepted") for one in mutants}
+    accepted = {mutant["site"].partition(":")[0]: mutant.get("accepted") for mutant in mutants}
     assert accepted["a.mod"]
     assert accepted["b.src"]
     assert not accepted["c.script"]

@@ -165,7 +165,7 @@ def test_pytest_shows_nothing_of_the_machine_where_a_program_stops(tmp_path: Pat
     with pytest.raises(ProgramError) as caught:
         run(tmp_path, "a.script", "def a():\n  b = 1 / 0\nend\n")
     shown = caught.traceback.filter(caught)
-    assert {Path(one.path).name for one in shown} == {"test_running.py"}
+    assert {Path(entry.path).name for entry in shown} == {"test_running.py"}
 
 
 @pytest.mark.parametrize(

@@ -75,7 +75,7 @@ def test_what_a_program_waits_for_is_what_the_input_says(tmp_path: Path) -> None
     text = "DEF a( )\nWAIT FOR $IN[1]==FALSE\nWAIT FOR $IN[2]\nSIGNAL LAMP $OUT[1]\n$OUT[2]=TRUE\nEND\n"
     language = language_for("a.src")
     assert language is not None
-    found = {one.name: one for one in signals_of([language.read("a.src", text)], "krl")}
+    found = {signal.name: signal for signal in signals_of([language.read("a.src", text)], "krl")}
     assert [found[name].value for name in ("$IN[1]", "$IN[2]")] == [False, True]
     assert found["$OUT[1]"].told == "lamp"
     assert '# [out."$OUT[1]"]' in starting.cell_map_text("a.src", [*found.values()])

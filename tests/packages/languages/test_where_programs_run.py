@@ -97,13 +97,13 @@ def verdicts(folder: Path, suite: str, engine: str, vocabulary: str) -> dict[str
     command = [sys.executable, "-m", "mutabot", "run", "--json", "--engine", engine, "-o", "repeats=false"]
     done = subprocess.run([*command, *only], cwd=folder, capture_output=True, text=True, check=False)
     assert done.stdout, done.stderr
-    found = {one["description"]: one["rounds"][0] for one in json.loads(done.stdout)["mutants"]}
-    return {text: (one["verdict"], one.get("message") or "") for text, one in found.items()}
+    found = {mutant["description"]: mutant["rounds"][0] for mutant in json.loads(done.stdout)["mutants"]}
+    return {text: (end["verdict"], end.get("message") or "") for text, end in found.items()}
 
 
 def ends(found: dict[str, tuple[str, str]]) -> dict[str, str]:
     """The verdicts alone: a mutant with no measured effect has survived."""
-    return {text: "survived" if one[0] == "no effect" else one[0] for text, one in found.items()}
+    return {text: "survived" if value[0] == "no effect" else value[0] for text, value in found.items()}
 
 
 @pytest.mark.parametrize("engine", ["fork", pytest.param("replay", marks=pytest.mark.whole)])

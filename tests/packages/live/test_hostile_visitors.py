@@ -144,9 +144,9 @@ def test_there_are_so_many_connections_at_a_time_and_no_more(
             for _ in range(MOST + 5)
         ]
         assert all(map(is_closed, held[MOST:]))
-        assert not any(is_closed(one, wait=False) for one in held[:MOST])
-        for one in held[:10]:
-            one.close()
+        assert not any(is_closed(held_connection, wait=False) for held_connection in held[:MOST])
+        for connection in held[:10]:
+            connection.close()
         assert "<html" in answered(served.address)
 
 
@@ -195,9 +195,9 @@ def test_a_campaign_loses_nothing_to_a_thousand_connections_and_messages(tmp_pat
         wait_for(tmp_path / "is_here", process)
         with contextlib.ExitStack() as stack:
             for number in range(IDLE):
-                one = stack.enter_context(socket.socket())
-                one.setblocking(number < FILES - 20)  # others than these would wait for a place
-                one.connect_ex(place(found[1]))
+                connection = stack.enter_context(socket.socket())
+                connection.setblocking(number < FILES - 20)  # others than these would wait for a place
+                connection.connect_ex(place(found[1]))
                 if number == FILES - 20:
                     (tmp_path / "go_on").touch()
             for message in messages(found[1], MESSAGES, random.Random(42)):

@@ -165,9 +165,13 @@ def test_it_listens_on_this_machine_alone(served: Served) -> None:
 def test_several_browsers_hear_the_same_and_one_that_comes_back_only_what_is_new(served: Served) -> None:
     served.feed.put({"done": 1})
     served.feed.note("something")
-    with listening(served.address) as one, listening(served.address) as other:
-        first = [next(one), next(one)]
-        assert first == [next(other), next(other)] == [(1, "state", {"done": 1}), (2, "note", "something")]
+    with listening(served.address) as first_browser, listening(served.address) as second_browser:
+        first = [next(first_browser), next(first_browser)]
+        assert (
+            first
+            == [next(second_browser), next(second_browser)]
+            == [(1, "state", {"done": 1}), (2, "note", "something")]
+        )
     served.feed.put({"done": 2})
     with listening(served.address, last=2) as again:
         assert next(again) == (3, "state", {"done": 2})

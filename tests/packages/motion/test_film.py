@@ -35,9 +35,9 @@ def test_every_picture_comes_out_as_it_went_in(
         writer.add(number / 8, picture(pixels, height, width))
     writer.close()
     film = Film(file)
-    found = [(one.time, one.height, one.width, one.pixels) for one in film.pictures()]
-    assert found == [(number / 8, *one) for number, one in enumerate(taken)]
-    assert film.times == [one[0] for one in found]
+    found = [(frame.time, frame.height, frame.width, frame.pixels) for frame in film.pictures()]
+    assert found == [(number / 8, *frame) for number, frame in enumerate(taken)]
+    assert film.times == [frame[0] for frame in found]
 
 
 @settings(max_examples=40, deadline=None)

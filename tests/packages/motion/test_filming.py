@@ -87,9 +87,11 @@ def test_original_and_mutant_are_filmed_and_the_feed_makes_no_mutants(
     assert "pictures" not in capsys.readouterr().err
     with JournalReader.open(Path(".mutabot", JOURNAL)) as journal:
         mutants = journal.mutants()
-    assert {one.site.text for one in mutants} == {"arm.go"}, "what the feed reads is no call of the program's"
+    assert {mutant.site.text for mutant in mutants} == {"arm.go"}, (
+        "what the feed reads is no call of the program's"
+    )
 
-    skip = next(str(one.number) for one in mutants if one.operator == "skip")
+    skip = next(str(mutant.number) for mutant in mutants if mutant.operator == "skip")
     assert main(["motion", skip, "--video", "a.mp4", "-j", "1"]) == 0
     _, err = capsys.readouterr()
     assert "a.mp4: " in err

@@ -35,7 +35,7 @@ class Found:
                 decode = factory.decoder_for(channel.message_encoding, schema) or json.loads
                 self.messages[channel.topic].append((message.log_time / 1e9, decode(message.data)))
                 self.schemas[channel.topic] = schema.name
-            self.about = {one.name: one.metadata for one in reader.iter_metadata()}
+            self.about = {record.name: record.metadata for record in reader.iter_metadata()}
 
 
 @pytest.fixture(scope="module")
@@ -104,4 +104,4 @@ def test_an_earlier_file_is_written_over(tmp_path: Path) -> None:
     for _ in range(2):
         written(mcap, file, shown(mutant=None))
     assert "/mutant/log" not in Found(file).messages
-    assert [one.name for one in tmp_path.iterdir()] == ["a.mcap"]
+    assert [path.name for path in tmp_path.iterdir()] == ["a.mcap"]

@@ -23,9 +23,9 @@ def chunks(file: Path) -> list[Any]:
 
 
 def column(found: list[Any], entity: str, name: str) -> list[Any]:
-    for one in found:
-        batch = one.to_record_batch()
-        if one.entity_path == entity and name in batch.schema.names:
+    for chunk in found:
+        batch = chunk.to_record_batch()
+        if chunk.entity_path == entity and name in batch.schema.names:
             return [value for row in batch.column(name).to_pylist() for value in row]
     raise AssertionError(f"no {name} of {entity}")
 
@@ -38,7 +38,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> list[Any]:
 
 
 def test_both_sides_have_their_things_paths_values_and_log(written: list[Any]) -> None:
-    entities = {one.entity_path for one in written}
+    entities = {chunk.entity_path for chunk in written}
     for side in ("original", "mutant"):
         for name in ("things/tool", r"things/a\ box", "paths/tool", "values/opening", "log"):
             assert f"/{side}/{name}" in entities
@@ -50,7 +50,9 @@ def test_poses_come_at_their_simulated_times(written: list[Any]) -> None:
     assert len(where) == STEPS
     assert where[10] == pytest.approx([0.5, 0.0, 0.3])
     assert column(written, "/mutant/things/tool", "Transform3D:quaternion")[0] == [0.0, 0.0, 0.0, 1.0]
-    moved = next(one for one in written if one.entity_path == "/mutant/things/tool" and one.timeline_names)
+    moved = next(
+        chunk for chunk in written if chunk.entity_path == "/mutant/things/tool" and chunk.timeline_names
+    )
     assert moved.timeline_names == ["simulated time"]
 
 
@@ -68,14 +70,14 @@ def test_the_log_tells_commands_contacts_and_the_fault(written: list[Any]) -> No
 
 def test_without_a_mutants_recording_the_original_is_there_alone(tmp_path: Path) -> None:
     rrd.write(tmp_path / "a.rrd", shown(mutant=None))
-    entities = {one.entity_path for one in chunks(tmp_path / "a.rrd")}
+    entities = {chunk.entity_path for chunk in chunks(tmp_path / "a.rrd")}
     assert "/original/things/tool" in entities
     assert not any(name.startswith("/mutant") for name in entities)
 
 
 def test_times_of_the_wall_clock_are_called_so(tmp_path: Path) -> None:
     rrd.write(tmp_path / "a.rrd", shown(original=RecordedPaths(recording(is_simulated=False)), mutant=None))
-    assert {name for one in chunks(tmp_path / "a.rrd") for name in one.timeline_names} == {"wall clock"}
+    assert {name for chunk in chunks(tmp_path / "a.rrd") for name in chunk.timeline_names} == {"wall clock"}
 
 
 def test_without_a_screen_the_viewer_is_not_opened_and_that_is_said(

@@ -88,7 +88,7 @@ def test_a_video_is_one_that_browsers_play_and_lasts_as_long_as_the_longer_side(
     assert len(frames) == int(3.0 * RATE) + 1 + int(1.5 * RATE), "1.5 s are shown in 3 s"
     assert all(side % 2 == 0 for side in frames[0].size)
     assert said == [f"{file}: {len(frames) / RATE:.1f} s, {file.stat().st_size / 1e6:.1f} MB"]
-    assert [one.name for one in tmp_path.glob("*.mp4")] == ["a.mp4"]
+    assert [path.name for path in tmp_path.glob("*.mp4")] == ["a.mp4"]
 
 
 def test_a_gif_is_as_long_as_the_longer_side_and_is_repeated(tmp_path: Path) -> None:
@@ -106,7 +106,7 @@ def test_a_gif_is_as_long_as_the_longer_side_and_is_repeated(tmp_path: Path) -> 
     assert (min(shades), max(shades)) == pytest.approx((60, 75), abs=3)
     assert shades == sorted(shades)
     assert said == [f"{file}: 4.5 s, {file.stat().st_size / 1e6:.1f} MB"]
-    assert [one.name for one in tmp_path.glob("*.gif")] == ["a.gif"]
+    assert [path.name for path in tmp_path.glob("*.gif")] == ["a.gif"]
 
 
 def test_a_long_gif_has_fewer_pictures_per_second(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -194,7 +194,7 @@ def test_a_video_that_is_interrupted_leaves_nothing_and_an_earlier_one_as_it_was
     with pytest.raises(KeyboardInterrupt):
         write_video(file, Frames(shown(), (Interrupted(), DrawnPictures(RecordedPaths(found)))), Counted())
     assert file.read_bytes() == before
-    assert [one.name for one in tmp_path.iterdir()] == ["a.mp4"]
+    assert [path.name for path in tmp_path.iterdir()] == ["a.mp4"]
 
 
 def test_a_drawing_shows_more_as_time_goes_on_and_both_sides_in_one_scale() -> None:

@@ -205,4 +205,4 @@ def test_where_hunks_stand_is_told_of_the_file_as_it_is(tmp_path: Path) -> None:
 def test_a_file_of_the_program_with_doctests_is_none_of_the_suite() -> None:
     files = FilesOfTests(["mission.py::mission.go", "tests/test_go.py::test_go"], ["mission.py"])
     found = ["mission.py", "tests/test_go.py", "tests/data/go.json", "robot.py", "cell/conftest.py"]
-    assert [files.has(one) for one in found] == [False, True, True, False, True]
+    assert [files.has(path) for path in found] == [False, True, True, False, True]

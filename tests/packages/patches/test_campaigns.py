@@ -154,8 +154,8 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def by_name(told: str) -> dict[str, dict[str, Any]]:
     """Mutants of a JSON document by the names of their patches."""
     found = {
-        one["description"].partition("/")[2].partition(".patch")[0]: one
-        for one in json.loads(told)["mutants"]
+        mutant["description"].partition("/")[2].partition(".patch")[0]: mutant
+        for mutant in json.loads(told)["mutants"]
     }
     assert found
     return found
@@ -168,7 +168,7 @@ def test_patches_end_as_plain_pytest_says_where_git_has_applied_them(project: Pa
     found = by_name(done.stdout)
     assert found.keys() == {*FUNCTIONS, *FILES, "added"}
     fails = {name: _plain_fails(project, name, tmp_path) for name in found}
-    states = {name: one["rounds"][0]["verdict"] for name, one in found.items()}
+    states = {name: mutant["rounds"][0]["verdict"] for name, mutant in found.items()}
     assert {name: state == "killed" for name, state in states.items()} == fails
     assert states["nowhere"] == "not covered"
     assert {name for name, state in states.items() if state == "survived"} == {
@@ -177,7 +177,7 @@ def test_patches_end_as_plain_pytest_says_where_git_has_applied_them(project: Pa
     assert {file: file.read_bytes() for file in before} == before
     assert not (copy / "cell/more.py").exists()
     assert f"{len(FILES) + 1} mutants that are active before any point" in done.stderr
-    left = {one["description"]: one["reason"] for one in json.loads(done.stdout)["left_out"]}
+    left = {omission["description"]: omission["reason"] for omission in json.loads(done.stdout)["left_out"]}
     assert left == {
         "patches/stale.diff": "hunk 1 does not apply to cell/move.py: line 1 was 'x', and there is "
         "'from functools import lru_cache'",
@@ -220,7 +220,7 @@ def test_functions_that_the_program_has_frozen_are_patched_in_a_fork(project: Pa
     assert names
     words = [word for name in names for word in ("--only", f"*{name}.patch*")]
     done = mutabot(None, project, "run", "--json", "--engine", "fork", "-o", "repeats=false", *words)
-    assert {one["rounds"][0]["verdict"] for one in by_name(done.stdout).values()} == {"killed"}
+    assert {mutant["rounds"][0]["verdict"] for mutant in by_name(done.stdout).values()} == {"killed"}
 
 
 def test_without_a_patch_the_setting_is_named(tmp_path: Path) -> None:

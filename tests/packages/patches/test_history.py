@@ -50,7 +50,7 @@ def told(project: Path, *words: str) -> dict[str, tuple[bool, str | None]]:
     done = mutabot(None, project, "patches", "--from-git", "HEAD~6..HEAD", "--json", *words)
     assert done.returncode == 0, done.stderr
     found = json.loads(done.stdout)["commits"]
-    return {one["subject"]: (bool(one["file"]), one["why_not"]) for one in found}
+    return {commit["subject"]: (bool(commit["file"]), commit["why_not"]) for commit in found}
 
 
 def test_fixes_are_taken_back_where_that_still_applies(project: Path) -> None:

@@ -66,7 +66,7 @@ def test_refusals_of_patched_programs(tmp_path: Path, engine: str) -> None:
         (project / f"patches/{name}.patch").write_text(patch)
     told = json.loads(mutabot(None, project, "run", "--json", "--engine", engine).stdout)
     found = {
-        one["description"].partition("/")[2].partition(".patch")[0]: one["rounds"][0]["verdict"]
-        for one in told["mutants"]
+        mutant["description"].partition("/")[2].partition(".patch")[0]: mutant["rounds"][0]["verdict"]
+        for mutant in told["mutants"]
     }
     assert found == {name: verdict for name, (_, _, verdict) in EDITS.items()}

@@ -122,13 +122,13 @@ def check_faults_of_the_middleware(
     """
     only = tuple(f"*:{name}" for name in wanted)
     found = run(project, families=("middleware",), only=only, rounds=1, **changes)
-    ends = {name.split(":", 2)[2]: one for name, one in found.items()}
-    assert {name: str(one.verdict) for name, one in ends.items()} == {
+    ends = {name.split(":", 2)[2]: value for name, value in found.items()}
+    assert {name: str(end.verdict) for name, end in ends.items()} == {
         name: verdict for name, (verdict, _) in wanted.items()
     }
-    for name, one in ends.items():
-        assert one.acted, name
-        assert wanted[name][1] in (one.message or ""), name
+    for name, outcome in ends.items():
+        assert outcome.acted, name
+        assert wanted[name][1] in (outcome.message or ""), name
 
 
 #: how a mutant ends whose driver comes up at most so many times, and what the campaign told

@@ -99,8 +99,10 @@ def test_what_a_node_of_ros_1_does_is_proposed_by_name(tmp_path: Path) -> None:
     told = "\n".join(propose(tmp_path, [Path("mission.py")]))
     text = (tmp_path / "robot.toml").read_text(encoding="utf-8")
     assert "1 passed" in told, told
-    found = {one.target: one for one in load_vocabulary(["robot.toml"], tmp_path).operations}
-    assert {target: one.named.type for target, one in found.items() if one.named is not None} == {
+    found = {
+        operation.target: operation for operation in load_vocabulary(["robot.toml"], tmp_path).operations
+    }
+    assert {target: value.named.type for target, value in found.items() if value.named is not None} == {
         "parameter /mission/step": None,
         "tick Mission.on_time": None,
         "timer Mission.on_time": None,
@@ -114,9 +116,9 @@ def test_what_a_node_of_ros_1_does_is_proposed_by_name(tmp_path: Path) -> None:
         "client /gripper/close": "std_srvs/SetBool",
     }
     assert len(found) == 11
-    y = next(one for one in found["publish /arm/move_by"].arguments if one.name == "linear.y")
+    y = next(argument for argument in found["publish /arm/move_by"].arguments if argument.name == "linear.y")
     assert (y.kind, y.axis, y.unit, y.mode) == ("translation", "y", "m", "by")
-    pose = {one.name: one for one in found["receive /arm/pose"].result}
+    pose = {quantity.name: quantity for quantity in found["receive /arm/pose"].result}
     assert (pose["point.y"].kind, pose["point.y"].frame) == ("position", "base")
     assert "# value  # seen: 0.25" in text
     assert "rospy" not in text

@@ -138,9 +138,9 @@ def test_a_vocabulary_of_names_is_enough_for_nodes_in_processes_of_their_own(tmp
     quiet = Quiet()
     request = request_for(tmp_path, only=["reverse", "opposite", "negate"])
     with Journal.open(run_campaign(request, quiet)) as journal:
-        mutants = {one.id.partition(":")[2]: one for one in journal.mutants()}
-        found = {one.mutant: one for one in journal.outcomes()}
-    told = {name: (found[one.id].verdict, found[one.id].message) for name, one in mutants.items()}
+        mutants = {mutant.id.partition(":")[2]: mutant for mutant in journal.mutants()}
+        found = {outcome.mutant: outcome for outcome in journal.outcomes()}
+    told = {name: (found[mutant.id].verdict, found[mutant.id].message) for name, mutant in mutants.items()}
     # 2 · 0.5 − 0.75 is refused by a message, closing by an answer; none of the two is a kill
     assert told["main:goals.publish#1:data:reverse"] == (Verdict.REFUSED, "/arm/note: data 5")
     gripper = 'main:rospy.ServiceProxy("/gripper/close", SetBool)#1:data:opposite'
@@ -148,7 +148,9 @@ def test_a_vocabulary_of_names_is_enough_for_nodes_in_processes_of_their_own(tmp
     # what tests read, and a pose read with the wrong sign, from which a refused goal is computed
     assert told["<module>:rospy.wait_for_message#1:data:negate"][0] is Verdict.KILLED
     assert told["on_pose:def on_pose#1:data:negate"][0] is Verdict.KILLED
-    assert {one.site.role for one in mutants.values() if one.site.span.file == "checker.py"} == {Role.ORACLE}
+    assert {mutant.site.role for mutant in mutants.values() if mutant.site.span.file == "checker.py"} == {
+        Role.ORACLE
+    }
     assert mutants["main:goals.publish#1:data:reverse"].description == (
         "publish /arm/goal of /miss*: data (x) 0.75 m → as far to the other side of where it is"
     )

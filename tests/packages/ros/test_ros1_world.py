@@ -143,12 +143,15 @@ def parameters(*rows: str) -> str:
     found = [f"of = {shipped['of']}"]
     for row in rows:
         name = row.rstrip(" +-")
-        (table,) = [one for one in shipped["parameter"] if one["name"] == name]
+        (table,) = [known_table for known_table in shipped["parameter"] if known_table["name"] == name]
         meant, ladder = ROWS[row]
         directions = [row[-1]] if row[-1] in "+-" else []
         keys = {"name": name, "apply": table["apply"], "names": meant, "directions": directions}
         keys |= {key: table[key] for key in ("of", "change", "unit") if key in table}
-        found += ["[[tool.mutabot.world.parameter]]", *(f"{key} = {one!r}" for key, one in keys.items())]
+        found += [
+            "[[tool.mutabot.world.parameter]]",
+            *(f"{key} = {value_given!r}" for key, value_given in keys.items()),
+        ]
         found += [f"ladder = {ladder}"]
         found += [f'options = {{ axis = "{table["options"]["axis"]}" }}'] if "options" in table else []
     return "\n".join(found)

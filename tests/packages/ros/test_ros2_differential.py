@@ -46,9 +46,9 @@ def differences(found: list[Outcome]) -> list[str]:
     """The behaviours whose records are not those that are kept, with both."""
     kept = read(KEPT)
     return [
-        f"{one.name}: {one.told()} not {kept[one.name].told()}"
-        for one in found
-        if not one.equals(kept[one.name])
+        f"{behaviour.name}: {behaviour.told()} not {kept[behaviour.name].told()}"
+        for behaviour in found
+        if not behaviour.equals(kept[behaviour.name])
     ]
 
 

@@ -100,8 +100,10 @@ def test_what_a_node_of_ros_2_does_is_proposed_by_name(tmp_path: Path) -> None:
     told = "\n".join(propose(tmp_path, [Path("mission.py")]))
     text = (tmp_path / "robot.toml").read_text(encoding="utf-8")
     assert "1 passed" in told, told
-    found = {one.target: one for one in load_vocabulary(["robot.toml"], tmp_path).operations}
-    assert {target: one.named.type for target, one in found.items() if one.named is not None} == {
+    found = {
+        operation.target: operation for operation in load_vocabulary(["robot.toml"], tmp_path).operations
+    }
+    assert {target: value.named.type for target, value in found.items() if value.named is not None} == {
         "parameter step": None,
         "tick Mission.on_time": None,
         "timer Mission.on_time": None,
@@ -112,12 +114,12 @@ def test_what_a_node_of_ros_2_does_is_proposed_by_name(tmp_path: Path) -> None:
         "call /gripper/close": "std_srvs/SetBool",
         "client /gripper/close": "std_srvs/SetBool",
     }
-    goal = {one.name: one for one in found["publish /goal"].arguments}
+    goal = {argument.name: argument for argument in found["publish /goal"].arguments}
     y = goal["pose.position.y"]
     assert (y.kind, y.axis, y.unit, y.mode, y.frame) == ("translation", "y", "m", "to", "base")
     assert goal["pose.orientation"].kind == "quaternion"
     (distance,) = found["receive /sensor/distance"].result
     assert (distance.kind, distance.unit) == ("distance", "m")
-    (closed,) = (one for one in found["call /gripper/close"].arguments if one.name == "data")
+    (closed,) = (argument for argument in found["call /gripper/close"].arguments if argument.name == "data")
     assert (closed.kind, closed.values) == ("opening", (False, True))
     assert "rclpy" not in text

@@ -90,7 +90,7 @@ def campaign(folder: Path, check: str = CHECK, value: str = "0.5", **changes: An
 
 
 def verdicts(results: Results) -> list[Verdict]:
-    return [outcome.verdict for one in results.mutants for outcome in one.outcomes]
+    return [outcome.verdict for result in results.mutants for outcome in result.outcomes]
 
 
 def test_a_campaign_runs_over_the_simulation_if_the_original_ends_there_as_over_real_ros(
@@ -102,12 +102,12 @@ def test_a_campaign_runs_over_the_simulation_if_the_original_ends_there_as_over_
         "(1 test compared)."
     )
     assert results.meta["simulation"] == "ros2"
-    assert said in [one.title for one in sections(results, str)]
+    assert said in [section.title for section in sections(results, str)]
     assert verdicts(results) == [Verdict.KILLED]
     assert results.verification is not None
     assert (results.verification.checked, results.verification.agreed) == (1, 1)
     assert "Verified: 1 of 1 outcomes end the same over the real middleware." in [
-        one.title for one in sections(results, str)
+        section.title for section in sections(results, str)
     ]
 
 
@@ -188,9 +188,9 @@ def test_what_ends_otherwise_over_real_ros_ends_so(tmp_path: Path) -> None:
     results = campaign(tmp_path, "assert heard(mission.run) == [0.5] or not ros_in_process.is_running()")
     assert verdicts(results) == [Verdict.SURVIVED]
     assert results.verification is not None
-    (one,) = results.verification.disagreements
-    assert one.first.startswith("killed")
-    assert one.second.startswith("survived")
+    (disagreement,) = results.verification.disagreements
+    assert disagreement.first.startswith("killed")
+    assert disagreement.second.startswith("survived")
     decision = decide(results)
     assert decision.exit_code == 4
 

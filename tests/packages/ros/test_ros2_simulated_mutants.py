@@ -85,8 +85,8 @@ def test_nodes_in_processes_of_their_own_are_killed_and_begin_anew(tmp_path: Pat
     [
         ("RuntimeError", True),
         *(
-            pytest.param(*one, marks=pytest.mark.whole)
-            for one in (("RuntimeError", False), ("()", False), ("()", True))
+            pytest.param(*parameters, marks=pytest.mark.whole)
+            for parameters in (("RuntimeError", False), ("()", False), ("()", True))
         ),
     ],
 )

@@ -337,11 +337,14 @@ def test_domains_do_not_hear_each_other() -> None:
     first, second = Context(), Context()
     rclpy.init(context=first, domain_id=1)
     rclpy.init(context=second, domain_id=2)
-    one, other = rclpy.create_node("one", context=first), rclpy.create_node("other", context=second)
-    publisher = one.create_publisher(Int32, "topic", 1)
-    other.create_subscription(Int32, "topic", print, 1)
-    assert publisher.get_subscription_count() == other.count_publishers("/topic") == 0
-    assert other.get_node_names() == ["other"]
+    first_node, second_node = (
+        rclpy.create_node("one", context=first),
+        rclpy.create_node("other", context=second),
+    )
+    publisher = first_node.create_publisher(Int32, "topic", 1)
+    second_node.create_subscription(Int32, "topic", print, 1)
+    assert publisher.get_subscription_count() == second_node.count_publishers("/topic") == 0
+    assert second_node.get_node_names() == ["other"]
     for context in (first, second):
         rclpy.shutdown(context=context)
 

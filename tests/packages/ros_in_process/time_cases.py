@@ -113,10 +113,10 @@ def test_everybody_waiting_for_ever_is_a_deadlock() -> None:
         threading.Event().wait()
     first, second = threading.Lock(), threading.Lock()
 
-    def take(one: threading.Lock, other: threading.Lock) -> None:
-        with one:
+    def take(left: threading.Lock, right: threading.Lock) -> None:
+        with left:
             time.sleep(0.1)
-            with other:
+            with right:
                 pass
 
     threads = [

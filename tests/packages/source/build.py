@@ -45,7 +45,8 @@ def refined(text: ProgramText, example: TextExample) -> ProgramText:
 def seen_in(*rounds: Sequence[Sighting]) -> Original:
     """An original whose only test reached these places, and saw this there in each round."""
     texts = (
-        TextSeen(sightings=(*one,), reached={"test": tuple(seen.place for seen in one)}) for one in rounds
+        TextSeen(sightings=(*sightings,), reached={"test": tuple(seen.place for seen in sightings)})
+        for sightings in rounds
     )
     return Original(text=dict(enumerate(texts)))
 

@@ -193,5 +193,5 @@ PROJECT = {
 def test_every_operator_has_the_verdicts_of_plain_pytest(tmp_path: Path) -> None:
     found = compare(write(tmp_path, PROJECT), families=(BUGS,), only={BUGS: 1000})
     assert found.disagreements == []
-    judged = {one.mutant.rpartition(":")[2].partition("=")[0] for one in found.compared}
-    assert judged == {one.name for one in SourceFaults().rules() if one.family == BUGS}
+    judged = {verdict.mutant.rpartition(":")[2].partition("=")[0] for verdict in found.compared}
+    assert judged == {rule.name for rule in SourceFaults().rules() if rule.family == BUGS}

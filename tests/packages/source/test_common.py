@@ -33,14 +33,14 @@ PROJECT = {
 def listed(folder: Path, capsys: pytest.CaptureFixture[str], *words: str) -> dict[int, str]:
     """The operators of the mutants that a run would have, by the mutants' numbers."""
     assert main(["-C", str(folder), "list", "--json", *words]) == 0
-    return {one["number"]: one["operator"] for one in json.loads(capsys.readouterr().out)["mutants"]}
+    return {mutant["number"]: mutant["operator"] for mutant in json.loads(capsys.readouterr().out)["mutants"]}
 
 
 def test_only_mutants_of_common_operators_are_kept(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     folder = write(tmp_path, PROJECT)
-    common = {one.name for one in load_all() if one.is_common}
+    common = {rule.name for rule in load_all() if rule.is_common}
     everything, kept = listed(folder, capsys), listed(folder, capsys, "--operators", "common")
     assert {"ABS", "AOR"} <= set(everything.values())
     assert kept == {number: name for number, name in everything.items() if name in common}

@@ -169,7 +169,11 @@ def test_tracebacks_show_the_users_lines_and_columns(tmp_path: Path) -> None:
     del sys.modules[Path(text.file).stem]
     with imported(tmp_path, text) as (module, _):
         assert where(module) == plain
-    add = next(choice for choice, _, one in choices(text) if (one.operator, one.variant) == ("AOR", "sub"))
+    add = next(
+        choice
+        for choice, _, alternative in choices(text)
+        if (alternative.operator, alternative.variant) == ("AOR", "sub")
+    )
     with imported(tmp_path, text, add) as (module, _):
         assert where(module) == plain  # what an alternative keeps stays where it stands
 
@@ -258,8 +262,8 @@ def test_a_place_that_has_told_all_is_not_looked_at_any_more(tmp_path: Path) -> 
             for _ in range(50):
                 module.f(value)
             assert {numbers["x"], numbers["x + x"]} <= hook.sightings.entered
-            found.append({one.place: one for one in hook.sightings.seen()})
-    looks = {name: [one[numbers[name]].hits for one in found] for name in ("x", "x + x")}
+            found.append({sighting.place: sighting for sighting in hook.sightings.seen()})
+    looks = {name: [sightings[numbers[name]].hits for sightings in found] for name in ("x", "x + x")}
     assert looks["x + x"] == [20, 21, 21, 21]  # it waits for a number
     assert looks["x"] == [20, 21, 21, 21]  # and a name until no other is of the same type
     assert found[3][numbers["x"]].kinds == ("integer", "text")
@@ -379,7 +383,11 @@ def test_line_ends_tabs_and_encodings_are_the_users(tmp_path: Path, end: str) ->
     source = end.join(lines).encode("latin-1")
     (tmp_path / "umlauts.py").write_bytes(source)
     (text,) = find_texts(tmp_path, ["umlauts.py"])
-    add = next(choice for choice, _, one in choices(text) if (one.operator, one.variant) == ("AOR", "sub"))
+    add = next(
+        choice
+        for choice, _, alternative in choices(text)
+        if (alternative.operator, alternative.variant) == ("AOR", "sub")
+    )
     with imported(tmp_path, text) as (module, _):
         assert module.f(3) == 4
     with imported(tmp_path, text, add) as (module, _):
@@ -433,10 +441,10 @@ def test_variables_that_would_change_what_a_name_means_do_not_stand_in(tmp_path:
         assert hook.sightings is not None
         seen = seen_in(hook.sightings.seen())
     (text,), _ = refine([text], seen)
-    found = {(place.span.function, place.text, one.text) for _, place, one in choices(text)}
+    found = {(place.span.function, place.text, alternative.text) for _, place, alternative in choices(text)}
     assert ("f", "a", "c") in found
     assert not {(function, name, "b") for function, name, _ in found if function == "f"} & found
-    assert not [one for one in found if one[0].endswith("h")]
+    assert not [entry for entry in found if entry[0].endswith("h")]
     assert ("f", "a", "a2") not in found
     with imported(tmp_path, text) as (module, _):
         assert module.f() == ((1, 5), 1)

@@ -54,7 +54,9 @@ def test_ids_are_unique_and_stable_under_edits_elsewhere(tmp_path: Path) -> None
 def test_mutants_know_what_turns_them_on(tmp_path: Path) -> None:
     text = text_of(tmp_path, SOURCE)
     planted = plan_mutants([text])
-    assert [one.active.data for one in planted if one.active] == [choice for choice, _, _ in choices(text)]
+    assert [planned_mutant.active.data for planned_mutant in planted if planned_mutant.active] == [
+        choice for choice, _, _ in choices(text)
+    ]
     assert planted[0].active == Activation.of_text(1, 0)
 
 
@@ -103,7 +105,7 @@ def test_after_the_baseline_only_fitting_types_are_left(tmp_path: Path) -> None:
     ]
     second = [Sighting(by_text["a"], 2, ("text",), ("b",)), Sighting(by_text["b"], 1, ("integer",))]
     (refined,), left_out = refine([text], seen_in(first, second))
-    assert [(one.operator, one.text) for _, _, one in choices(refined)] == [
+    assert [(alternative.operator, alternative.text) for _, _, alternative in choices(refined)] == [
         ("SVR", "b"),
         ("ABS", "abs(b)"),
         ("ABS", "-abs(b)"),
@@ -118,8 +120,11 @@ def test_after_the_baseline_only_fitting_types_are_left(tmp_path: Path) -> None:
 def test_where_no_test_comes_all_is_planted_that_may_fit(tmp_path: Path) -> None:
     text = text_of(tmp_path, "def f(a, b):\n    return a + b\n", "AOR", "SVR")
     (refined,), left_out = refine([text], Original())
-    assert {one.text for _, _, one in choices(refined) if one.operator == "SVR"} == {"a", "b"}
-    assert "a - b" in {one.text for _, _, one in choices(refined)}
+    assert {alternative.text for _, _, alternative in choices(refined) if alternative.operator == "SVR"} == {
+        "a",
+        "b",
+    }
+    assert "a - b" in {alternative.text for _, _, alternative in choices(refined)}
     assert left_out == []
 
 

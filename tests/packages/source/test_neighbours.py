@@ -12,8 +12,8 @@ from mutabot_source.neighbours import Neighbours
 def neighbour(text: str, line: int = 1) -> str | None:
     """The neighbour of the first argument of the call in a line."""
     tree = ast.parse(text)
-    call = next(one for one in ast.walk(tree) if isinstance(one, ast.Call) and one.lineno == line)
-    (given,) = call.args or [one.value for one in call.keywords]
+    call = next(node for node in ast.walk(tree) if isinstance(node, ast.Call) and node.lineno == line)
+    (given,) = call.args or [keyword.value for keyword in call.keywords]
     found = Neighbours(tree).next_of(given.value if isinstance(given, ast.Starred) else given)
     return None if found is None else ast.unparse(found)
 

@@ -73,13 +73,13 @@ def test_a_refusal_is_outside_and_one_of_the_originals_is_judged(tmp_path: Path)
         pytest.skip(why)
     found = run(write(tmp_path, PROJECT), families=("conventional",), only=ONLY, engine="auto")
     imported, read = (_of(found, file) for file in ("imported", "read"))
-    assert {one.engine for one in read.values()} == {"replay"}
+    assert {outcome.engine for outcome in read.values()} == {"replay"}
     # of a file that is really changed it is not known that this changes no value
     known = {
-        name: Verdict.SURVIVED if one.verdict is Verdict.NO_EFFECT else one.verdict
-        for name, one in imported.items()
+        name: Verdict.SURVIVED if outcome.verdict is Verdict.NO_EFFECT else outcome.verdict
+        for name, outcome in imported.items()
     }
-    assert {name: one.verdict for name, one in read.items()} == known
+    assert {name: outcome.verdict for name, outcome in read.items()} == known
     assert read["near:0.5 * 0.75#1:AOR=add"].verdict is Verdict.REFUSED
     # the robot refuses that call in the original as well: what the program then does is for the tests
     of_original = read["too_far:tries < 3#1:ROR=gt"]
@@ -87,4 +87,4 @@ def test_a_refusal_is_outside_and_one_of_the_originals_is_judged(tmp_path: Path)
 
 
 def _of(found: dict[str, Outcome], file: str) -> dict[str, Outcome]:
-    return {name.partition(":")[2]: one for name, one in found.items() if name.startswith(file)}
+    return {name.partition(":")[2]: value for name, value in found.items() if name.startswith(file)}

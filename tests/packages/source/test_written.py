@@ -22,10 +22,10 @@ def edited(content: bytes, text: str, operator: str, variant: str = "") -> bytes
 def found_in(content: bytes, text: str, operator: str, variant: str) -> tuple[TextPlace, Alternative]:
     places, _ = find_places(content, "mission.py", registry.select([operator]))
     return next(
-        (place, one)
+        (place, alternative)
         for place in places
-        for one in place.alternatives
-        if place.text == text and one.variant == variant
+        for alternative in place.alternatives
+        if place.text == text and alternative.variant == variant
     )
 
 

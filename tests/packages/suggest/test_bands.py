@@ -76,17 +76,17 @@ def test_all_that_any_check_kills_is_killed_and_no_check_is_needless() -> None:
     draw = random.Random(3)
     for _ in range(30):
         trials = [frozenset(draw.sample(range(8), draw.randint(1, 4))) for _ in range(9)]
-        checks: list[Any] = [_Check(one, (draw.random(),)) for one in trials]
-        whole = frozenset().union(*(one.trials for one in checks))
+        checks: list[Any] = [_Check(kills, (draw.random(),)) for kills in trials]
+        whole = frozenset().union(*(candidate.trials for candidate in checks))
         chosen: list[Any] = list(chosen_of(checks, {}))
-        assert frozenset().union(*(one.trials for one in chosen)) == whole
-        for one in chosen:
-            assert frozenset().union(*(other.trials for other in chosen if other is not one)) != whole
+        assert frozenset().union(*(chosen_check.trials for chosen_check in chosen)) == whole
+        for check in chosen:
+            assert frozenset().union(*(other.trials for other in chosen if other is not check)) != whole
 
 
 def test_of_checks_that_others_replace_the_one_that_a_person_would_rather_write_stays() -> None:
     trials = [{1, 2}, {2, 3}, {1, 3, 4}, {4, 5}]
-    checks: list[Any] = [_Check(frozenset(one), (-rank,)) for rank, one in enumerate(trials)]
+    checks: list[Any] = [_Check(frozenset(kills), (-rank,)) for rank, kills in enumerate(trials)]
     assert chosen_of(checks, {}) == [checks[0], checks[1], checks[3]]
 
 

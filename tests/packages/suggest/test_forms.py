@@ -43,7 +43,7 @@ def checks(project: SuiteFiles, style: str) -> list[CheckAtEnd]:
 
 
 def test_added_checks_pass_on_the_original_and_notice_a_fault(project: SuiteFiles) -> None:
-    found = [one for style in STYLES.values() for one in checks(project, style)]
+    found = [check for style in STYLES.values() for check in checks(project, style)]
     texts = texts_with(project, found)
     patched(project.root, project.diff(texts))
     assert {file: (project.root / file).read_text() for file in texts} == texts
@@ -71,7 +71,7 @@ def test_readings_of_what_the_tests_compare_have_the_quotes_of_all_others(projec
     file = project.root / place.file
     compared = """assert arm.seen["x"] > 0 and arm.seen['y'] > 0 and arm.seen["it's"] > 0"""
     file.write_text(f"{file.read_text()}\n\ndef test_more(arm):\n    {compared}\n")
-    texts = {one.text for one in readings_at(SuiteFiles(project.request), place)}
+    texts = {reading.text for reading in readings_at(SuiteFiles(project.request), place)}
     assert {'arm.seen["x"]', 'arm.seen["y"]', """arm.seen["it's"]"""} <= texts
 
 
@@ -81,5 +81,7 @@ def test_what_the_tests_compare_is_read_where_its_names_are_at_hand(project: Sui
     file = project.root / place.file
     compared = "arm.z > 0 and cup.z > 0 and arm.state()['x'] > len(arm.log)"
     file.write_text(f"{file.read_text()}\n\ndef test_more(arm, cup):\n    assert {compared}\n")
-    texts = {one.text for one in readings_at(SuiteFiles(project.request), place) if one.way == ORACLE}
+    texts = {
+        reading.text for reading in readings_at(SuiteFiles(project.request), place) if reading.way == ORACLE
+    }
     assert texts == {"arm.x", "arm.z", "arm.log", "len(arm.log)"}

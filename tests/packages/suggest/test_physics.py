@@ -75,7 +75,9 @@ def test_the_original_keeps_and_the_mutant_breaks_a_monitor_of_its_physics(
         readings={PLACE: []},
     )
     project: Any = NoFiles()
-    (check, *_) = [one for one in monitors(SuiteChecks(project), measured) if one.name.startswith(name)]
+    (check, *_) = [
+        monitor for monitor in monitors(SuiteChecks(project), measured) if monitor.name.startswith(name)
+    ]
     run(3, check)
     with pytest.raises(AssertionError, match=check.name):
         run(1, check, **changed)

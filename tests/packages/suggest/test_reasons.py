@@ -39,10 +39,10 @@ def mutant(number: int = 1) -> Mutant:
 
 
 def survivor(*diverged: Diverged, number: int = 1) -> MutantResult:
-    one = mutant(number)
+    target = mutant(number)
     looked = tuple(Looked(test.test, acted=True) for test in diverged)
-    outcome = Outcome(one.id, 0, Verdict.SURVIVED, diverged=diverged, looked=looked)
-    return MutantResult(one, (outcome,), None, "")
+    outcome = Outcome(target.id, 0, Verdict.SURVIVED, diverged=diverged, looked=looked)
+    return MutantResult(target, (outcome,), None, "")
 
 
 def apart(final: float, aside: float = 0.0, *, spread: float = 0.0001) -> Apart:
@@ -154,7 +154,7 @@ def test_one_test_is_looked_at_if_it_shows_all_survivors() -> None:
     other = [in_test("test_other", "box", apart(0.3))]
     project: Any = Project()
     places = chosen_places(project, [survivor(*both), survivor(*other, number=2)])
-    assert [one.path for one in places] == [("test_other",)]
+    assert [place.path for place in places] == [("test_other",)]
 
 
 def test_where_no_check_is_found_a_test_in_which_few_mutants_act_is_looked_at_too() -> None:
@@ -162,9 +162,9 @@ def test_where_no_check_is_found_a_test_in_which_few_mutants_act_is_looked_at_to
     here, everywhere = survivor(*tests), survivor(*tests[:2], number=2)
     project: Any = Project()
     places = chosen_places(project, [here, everywhere])
-    assert [one.path for one in places] == [("test_it",)]
+    assert [place.path for place in places] == [("test_it",)]
     others = other_places(project, [here, everywhere], [here], places)
-    assert [one.path for one in others] == [("test_other",)]
+    assert [other.path for other in others] == [("test_other",)]
     assert other_places(project, [here, everywhere], [], places) == []
     near = survivor(*(in_test(name, "tool", apart(0.0, 0.00005)) for name in ("test_it", "test_other")))
     assert other_places(project, [here], [near], places) == []
@@ -176,7 +176,7 @@ def test_a_test_whose_end_scatters_is_not_looked_at_where_another_shows_the_surv
         in_test("test_it", "box", apart(0.05)),
     ]
     project: Any = Project()
-    assert [one.path for one in chosen_places(project, [survivor(*tests)])] == [("test_it",)]
+    assert [place.path for place in chosen_places(project, [survivor(*tests)])] == [("test_it",)]
 
 
 def test_a_survivor_is_looked_at_where_it_differs_most_and_where_its_end_differs() -> None:
@@ -186,4 +186,4 @@ def test_a_survivor_is_looked_at_where_it_differs_most_and_where_its_end_differs
     ]
     project: Any = Project()
     places = chosen_places(project, [survivor(*tests)])
-    assert {one.path for one in places} == {("test_it",), ("test_other",)}
+    assert {place.path for place in places} == {("test_it",), ("test_other",)}

@@ -22,12 +22,12 @@ DOCUMENT = Path(__file__).parents[3] / "docs" / "suggest.md"
 
 def survivors(found: dict[str, Any]) -> set[str]:
     """The ids of mutants that a campaign let through."""
-    return {one["id"] for one in found["mutants"] if one["rounds"][0]["verdict"] == "survived"}
+    return {mutant["id"] for mutant in found["mutants"] if mutant["rounds"][0]["verdict"] == "survived"}
 
 
 def killed(found: dict[str, Any]) -> set[str]:
     """The ids of mutants that suggestions are said to kill."""
-    return {kill["mutant"]["id"] for one in found["suggestions"] for kill in one["kills"]}
+    return {kill["mutant"]["id"] for suggestion in found["suggestions"] for kill in suggestion["kills"]}
 
 
 @pytest.fixture
@@ -49,10 +49,10 @@ def test_what_is_suggested_kills_when_it_is_applied(
     found = found_by(SUGGEST, capsys)
 
     assert {path: path.read_bytes() for path in tree} == tree, "the user's tree has changed"
-    assert {one["style"] for one in found["suggestions"]} == {
+    assert {suggestion["style"] for suggestion in found["suggestions"]} == {
         STYLES[name] for name in files if name in STYLES
     }
-    left = {one["mutant"]["id"] for one in found["unsolved"]}
+    left = {survivor["mutant"]["id"] for survivor in found["unsolved"]}
     assert killed(found) | left == before
     assert killed(found).isdisjoint(left)
     section = DOCUMENT.read_text(encoding="utf-8").partition("\n## JSON\n")[2]
@@ -61,7 +61,9 @@ def test_what_is_suggested_kills_when_it_is_applied(
     assert {key for part in parts for key in part} <= documented
     patched(folder, found["diff"])
     assert passes(folder)[0] == 0
-    in_diff = {"suggestions": [one for one in found["suggestions"] if not one["by_hand"]]}
+    in_diff = {
+        "suggestions": [suggestion for suggestion in found["suggestions"] if not suggestion["by_hand"]]
+    }
     assert (len(in_diff["suggestions"]) < len(found["suggestions"])) == (len(files) > 1)
     # checks that kill one mutant may kill more than was promised
     assert survivors(found_by(["run"], capsys)) <= before - killed(in_diff)
@@ -74,11 +76,11 @@ def test_the_page_lists_what_is_suggested_for_the_project_with_all_kinds_of_quan
     project = copied(PROJECTS / "fault_catalogue", tmp_path / "cell")
     monkeypatch.chdir(project)
     found_by(["run"], capsys)
-    suggested = {one["statement"] for one in found_by(SUGGEST, capsys)["suggestions"]}
+    suggested = {suggestion["statement"] for suggestion in found_by(SUGGEST, capsys)["suggestions"]}
     rows = re.findall(
         r"^\| fault_catalogue \| `(.+?)` \|", DOCUMENT.read_text(encoding="utf-8"), re.MULTILINE
     )
-    assert {one.removeprefix("assert ").replace("pytest.", "") for one in suggested} == {*rows}
+    assert {statement.removeprefix("assert ").replace("pytest.", "") for statement in suggested} == {*rows}
 
 
 def test_there_must_be_something_to_suggest_checks_for(

@@ -103,7 +103,7 @@ def test_what_a_check_looks_at_and_how_near_it_must_be(text: str, parts: tuple[s
 
 def test_checks_note_what_they_compare_and_mean_the_same(suite: SuiteChecks) -> None:
     text = suite.with_recording("tests/test_it.py", suite.project.text("tests/test_it.py"))
-    (check,) = [one for one in suite.checks if "is_within" in one.form]
+    (check,) = [candidate for candidate in suite.checks if "is_within" in candidate.form]
     noted: list[Any] = []
 
     class Noted:
@@ -130,7 +130,7 @@ def test_checks_note_what_they_compare_and_mean_the_same(suite: SuiteChecks) -> 
 
 
 def test_checks_of_other_tests_are_asked_where_all_that_they_need_is_at_hand(suite: SuiteChecks) -> None:
-    assert [one.statement for one in suite.reusable_checks(place(suite))] == [
+    assert [check.statement for check in suite.reusable_checks(place(suite))] == [
         "check_open(arm)",
         "assert arm.z == pytest.approx(HOME, abs=WITHIN)",
     ]
@@ -140,7 +140,7 @@ def test_a_check_that_runs_the_program_or_commands_the_robot_is_not_asked_elsewh
     suite: SuiteChecks,
 ) -> None:
     statements = [
-        one.statement for one in suite.reusable_checks(place(suite, "tests/test_it.py::test_opens"))
+        check.statement for check in suite.reusable_checks(place(suite, "tests/test_it.py::test_opens"))
     ]
     assert statements == ["assert is_within(HOME, arm.x, 0.02)"]
 
@@ -174,7 +174,7 @@ def test_a_check_of_another_test_that_the_original_breaks_is_not_suggested(suite
 
 def reads(suite: SuiteChecks, actual: float, text: str, value: float) -> dict[str, Any]:
     """What is noted where the check of ``arm.x`` ran and a reading was made."""
-    (check,) = [one for one in suite.checks if "is_within" in one.form]
+    (check,) = [candidate for candidate in suite.checks if "is_within" in candidate.form]
     parts = {"actual": actual, "expected": 0.3, "tolerance": 0.02}
     return {f"{check.key}.{role}": number for role, number in parts.items()} | {text: value}
 
@@ -190,7 +190,7 @@ def suggested(
         readings={at: [ReadExpression(text, PROBE, 0.001)]},
     )
     checks, refused = candidates(suite.project, suite, found)
-    return [one.statement for one in checks if isinstance(one, CheckAtEnd)], refused
+    return [check.statement for check in checks if isinstance(check, CheckAtEnd)], refused
 
 
 def test_a_check_of_the_same_quantity_has_the_suites_form_constant_and_tolerance(suite: SuiteChecks) -> None:
@@ -227,7 +227,7 @@ def test_an_item_that_a_constant_of_the_tests_states_is_written_by_its_name(tmp_
         readings={at: [ReadExpression(text, PROBE, 1e-6) for text in ("pose[0]", "pose[1]")]},
     )
     checks, _ = candidates(suite.project, suite, found)
-    assert {one.statement.partition(",")[0] for one in checks} == {
+    assert {check.statement.partition(",")[0] for check in checks} == {
         "assert pose[0] == pytest.approx(PALLET[0]",
         "assert pose[1] == pytest.approx(0.7",
     }
@@ -246,5 +246,5 @@ def test_a_helper_of_another_file_is_imported_where_it_is_asked(tmp_path: Path) 
     vocabulary = load_vocabulary(configuration.vocabulary, folder)
     request = Request(configuration, vocabulary, rounds=1, seed=1, jobs=1)
     found = SuiteChecks.of(SuiteFiles(request, tests=("tests/test_it.py",)))
-    asked = {one.statement: one.needs for one in found.reusable_checks(place(found))}
+    asked = {check.statement: check.needs for check in found.reusable_checks(place(found))}
     assert asked["check_open(arm)"] == ("from checks import check_open",)

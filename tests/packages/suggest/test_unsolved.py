@@ -260,7 +260,7 @@ PROJECT: Any = _Project()
 def checks_of(project: Any, found: Measured) -> tuple[list[CheckAtEnd], dict[str, str]]:
     """The checks of readings, and what is refused."""
     checks, refused = candidates(project, SuiteChecks(project), found)
-    return [one for one in checks if isinstance(one, CheckAtEnd)], refused
+    return [check for check in checks if isinstance(check, CheckAtEnd)], refused
 
 
 def why(found: Measured) -> str:

@@ -45,12 +45,14 @@ class Suite:
 def found(originals: Sequence[Moments], suite: str = "", **mutants: Moments) -> list[Monitor]:
     """The monitors, those that a person would rather write first."""
     measured = Measured(
-        originals={PLACE: {(round, PLACE.node): noted_as(one) for round, one in enumerate(originals)}},
-        mutants={PLACE: {name: {(0, PLACE.node): noted_as(one)} for name, one in mutants.items()}},
+        originals={
+            PLACE: {(round, PLACE.node): noted_as(original) for round, original in enumerate(originals)}
+        },
+        mutants={PLACE: {name: {(0, PLACE.node): noted_as(mutant)} for name, mutant in mutants.items()}},
         readings={PLACE: []},
     )
     project: Any = Suite(suite)
-    return sorted(monitors(SuiteChecks(project), measured), key=lambda one: one.worth, reverse=True)
+    return sorted(monitors(SuiteChecks(project), measured), key=lambda monitor: monitor.worth, reverse=True)
 
 
 def numbers(start: float, end: float, count: int = 11) -> list[float]:
@@ -188,8 +190,8 @@ def test_a_monitor_stands_behind_what_it_watches_and_is_a_statement() -> None:
 
     project: Any = Project()
     (changed,) = edited(project, [monitor.addition()]).values()
-    (test,) = [one for one in ast.parse(changed).body if isinstance(one, ast.FunctionDef)]
-    assert [ast.unparse(one).partition("(")[0] for one in test.body[1:]] == [
+    (test,) = [statement for statement in ast.parse(changed).body if isinstance(statement, ast.FunctionDef)]
+    assert [ast.unparse(statement).partition("(")[0] for statement in test.body[1:]] == [
         "cell = new_cell",
         "cell.always",
         "run",

@@ -112,5 +112,5 @@ def told(folder: Path, *options: str, of: str = "parameters") -> dict[str, dict[
     done = mutabot(None, folder, "world", "--json", *options)
     assert done.returncode == 0, done.stderr
     data = json.loads(done.stdout)
-    rows = [one for one in data["tests"] if one["tests"] == [of]] or data[of]
-    return {f"{one['parameter']} {one['direction']}".strip(): one for one in rows}
+    rows = [row for row in data["tests"] if row["tests"] == [of]] or data[of]
+    return {f"{row['parameter']} {row['direction']}".strip(): row for row in rows}

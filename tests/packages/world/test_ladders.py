@@ -39,14 +39,14 @@ def test_a_larger_disturbance_that_is_missed_counts_although_smaller_ones_are_no
 
 
 def test_what_is_noticed_and_up_to_where_the_task_is_done_are_two_numbers() -> None:
-    one = ladder("LLUN")
-    assert (one.robust_to, one.unseen, one.noticed_from) == (2, [3], 4)
+    rungs = ladder("LLUN")
+    assert (rungs.robust_to, rungs.unseen, rungs.noticed_from) == (2, [3], 4)
     assert ladder("ULN").robust_to is None
 
 
 def test_nothing_is_claimed_of_an_end_that_nothing_tells() -> None:
-    one = ladder("PPN")
-    assert (one.robust, one.unseen, one.bar) == ("not known", [], "??█")
+    rungs = ladder("PPN")
+    assert (rungs.robust, rungs.unseen, rungs.bar) == ("not known", [], "??█")
     assert ladder("UUN").robust == "not even the least"
 
 

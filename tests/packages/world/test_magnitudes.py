@@ -21,7 +21,9 @@ def test_a_demanded_magnitude_changes_the_disturbance_and_what_is_said_of_it() -
     tables = {"world": WorldTable.model_validate({"parameter": [row]})}
     provider = WorldFaults()
     planned = provider.plan(Project(tables=tables), Original(tests=[[TEST]], ends=ends)).mutants
-    first = next(one for one in planned if one.mutant.magnitude == 1.0 and one.mutant.direction == "+")
+    first = next(
+        result for result in planned if result.mutant.magnitude == 1.0 and result.mutant.direction == "+"
+    )
     made = provider.at_magnitude(first, 20.0)
     assert made.mutant.description == "from 1 s on a belt that is 20 % faster"
     assert (made.mutant.variant, made.mutant.magnitude) == ("+20%", 20.0)

@@ -110,7 +110,9 @@ def test_names_that_match_nothing_are_said(model: Any) -> None:
 
 def test_models_that_python_cannot_refer_to_are_found(model: Any) -> None:
     holder = {"model": model}
-    assert any(one is model for one in instances_of(["mujoco:MjModel", "mujoco:MjModel.from_xml_path"]))
+    assert any(
+        instance is model for instance in instances_of(["mujoco:MjModel", "mujoco:MjModel.from_xml_path"])
+    )
     assert holder
 
 
@@ -118,4 +120,4 @@ def test_a_project_says_by_name_which_things_are_meant(tmp_path: Path) -> None:
     shipped = ["mutabot_world:mujoco.toml"]
     names = {"parameters": shipped, "only": ["mass", "gravity"], "names": {"mass": "obj*"}}
     found = parameters_of(WorldTable.model_validate(names), tmp_path)
-    assert {one.name: one.names for one in found} == {"mass": "obj*", "gravity": "*"}
+    assert {table.name: table.names for table in found} == {"mass": "obj*", "gravity": "*"}

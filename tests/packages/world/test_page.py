@@ -26,7 +26,10 @@ SHIPPED = {
 
 
 def names(file: Path) -> set[str]:
-    return {one.name for one in ParameterFile.model_validate(tomllib.loads(file.read_text())).parameter}
+    return {
+        parameter.name
+        for parameter in ParameterFile.model_validate(tomllib.loads(file.read_text())).parameter
+    }
 
 
 @pytest.mark.parametrize("block", BLOCKS)
@@ -35,7 +38,7 @@ def test_each_table_is_one_that_is_read(block: str) -> None:
     read = WorldTable.model_validate(table)
     shipped = set().union(*map(names, SHIPPED.values()))
     assert {*read.names} <= shipped
-    assert all(one in shipped or "*" in one for one in read.only)
+    assert all(name in shipped or "*" in name for name in read.only)
 
 
 @pytest.mark.parametrize("section", SHIPPED)
@@ -46,7 +49,7 @@ def test_the_page_names_every_shipped_parameter(section: str) -> None:
 
 
 def test_the_example_of_a_parameter_of_one_s_own_runs(tmp_path: Path) -> None:
-    (block,) = [one for one in BLOCKS if "[[tool.mutabot.world.parameter]]" in one]
+    (block,) = [example for example in BLOCKS if "[[tool.mutabot.world.parameter]]" in example]
     parameter = block.partition("[[")[2]
     found = run(project(tmp_path, f"[[{parameter}"), "-o", "rounds=1")
     assert found["speed +"]["ends"] == {"0.01": "lived with", "10": "suffered unseen", "50": "noticed"}

@@ -51,7 +51,9 @@ class Arm:
     assert done.returncode == 0, done.stderr
     assert "[world]: `mutabot run --family world` disturbs the simulated world" in done.stdout
     table = tomllib.loads((tmp_path / "mutabot.toml").read_text(encoding="utf-8"))["world"]
-    found = {one.name: one for one in parameters_of(WorldTable.model_validate(table), tmp_path)}
+    found = {
+        parameter.name: parameter for parameter in parameters_of(WorldTable.model_validate(table), tmp_path)
+    }
     assert [*found] == ["mass of obj", "friction of objGeom", "gain of hinge", "gain of motor", "gravity"]
     assert (found["mass of obj"].names, found["mass of obj"].more) == ("obj", "")
     assert found["mass of obj"].ladder == (100, 300, 700, 1500, 3100)
@@ -83,7 +85,9 @@ class Arm:
     done = mutabot(None, tmp_path, "init", "mission.py")
     assert done.returncode == 0, done.stderr
     table = tomllib.loads((tmp_path / "mutabot.toml").read_text(encoding="utf-8"))["world"]
-    found = {one.name: one for one in parameters_of(WorldTable.model_validate(table), tmp_path)}
+    found = {
+        parameter.name: parameter for parameter in parameters_of(WorldTable.model_validate(table), tmp_path)
+    }
     assert [*found] == [
         "mass of body 1", "friction of body 1", "gain of hinge", "damping of hinge", "gravity",
     ]  # fmt: skip

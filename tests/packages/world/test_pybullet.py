@@ -74,7 +74,7 @@ def test_mass_takes_inertia_along_also_where_the_program_says_it_anew(arm: Any) 
     _, _, before = pybullet.getDynamicsInfo(arm.number, 0, physicsClientId=arm.client)[:3]
     disturb(arm, "mass", "scale", 1.0, "rod")
     mass, _, inertia = pybullet.getDynamicsInfo(arm.number, 0, physicsClientId=arm.client)[:3]
-    assert (mass, *inertia) == pytest.approx((4.0, *(2 * one for one in before)))
+    assert (mass, *inertia) == pytest.approx((4.0, *(2 * value for value in before)))
     pybullet.changeDynamics(arm.number, 0, mass=3.0, physicsClientId=arm.client)
     assert pybullet.getDynamicsInfo(arm.number, 0, physicsClientId=arm.client)[0] == pytest.approx(6.0)
 

@@ -65,10 +65,10 @@ def test_json_is_strict_whatever_texts_say(tmp_path: Path, name: str) -> None:
 @pytest.mark.parametrize("name", JSON)
 def test_numbers_that_json_cannot_hold_are_not_in_it(tmp_path: Path, name: str) -> None:
     campaign = stored(tmp_path)
-    odd = [replace(one, way=float("nan"), distance=float("inf")) for one in samples.OUTCOMES]
+    odd = [replace(outcome, way=float("nan"), distance=float("inf")) for outcome in samples.OUTCOMES]
     mutants = tuple(
-        replace(one, rounds=tuple(odd[2 * index : 2 * index + 2]))
-        for index, one in enumerate(campaign.mutants)
+        replace(mutant, rounds=tuple(odd[2 * index : 2 * index + 2]))
+        for index, mutant in enumerate(campaign.mutants)
     )
     check(name, made(name, replace(campaign, mutants=mutants)))
 
@@ -99,12 +99,12 @@ def test_no_report_names_a_folder_of_the_machine(tmp_path: Path, name: str) -> N
         state=f"OSError: {told}",
         mutants=tuple(
             replace(
-                one,
+                result,
                 why=told,
                 rounds=tuple(replace(each, message=told, place=told, test=f"{ROOT}/tests/a.py::b")
-                             for each in one.rounds if each is not None),
+                             for each in result.rounds if each is not None),
             )
-            for one in campaign.mutants
+            for result in campaign.mutants
         ),
         meta={**campaign.meta, "root": ROOT},
     )  # fmt: skip
@@ -121,7 +121,7 @@ def test_files_are_named_from_the_root_of_the_repository_on(tmp_path: Path, name
     assert "cells/one/tests/sensors.py" in text
 
 
-@pytest.mark.parametrize("name", [one for one in names() if one != "csv"])
+@pytest.mark.parametrize("name", [name for name in names() if name != "csv"])
 def test_a_campaign_that_was_interrupted_says_so(tmp_path: Path, name: str) -> None:
     campaign = stored(tmp_path, outcomes=samples.OUTCOMES[:3], finish="interrupted")
     assert re.search("interrupted|not complete", made(name, campaign))
@@ -131,8 +131,10 @@ def test_a_campaign_that_was_interrupted_says_so(tmp_path: Path, name: str) -> N
 def test_a_story_stands_beside_the_test_and_the_round_in_which_it_happened(tmp_path: Path, name: str) -> None:
     there = Diverged("tests/test_a.py::test_far", 5.0, "", "box ended 0.3 m off")
     outcomes = tuple(
-        replace(one, diverged=(there,)) if (one.mutant, one.round) == (samples.SKIP.id, 1) else one
-        for one in samples.OUTCOMES
+        replace(outcome, diverged=(there,))
+        if (outcome.mutant, outcome.round) == (samples.SKIP.id, 1)
+        else outcome
+        for outcome in samples.OUTCOMES
     )
     text = made(name, stored(tmp_path, outcomes=outcomes)).replace("\\_", "_")
     assert set(re.findall(r"box ended 0\.3 m off(.{0,23})", text)) == {" (in test_far, round 2)"}

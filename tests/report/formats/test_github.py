@@ -32,7 +32,7 @@ def commands(campaign: mutabot.StoredCampaign) -> list[tuple[str, dict[str, str]
 
 def in_both_rounds(*outcomes: Outcome) -> tuple[Outcome, ...]:
     """The outcomes of the first round, and the same in the second."""
-    return (*outcomes, *(replace(one, round=1) for one in outcomes))
+    return (*outcomes, *(replace(outcome, round=1) for outcome in outcomes))
 
 
 def test_survivors_are_annotations_at_their_calls_the_worst_first(tmp_path: Path) -> None:
@@ -76,12 +76,14 @@ def test_no_more_than_github_shows_and_the_rest_is_told(
     mutants = tuple(
         samples.mutant(number, f"made-{number}", samples.MOVE, "dx", "") for number in range(1, 31)
     )
-    ends = in_both_rounds(*(Outcome(one.id, 0, Verdict.SURVIVED, indistinguishable=same) for one in mutants))
+    ends = in_both_rounds(
+        *(Outcome(mutant.id, 0, Verdict.SURVIVED, indistinguishable=same) for mutant in mutants)
+    )
     found = commands(stored(tmp_path, mutants=mutants, outcomes=ends))
-    assert [one for one, _, _ in found] == [level] * shown + ["notice"]
+    assert [level_shown for level_shown, _, _ in found] == [level] * shown + ["notice"]
     assert found[-1][2] == f"{30 - shown} more survivors are not shown here; `mutabot results` lists them"
 
 
 def test_without_survivors_there_is_nothing_to_annotate(tmp_path: Path) -> None:
-    killed = in_both_rounds(*(Outcome(one.id, 0, Verdict.KILLED, By.CHECK) for one in samples.MUTANTS))
+    killed = in_both_rounds(*(Outcome(mutant.id, 0, Verdict.KILLED, By.CHECK) for mutant in samples.MUTANTS))
     assert made("github", stored(tmp_path, outcomes=killed)) == ""

@@ -56,7 +56,7 @@ def test_a_mutant_that_has_not_been_run_is_skipped(tmp_path: Path) -> None:
     root = xml(stored(tmp_path, outcomes=(), finish="interrupted"))
     assert root.attrib["name"] == "mutabot (interrupted)"
     assert root.attrib["skipped"] == "5"
-    messages = [one.attrib["message"] for one in root.findall(".//skipped")]
+    messages = [skipped.attrib["message"] for skipped in root.findall(".//skipped")]
     assert messages[1] == "gripper.command: do nothing: not run in rounds 1 and 2"
 
 
@@ -67,8 +67,11 @@ def test_a_case_is_named_by_the_id_and_says_where_it_is(tmp_path: Path) -> None:
 
 
 def test_scores_are_properties(tmp_path: Path) -> None:
-    ends = tuple(one for one in samples.OUTCOMES if one.mutant != samples.BY_TO.id)
-    mutants = tuple(one for one in samples.MUTANTS if one.id != samples.BY_TO.id)
+    ends = tuple(outcome for outcome in samples.OUTCOMES if outcome.mutant != samples.BY_TO.id)
+    mutants = tuple(mutant for mutant in samples.MUTANTS if mutant.id != samples.BY_TO.id)
     root = xml(stored(tmp_path, mutants=mutants, outcomes=ends))
-    found = {one.attrib["name"]: one.attrib["value"] for one in root[0].findall("properties/property")}
+    found = {
+        property_element.attrib["name"]: property_element.attrib["value"]
+        for property_element in root[0].findall("properties/property")
+    }
     assert found == {"score": "0.5000", "check_score": "0.2500"}

@@ -72,7 +72,7 @@ def test_of_many_survivors_it_says_how_many_are_not_shown(tmp_path: Path) -> Non
     mutants = tuple(
         samples.mutant(number, f"made-{number}", samples.MOVE, "dx", "other") for number in range(1, 131)
     )
-    ends = tuple(Outcome(one.id, 0, Verdict.SURVIVED) for one in mutants)
+    ends = tuple(Outcome(mutant.id, 0, Verdict.SURVIVED) for mutant in mutants)
     text = made("markdown", stored(tmp_path, mutants=mutants, outcomes=ends))
     assert "and 30 more, which the command line prints." in text
     assert len([row for row in cells(text) if row[1].startswith("mission.py")]) == 100

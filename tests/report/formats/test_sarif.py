@@ -27,10 +27,10 @@ def run(campaign: mutabot.StoredCampaign) -> Any:
 
 def test_there_is_a_result_for_every_survivor_the_worst_first(campaign: mutabot.StoredCampaign) -> None:
     found = run(campaign)["results"]
-    assert [one["properties"]["mutant"] for one in found] == [
+    assert [finding["properties"]["mutant"] for finding in found] == [
         samples.SKIP.id, samples.NOISE.id, samples.NEGATE.id,
     ]  # fmt: skip
-    assert [one["level"] for one in found] == ["error", "warning", "note"]
+    assert [finding["level"] for finding in found] == ["error", "warning", "note"]
 
 
 def test_the_level_says_how_much_a_survivor_changed(tmp_path: Path) -> None:
@@ -41,7 +41,7 @@ def test_the_level_says_how_much_a_survivor_changed(tmp_path: Path) -> None:
         Outcome(samples.NEGATE.id, 0, Verdict.SURVIVED, indistinguishable=True),
     )
     found = run(stored(tmp_path, outcomes=ends))["results"]
-    levels = {one["properties"]["mutant"]: one["level"] for one in found}
+    levels = {finding["properties"]["mutant"]: finding["level"] for finding in found}
     assert levels == {
         samples.SKIP.id: "error",
         samples.REVERSE.id: "warning",

@@ -85,10 +85,10 @@ def campaign(
     )
     outcomes = options.pop("outcomes", samples.OUTCOMES)
     outcomes = tuple(
-        replace(one, diverged=(diverged,), looked=samples.LOOKED)
-        if (one.mutant, one.round) == (samples.SKIP.id, 1)
-        else one
-        for one in outcomes
+        replace(outcome, diverged=(diverged,), looked=samples.LOOKED)
+        if (outcome.mutant, outcome.round) == (samples.SKIP.id, 1)
+        else outcome
+        for outcome in outcomes
     )
     journal = samples.write_journal(folder / "journal.sqlite", outcomes=outcomes, **options)
     with Recordings.to_write(journal, 10_000_000) as kept:
@@ -123,9 +123,12 @@ def evil(folder: Path) -> Path:
     stored = with_text(stored, EVIL)
     # what was recorded still belongs to its mutant
     mutants = tuple(
-        replace(one, mutant=replace(one.mutant, site=known.mutant.site, variant=known.mutant.variant))
+        replace(
+            stored_result,
+            mutant=replace(stored_result.mutant, site=known.mutant.site, variant=known.mutant.variant),
+        )
         if known.mutant == samples.SKIP
-        else one
-        for one, known in zip(stored.mutants, mutabot.open(journal).mutants, strict=True)
+        else stored_result
+        for stored_result, known in zip(stored.mutants, mutabot.open(journal).mutants, strict=True)
     )
     return write(folder / "report", journal, replace(stored, mutants=mutants)).page

@@ -47,12 +47,16 @@ class Visit:
         self.page, self._file = page, file
         self.wrong: list[str] = []
         page.on(
-            "console", lambda one: self.wrong.append(one.text) if one.type in ("error", "warning") else None
+            "console",
+            lambda message: self.wrong.append(message.text) if message.type in ("error", "warning") else None,
         )
-        page.on("pageerror", lambda one: self.wrong.append(str(one)))
-        page.on("dialog", lambda one: self.wrong.append(one.message))
-        page.on("requestfailed", lambda one: self.wrong.append(one.url))
-        page.on("request", lambda one: None if one.url.startswith("file:") else self.wrong.append(one.url))
+        page.on("pageerror", lambda error: self.wrong.append(str(error)))
+        page.on("dialog", lambda dialog: self.wrong.append(dialog.message))
+        page.on("requestfailed", lambda request: self.wrong.append(request.url))
+        page.on(
+            "request",
+            lambda request: None if request.url.startswith("file:") else self.wrong.append(request.url),
+        )
 
     def open(self, address: str) -> None:
         """Go there, and wait until it is drawn."""
@@ -123,9 +127,9 @@ def test_what_the_list_is_sorted_by_takes_two_lines_of_a_telephone(browser: Any,
     page = browser.new_page(viewport={"width": 390, "height": 800})
     visit = Visit(page, plain)
     visit.open("#/mutants")
-    heads = [one.bounding_box() for one in page.locator("table.mutants thead th:visible").all()]
+    heads = [head.bounding_box() for head in page.locator("table.mutants thead th:visible").all()]
     assert len(heads) == 6
-    assert len({round(one["y"]) for one in heads}) <= 2
+    assert len({round(head["y"]) for head in heads}) <= 2
     page.close()
 
 
@@ -182,7 +186,8 @@ def test_what_the_robot_did_comes_before_the_source_and_what_the_mutant_is(
     Visit(page, plain).open("#/mutant/2")
     page.wait_for_selector("canvas.scene")
     tops = {
-        one: page.locator(one).bounding_box()["y"] for one in ("canvas.scene", "#there", "#facts", "#events")
+        name: page.locator(name).bounding_box()["y"]
+        for name in ("canvas.scene", "#there", "#facts", "#events")
     }
     assert [*tops] == sorted(tops, key=tops.__getitem__)
     assert tops["canvas.scene"] < 700
@@ -195,7 +200,9 @@ def test_the_survivors_beside_a_mutant_in_the_source_are_one_key_away(visit: Vis
         links = visit.page.get_by_role(
             "navigation", name="Survivors beside this one in the source"
         ).get_by_role("link")
-        assert [one.get_attribute("href") for one in links.all()] == [f"#/mutant/{to}" for to in beside if to]
+        assert [link.get_attribute("href") for link in links.all()] == [
+            f"#/mutant/{to}" for to in beside if to
+        ]
         for key, to in zip(("P", "N"), beside, strict=True):
             if to is not None:
                 visit.open(f"#/mutant/{number}")
@@ -272,9 +279,9 @@ def test_j_and_k_lead_from_survivor_to_survivor_of_the_source(browser: Any, tmp_
     page = browser.new_page(viewport={"width": 1280, "height": 900})
     # another survivor of this file
     outcomes = tuple(
-        replace(one, mutant=samples.REVERSE.id) if one.mutant == samples.NEGATE.id else one
-        for one in samples.OUTCOMES
-        if one.mutant != samples.REVERSE.id
+        replace(outcome, mutant=samples.REVERSE.id) if outcome.mutant == samples.NEGATE.id else outcome
+        for outcome in samples.OUTCOMES
+        if outcome.mutant != samples.REVERSE.id
     )
     visit = Visit(page, reports.plain(tmp_path, outcomes=outcomes))
     visit.open("#/source/mission.py")
@@ -284,7 +291,7 @@ def test_j_and_k_lead_from_survivor_to_survivor_of_the_source(browser: Any, tmp_
     for key in "jjkk":
         page.keyboard.press(key)
         seen.append(wanted.get_attribute("id"))
-    first, last = (f"L{one.site.span.line}" for one in (samples.SKIP, samples.REVERSE))
+    first, last = (f"L{mutant.site.span.line}" for mutant in (samples.SKIP, samples.REVERSE))
     assert seen == [first, last, last, first, first]
     assert visit.wrong == []
     page.close()
@@ -293,8 +300,8 @@ def test_j_and_k_lead_from_survivor_to_survivor_of_the_source(browser: Any, tmp_
 def test_files_are_a_tree_with_the_scores_of_the_overview(browser: Any, tmp_path: Path) -> None:
     page = browser.new_page()
     moved = "cell/arm/mission.py"
-    mutants = {one.id: _in_file(one, moved) for one in samples.MUTANTS}
-    outcomes = tuple(replace(one, mutant=mutants[one.mutant].id) for one in samples.OUTCOMES)
+    mutants = {mutant.id: _in_file(mutant, moved) for mutant in samples.MUTANTS}
+    outcomes = tuple(replace(outcome, mutant=mutants[outcome.mutant].id) for outcome in samples.OUTCOMES)
     visit = Visit(page, reports.plain(tmp_path, mutants=tuple(mutants.values()), outcomes=outcomes))
     visit.open("#/")
     overview = {
@@ -303,9 +310,9 @@ def test_files_are_a_tree_with_the_scores_of_the_overview(browser: Any, tmp_path
     }
     visit.open(f"#/source/{moved}")
     tree = page.get_by_role("navigation", name="Files")
-    folders = [one.inner_text().lstrip("▾ ") for one in tree.locator("summary .name").all()]
+    folders = [element.inner_text().lstrip("▾ ") for element in tree.locator("summary .name").all()]
     assert folders == ["cell/arm/", "tests/"]
-    shown = [one.inner_text() for one in tree.locator("summary b").all()]
+    shown = [element.inner_text() for element in tree.locator("summary b").all()]
     assert shown == [f"{float(overview[name]):.0f} %" for name in ("robot · program", "robot · oracle")]
     assert tree.locator("a[aria-current=page]").inner_text().startswith("mission.py")
     tree.locator("summary").first.click()
@@ -325,7 +332,7 @@ def _in_file(mutant: Mutant, file: str) -> Mutant:
 def test_only_a_whole_campaign_says_that_every_mutant_was_run(
     browser: Any, tmp_path: Path, rounds: int
 ) -> None:
-    outcomes = [one for one in samples.OUTCOMES if one.mutant == samples.SKIP.id]
+    outcomes = [outcome for outcome in samples.OUTCOMES if outcome.mutant == samples.SKIP.id]
     journal = samples.write_journal(
         tmp_path / "journal.sqlite", mutants=(samples.SKIP,), outcomes=tuple(outcomes), rounds=rounds
     )
@@ -382,12 +389,12 @@ def test_axe_finds_nothing_serious_on_any_page(
     for address in PAGES:
         visit.open(address)
         page.evaluate(axe)
-        for one in page.evaluate(
+        for violation in page.evaluate(
             "(rules) => axe.run({...rules, preload: false, resultTypes: ['violations']})", rules
         )["violations"]:
-            if one["impact"] in ("serious", "critical"):
-                places = [(node["target"], node.get("failureSummary", "")) for node in one["nodes"][:3]]
-                found.append((address, one["id"], places))
+            if violation["impact"] in ("serious", "critical"):
+                places = [(node["target"], node.get("failureSummary", "")) for node in violation["nodes"][:3]]
+                found.append((address, violation["id"], places))
     page.close()
     assert found == []
 
@@ -429,7 +436,7 @@ def test_the_page_lets_no_script_in_that_is_not_its_own(visit: Visit) -> None:
     visit.page.evaluate(_INTRUDE)
     visit.settled()
     assert visit.page.evaluate("window.pwned") is None
-    assert any("Content Security Policy" in one for one in visit.wrong)
+    assert any("Content Security Policy" in problem for problem in visit.wrong)
 
 
 @pytest.mark.parametrize("known", [0, 3])

@@ -31,7 +31,7 @@ def data(page: Path) -> str:
 def test_every_mutant_has_its_data_and_every_asset_that_the_page_names_is_there(tmp_path: Path) -> None:
     page = reports.plain(tmp_path)
     numbers = {int(file.stem) for file in (page.parent / "data" / "mutants").iterdir()}
-    assert numbers == {one.number for one in samples.MUTANTS}
+    assert numbers == {mutant.number for mutant in samples.MUTANTS}
     named = re.findall(r'(?:src|href)="([^"#]+)"', page.read_text())
     assert len(named) > 10
     assert all((page.parent / name).is_file() for name in named)
@@ -51,7 +51,7 @@ def test_a_folder_with_other_files_is_left_alone(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="it is a file"):
         check_folder(tmp_path / "notes.txt")
     assert (tmp_path / "notes.txt").read_text() == "mine"
-    assert [one.name for one in tmp_path.iterdir()] == ["notes.txt"]
+    assert [path.name for path in tmp_path.iterdir()] == ["notes.txt"]
 
 
 def test_an_older_report_is_replaced(tmp_path: Path) -> None:
@@ -79,8 +79,8 @@ def test_links_in_an_older_report_are_replaced_and_not_followed(tmp_path: Path) 
         shutil.rmtree(report / name)
         (report / name).symlink_to(mine)
     reports.write(report, journal, stored)
-    assert [(one.name, one.read_text()) for one in mine.iterdir()] == [("notes.txt", "mine")]
-    assert not any(one.is_symlink() for one in report.rglob("*"))
+    assert [(path.name, path.read_text()) for path in mine.iterdir()] == [("notes.txt", "mine")]
+    assert not any(path.is_symlink() for path in report.rglob("*"))
 
 
 def test_recordings_that_have_no_room_are_counted_and_pages_say_so(tmp_path: Path) -> None:
@@ -92,7 +92,7 @@ def test_recordings_that_have_no_room_are_counted_and_pages_say_so(tmp_path: Pat
 
 def test_a_check_is_suggested_where_there_is_one(tmp_path: Path) -> None:
     journal, stored = reports.campaign(tmp_path)
-    (second,) = (one.mutant.id for one in stored.mutants if one.mutant.number == 2)
+    (second,) = (result.mutant.id for result in stored.mutants if result.mutant.number == 2)
     found = {second: Suggestion(samples.TEST, "assert box.x < 0.5")}
     reports.write(tmp_path / "report", journal, stored, lambda made: replace(made, suggestions=found))
     assert "box.x \\u003c 0.5" in (tmp_path / "report" / "data" / "mutants" / "2.js").read_text()
@@ -114,7 +114,7 @@ def test_campaigns_without_mutants_and_without_recordings_have_reports(tmp_path:
 
 
 def test_the_wheel_holds_what_shows_the_pages() -> None:
-    packed = {one.distribution_path for one in WheelBuilder(str(ROOT)).recurse_included_files()}
+    packed = {file.distribution_path for file in WheelBuilder(str(ROOT)).recurse_included_files()}
     assets = Path(folders.__file__).parent / "assets"
     wanted = {f"mutabot/report/html/assets/{file.name}" for file in assets.iterdir()}
     assert len(wanted) > 10
@@ -128,11 +128,15 @@ def test_a_film_lies_beside_the_page_and_one_that_finds_no_room_is_named(
     film = tmp_path / "a.mp4"
     film.write_bytes(b"a film")
     films = {samples.SKIP.id: KeptFilm(film, 0, samples.TEST)}
-    made = reports.write(tmp_path / "report", journal, stored, lambda one: replace(one, films=films))
+    made = reports.write(
+        tmp_path / "report", journal, stored, lambda stored_campaign: replace(stored_campaign, films=films)
+    )
     name = f"data/films/{samples.SKIP.number}.mp4"
     assert (made.page.parent / name).read_bytes() == b"a film"
     assert name in data(made.page)
     monkeypatch.setattr(folders, "FILMS_LIMIT", 3)
-    made = reports.write(tmp_path / "report", journal, stored, lambda one: replace(one, films=films))
+    made = reports.write(
+        tmp_path / "report", journal, stored, lambda stored_campaign: replace(stored_campaign, films=films)
+    )
     assert not [*made.page.parent.rglob("*.mp4")]
     assert '"size":6' in data(made.page)

@@ -32,7 +32,7 @@ def read(found: str) -> Any:
     """The data, as the language reads it."""
     (text,) = re.fullmatch(r"mutabot\.take\('n','(.*)'\);\n", found).groups()  # type: ignore[union-attr]
     assert not re.search(r"(?<!\\)(?:\\\\)*'", text)
-    return json.loads(_ESCAPE.sub(lambda one: _character(*one.groups()), text))
+    return json.loads(_ESCAPE.sub(lambda match: _character(*match.groups()), text))
 
 
 def _character(byte: str | None, unit: str | None, sign: str | None) -> str:

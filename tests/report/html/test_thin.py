@@ -27,8 +27,8 @@ def decoded(data: Any) -> tuple[list[float], list[tuple[float, ...]]]:
     """Times and rows, as the page reads them."""
     times = [time / 1000 for time in accumulate(data["t"])]
     channels = [
-        [step * scale for step in accumulate(one)]
-        for one, scale in zip(data["v"], data["scales"], strict=True)
+        [step * scale for step in accumulate(steps)]
+        for steps, scale in zip(data["v"], data["scales"], strict=True)
     ]
     return times, [*zip(*channels, strict=True)]
 

@@ -16,7 +16,7 @@ from results import samples
 @pytest.mark.parametrize("text", [*HOSTILE, "'/home/me/arm.urdf'", "\x1b[1mbold"])
 def test_outcomes_and_reaching_tests_still_belong_to_their_mutants(tmp_path: Path, text: str) -> None:
     campaign = with_text(stored(tmp_path), text)
-    sites = {one.mutant.site.id: (0,) for one in campaign.mutants}
+    sites = {stored_result.mutant.site.id: (0,) for stored_result in campaign.mutants}
     campaign = replace(campaign, reaching=Reaching((samples.TEST,), sites))
     for result in portable(campaign).mutants:
         assert {outcome.mutant for outcome in result.outcomes} == {result.mutant.id}

@@ -15,8 +15,8 @@ R, I, O, U, E = Verdict.REFUSED, Verdict.INVALID, Verdict.NO_EFFECT, Verdict.UNS
 
 def result(*verdicts: Verdict | None) -> MutantResult:
     rounds = tuple(
-        Outcome("m", round, one, By.CHECK if one is K else None) if one is not None else None
-        for round, one in enumerate(verdicts)
+        Outcome("m", round, verdict, By.CHECK if verdict is K else None) if verdict is not None else None
+        for round, verdict in enumerate(verdicts)
     )
     return MutantResult(samples.SKIP, rounds, None, "")
 

@@ -103,7 +103,7 @@ def test_scores_carry_their_intervals(results: Results, width: int) -> None:
 
 
 def test_with_one_round_there_is_no_interval(tmp_path: Path) -> None:
-    once = tuple(one for one in samples.OUTCOMES if one.round == 0)
+    once = tuple(outcome for outcome in samples.OUTCOMES if outcome.round == 0)
     path = samples.write_journal(tmp_path / "journal.sqlite", outcomes=once, rounds=1)
     with Journal.open(path) as journal:
         text = report(read_results(journal), 80)
@@ -171,7 +171,7 @@ def test_survivors_come_with_a_reason_the_farthest_first(results: Results) -> No
 
 
 def test_that_no_probe_tells_how_the_world_ended_is_said_once(tmp_path: Path) -> None:
-    ends = [Outcome(one.id, 0, Verdict.SURVIVED) for one in (samples.REVERSE, samples.SKIP)]
+    ends = [Outcome(item.id, 0, Verdict.SURVIVED) for item in (samples.REVERSE, samples.SKIP)]
     with Journal.open(samples.write_journal(tmp_path / "journal.sqlite", outcomes=ends)) as journal:
         text = report(read_results(journal))
     assert text.count("nothing tells how the world ended") == 1
@@ -253,7 +253,9 @@ def test_what_fits_several_mutants_names_ten_of_them(tmp_path: Path, results: Re
         results.mutant("mission.py")
     first, *others = str(caught.value).splitlines()
     assert first == "'mission.py' fits 3 mutants; give a number or a whole id:"
-    assert others == [f"{one.number:>6}  {one.id}" for one in (samples.REVERSE, samples.SKIP, samples.BY_TO)]
+    assert others == [
+        f"{mutant.number:>6}  {mutant.id}" for mutant in (samples.REVERSE, samples.SKIP, samples.BY_TO)
+    ]
     many = tuple(replace(samples.REVERSE, number=number, variant=str(number)) for number in range(1, 15))
     with Journal.open(samples.write_journal(tmp_path / "many.sqlite", mutants=many)) as journal:
         results = read_results(journal)
@@ -344,9 +346,11 @@ def test_one_screen_shows_the_rounds_that_tell_most(results: Results) -> None:
 def test_an_effect_does_not_repeat_the_values_that_the_description_has(
     results: Results, description: str, effect: str
 ) -> None:
-    one = results.mutant("1")
+    first = results.mutant("1")
     told = replace(
-        one, mutant=replace(one.mutant, description=description), why="sent -0.2 m instead of 0.2 m; box fell"
+        first,
+        mutant=replace(first.mutant, description=description),
+        why="sent -0.2 m instead of 0.2 m; box fell",
     )
     assert told_text(told) == effect
 
@@ -354,7 +358,7 @@ def test_an_effect_does_not_repeat_the_values_that_the_description_has(
 def test_show_tells_where_a_mutant_stayed_away_and_why(results: Results) -> None:
     mutant = results.mutant("1")
     why = {"the value would leave the range [-1, 1]": 138, "the value would stay the same": 1}
-    rounds = tuple(one and replace(one, acted=161, hits=300, away=why) for one in mutant.rounds)
+    rounds = tuple(end and replace(end, acted=161, hits=300, away=why) for end in mutant.rounds)
     on = console(100)
     print_mutant(on, replace(mutant, rounds=rounds), lambda _: None, everything=True)
     text = written(on)

@@ -112,8 +112,8 @@ def told(*ends: MutantEnd) -> list[str]:
     out = io.StringIO()
     with Lines(make_console(out, width=80), every=60.0) as progress:
         progress.stage("mutants", len(ends))
-        for one in ends:
-            progress.mutant_ended(one)
+        for outcome in ends:
+            progress.mutant_ended(outcome)
             progress.advance()
     return out.getvalue().splitlines()[1:]
 

@@ -55,11 +55,17 @@ def test_a_round_that_does_not_count_is_named_with_the_reason(tmp_path: Path) ->
 
 
 def test_a_bar_has_one_sign_per_magnitude(thresholds: Thresholds) -> None:
-    assert [bar(one) for one in thresholds.ladders] == ["·····××", "····███", "···▒███", "███████", "███████"]
+    assert [bar(ladder) for ladder in thresholds.ladders] == [
+        "·····××",
+        "····███",
+        "···▒███",
+        "███████",
+        "███████",
+    ]
 
 
 def test_the_loosest_comes_first(thresholds: Thresholds) -> None:
-    assert [(one.name, one.unit) for one in thresholds.ladders] == [
+    assert [(ladder.name, ladder.unit) for ladder in thresholds.ladders] == [
         ("arm.move_by dx −", "mm"),
         ("arm.move_by dx +", "deg"),
         ("arm.move_by dx +", "mm"),
@@ -111,11 +117,11 @@ def test_all_that_is_to_be_said_is_said(thresholds: Thresholds) -> None:
 
 def test_json_holds_every_ladder_and_round(thresholds: Thresholds) -> None:
     data = json.loads(dumps(data_of(thresholds)))
-    by_name = {(one["name"], one["unit"]): one for one in data["ladders"]}
+    by_name = {(ladder["name"], ladder["unit"]): ladder for ladder in data["ladders"]}
     first = by_name["arm.move_by dx +", "mm"]
     assert (first["none_up_to"], first["half_from"], first["all_from"]) == (5.0, 20.0, 20.0)
     assert first["median"] == {"above": 5.0, "at_most": 20.0, "level": 0.9375}
-    assert [one["noticed"] for one in first["rounds"]] == [20.0, 20.0, 20.0, 10.0, 10.0]
+    assert [end["noticed"] for end in first["rounds"]] == [20.0, 20.0, 20.0, 10.0, 10.0]
     refused = by_name["arm.move_by dx −", "mm"]
     assert (refused["all_from"], refused["refused_from"]) == (None, 50.0)
     assert by_name["arm.move_by dx −", "deg"]["judged"] is False

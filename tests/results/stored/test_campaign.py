@@ -39,10 +39,13 @@ def test_a_campaign_has_its_mutants_outcomes_and_scores(project: Path) -> None:
     assert isinstance(campaign, StoredCampaign)
     assert [result.mutant for result in campaign.mutants] == list(samples.MUTANTS)
     assert campaign.outcomes == samples.OUTCOMES
-    assert [(one.family, one.role) for one in campaign.scores] == [("robot", "program"), ("robot", "oracle")]
+    assert [(score.family, score.role) for score in campaign.scores] == [
+        ("robot", "program"),
+        ("robot", "oracle"),
+    ]
     assert (campaign.state, campaign.is_complete, campaign.rounds) == ("complete", True, 2)
     assert campaign.meta["seed"] == 7
-    assert [one.mutant.number for one in campaign.survivors] == [2, 5, 4]
+    assert [survivor.mutant.number for survivor in campaign.survivors] == [2, 5, 4]
 
 
 def test_one_mutant_is_found_by_number_or_a_part_of_its_id(project: Path) -> None:
@@ -106,7 +109,7 @@ def test_a_notebook_shows_scores_and_survivors_and_no_more(tmp_path: Path) -> No
 
 def test_texts_of_programs_are_texts_in_a_notebook(tmp_path: Path) -> None:
     hostile = replace(samples.SKIP, description="<script>alert(1)</script>")
-    mutants = tuple(hostile if one is samples.SKIP else one for one in samples.MUTANTS)
+    mutants = tuple(hostile if mutant is samples.SKIP else mutant for mutant in samples.MUTANTS)
     text = mutabot.open(samples.write_journal(tmp_path / "j.sqlite", mutants=mutants))._repr_html_()
     assert "<script>" not in text
     assert "&lt;script&gt;" in text

@@ -62,18 +62,18 @@ def write(path: File, *ladders: Rungs, vocabulary: Vocabulary = samples.VOCABULA
     others = changes.pop("with_others", False)
     mutants: list[Mutant] = list(samples.MUTANTS) if others else []
     outcomes: list[Outcome] = list(samples.OUTCOMES) if others else []
-    for one in ladders:
-        for column, size in enumerate(one.sizes):
-            mutant = one.mutant(len(mutants) + 1, size)
+    for written_ladder in ladders:
+        for column, size in enumerate(written_ladder.sizes):
+            mutant = written_ladder.mutant(len(mutants) + 1, size)
             mutants.append(mutant)
-            for number, letters in enumerate(one.rounds):
+            for number, letters in enumerate(written_ladder.rounds):
                 letter = letters[column]
                 if letter in LETTERS:
                     verdict, by = LETTERS[letter]
                     outcomes.append(Outcome(mutant.id, number, verdict, by, tests=1, test=samples.TEST))
     facts = {
         "families": [GRADED],
-        "rounds": max((len(one.rounds) for one in ladders), default=2),
+        "rounds": max((len(any_ladder.rounds) for any_ladder in ladders), default=2),
         "vocabulary": to_data(vocabulary),
         **changes,
     }

@@ -63,8 +63,8 @@ def test_the_interval_holds_the_median_as_often_as_it_promises(rounds: int, devi
             for at in thresholds
         ]
         found = median_between(
-            [one.low or 0.0 for one in brackets],
-            [math.inf if one.high is None else one.high for one in brackets],
+            [bracket.low or 0.0 for bracket in brackets],
+            [math.inf if bracket.high is None else bracket.high for bracket in brackets],
         )
         assert found is not None
         level = found.level

@@ -28,17 +28,17 @@ def test_whatever_was_seen_can_be_told(tmp_path_factory: pytest.TempPathFactory,
     results = journals.results(tmp_path_factory.mktemp("ladder"), *both)
     found = thresholds_of(results)
     assert len(found.all) == 2
-    for one in found.ladders:
-        assert_sound(one)
+    for ladder in found.ladders:
+        assert_sound(ladder)
     print_thresholds(make_console(io.StringIO(), width=80), found)
     dumps(data_of(found))
 
 
-def assert_sound(one: Ladder) -> None:
-    assert line_of(one)
-    assert all(low < high for low, high in zip(one.lows, one.highs, strict=True))
-    assert one.none_up_to < one.half_from <= one.all_from
-    for ladder_round in one.counted:
+def assert_sound(ladder: Ladder) -> None:
+    assert line_of(ladder)
+    assert all(low < high for low, high in zip(ladder.lows, ladder.highs, strict=True))
+    assert ladder.none_up_to < ladder.half_from <= ladder.all_from
+    for ladder_round in ladder.counted:
         high = ladder_round.bracket.high
         assert high is None or ladder_round.noticed_by is not None
 

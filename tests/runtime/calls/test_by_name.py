@@ -131,7 +131,7 @@ def test_what_is_done_in_a_node_of_the_tests_is_the_oracles(stage: ClientStage) 
         session, client = stage.session(module, oracle_nodes=nodes)
         module.run(client)
         take_away(session)
-        assert [(one.operation, one.oracle) for one in session.recorder.sites] == [
+        assert [(site.operation, site.oracle) for site in session.recorder.sites] == [
             ("receive /arm/pose", wanted),
             ("publish /arm/goal", wanted),
         ]

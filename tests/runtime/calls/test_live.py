@@ -96,8 +96,8 @@ def test_a_write_to_an_alias_is_seen_however_late() -> None:
 def test_of_many_that_the_program_keeps_the_last_are_looked_at_and_in_the_end_all() -> None:
     robot, copies = Robot(), HandedCopies()
     log = [[float(number)] for number in range(100)]
-    for one in log:
-        copies.note(robot.numbers, one, FIRST)
+    for entry in log:
+        copies.note(robot.numbers, entry, FIRST)
     log[3][0] = -1.0
     assert not copies.look()
     assert copies.look(at_all=True)

@@ -138,7 +138,7 @@ def mutants(vocabulary: Vocabulary, sites: list[SiteSeen]) -> Iterator[Mutant]:
             subjects: dict[Any, Subject] = {}
             for subject in rule.subjects(Subject(operation)):
                 subjects.setdefault((subject.quantity and subject.quantity.name, subject.variant), subject)
-            seen = next((one for one in sites if one.operation == operation.target), None)
+            seen = next((seen_site for seen_site in sites if seen_site.operation == operation.target), None)
             for (quantity, variant), subject in subjects.items() if seen is not None else ():
                 site = Site(seen.span, "text", 1, Role.PROGRAM)
                 yield Mutant(
@@ -174,7 +174,7 @@ def survivors_of(stage: Stage, session: Session | None, *, refuses: bool = False
     if session is not None:  # a mutant may make a call after the program's next one
         driven(program.later(robot.Arm()))
     alive = [found for found in (ref() for ref in refs) if found is not None]
-    kinds = sorted(type(one).__name__ for one in alive if not isinstance(one, BaseException))
+    kinds = sorted(type(thing).__name__ for thing in alive if not isinstance(thing, BaseException))
     del alive
     kept.clear()
     kinds += sorted(f"{type(ref()).__name__} without exceptions" for ref in refs if ref() is not None)

@@ -132,7 +132,7 @@ def test_arguments_of_the_operation_belong_to_every_command(make_stage: Make) ->
     for index, expected in enumerate(([0.5, 1.0], [1.0, 0.5])):
         stage = make_stage(ROBOT, program(call), vocabulary("write", "node", timeout))
         result, _ = stage.mutated("opposite", "timeout", index=index)
-        assert [one[2] for one in result] == expected
+        assert [row[2] for row in result] == expected
 
 
 def test_a_skipped_write_leaves_the_others_alone(make_stage: Make) -> None:
@@ -179,7 +179,9 @@ def test_what_does_not_exist_is_a_problem(
     session = stage.session()
     stage.run(session)
     session.inspect_targets()
-    assert any(one.key == key and all(word in one.text for word in words) for one in problems(stage))
+    assert any(
+        problem.key == key and all(word in problem.text for word in words) for problem in problems(stage)
+    )
 
 
 def test_the_text_of_an_object_cannot_be_changed(make_stage: Make) -> None:

@@ -86,20 +86,20 @@ def looked_at(folder: Path, tests: str) -> dict[str, tuple[Check, ...]]:
     project = write_project(folder, MISSION, dedent(START) + dedent(HELPERS) + dedent(tests))
     (survivor,) = run(project, fresh=True, rounds=1, only=("*:negate",)).values()
     assert survivor.verdict is Verdict.SURVIVED
-    assert all(one.acted for one in survivor.looked)
-    return {one.test.rpartition(":")[2]: one.checks for one in survivor.looked}
+    assert all(test.acted for test in survivor.looked)
+    return {test.test.rpartition(":")[2]: test.checks for test in survivor.looked}
 
 
 def test_a_check_tells_what_it_compared(tmp_path: Path) -> None:
-    asserted = "".join(f"    assert {one}\n" for one in ASSERTIONS)
-    compared = "".join(f"        {one}\n" for one in COMPARISONS)
+    asserted = "".join(f"    assert {assertion}\n" for assertion in ASSERTIONS)
+    compared = "".join(f"        {comparison}\n" for comparison in COMPARISONS)
     tests = (
         f"def test_asserts():\n{asserted}\nclass TestIt(unittest.TestCase):\n    def test_compares(self):\n"
     )
     lines = (dedent(START) + dedent(HELPERS) + tests + compared).splitlines()
     found = looked_at(tmp_path, tests + compared)
     for name, wanted in (("test_asserts", ASSERTIONS), ("test_compares", COMPARISONS)):
-        assert [one.text for one in found[name]] == list(wanted)
+        assert [noted.text for noted in found[name]] == list(wanted)
         for check in found[name]:
             seen, spare = wanted[check.text]
             assert seen is None or check.seen == seen, check.text
@@ -122,11 +122,11 @@ def test_parts_of_an_assertion_and_rounds_of_a_loop_are_told_once(tmp_path: Path
                 assert x < limit
         """,
     )
-    assert [(one.text, one.seen) for one in found["test_parts"]] == [
+    assert [(check.text, check.seen) for check in found["test_parts"]] == [
         ("sensor().x > 1", "0.25 > 1"),
         ("sensor().x < 0.3", "0.25 < 0.3"),
     ]
-    assert [(one.seen, one.times) for one in found["test_loop"]] == [("0.25 < 0.3", 3)]
+    assert [(check.seen, check.times) for check in found["test_loop"]] == [("0.25 < 0.3", 3)]
 
 
 def test_a_check_before_the_fault_is_reached_is_no_check_of_it(tmp_path: Path) -> None:
@@ -147,7 +147,7 @@ def test_a_check_before_the_fault_is_reached_is_no_check_of_it(tmp_path: Path) -
             run(arm)
         """,
     )
-    assert [(one.text, one.seen, one.times) for one in found["test_before_and_after"]] == [
+    assert [(check.text, check.seen, check.times) for check in found["test_before_and_after"]] == [
         ("arm.x < 0.3", "0.25 < 0.3", 1),
         ("is_near(arm.x, 0.0, by=1.0)", "0.25, 0, by=1", 1),
         ("arm.x < 0.6", "0.5 < 0.6", 1),
@@ -185,7 +185,7 @@ def test_a_check_that_fails_says_what_it_ever_said(tmp_path: Path) -> None:
     project = write_project(tmp_path, MISSION, text)
     (found,) = run(project, fresh=True, rounds=1, only=("*:reverse",), every_test=True).values()
     wanted = ("too near\nassert -0.25 == 0.25", "-0.25 != 0.25", "Not equal to tolerance")
-    assert [str(one.by) for one in found.kills] == ["check"] * 3
+    assert [str(killing.by) for killing in found.kills] == ["check"] * 3
     for kill, message in zip(found.kills, wanted, strict=True):
         assert message in (kill.message or "")
     assert found.place is not None

@@ -30,7 +30,9 @@ def new_objects(deed: Callable[[], object]) -> int:
 def test_a_noted_check_makes_no_object_that_the_collector_knows(compared: tuple[object, ...]) -> None:
     looks = Looks()
     assert new_objects(lambda: looks.checked("test_one.py:3", "a > b", *compared)) == 0
-    assert [(one.place, one.text, one.times) for one in looks.noted] == [("test_one.py:3", "a > b", 1)]
+    assert [(check.place, check.text, check.times) for check in looks.noted] == [
+        ("test_one.py:3", "a > b", 1)
+    ]
 
 
 @pytest.mark.parametrize("is_variable", [False, True])
@@ -48,4 +50,4 @@ def test_a_place_that_is_looked_at_makes_no_object_that_the_collector_knows(
         del alike
 
     assert new_objects(look) == 0
-    assert [one.place for one in sightings.seen()] == [1]
+    assert [sighting.place for sighting in sightings.seen()] == [1]

@@ -92,7 +92,7 @@ def test_an_ordinary_user_forks_what_does_not_ask_for_its_id(
     done = subprocess.run(
         [*command, "--sample", "4"], check=False, capture_output=True, text=True, timeout=120
     )
-    found = [one for mutant in json.loads(done.stdout)["mutants"] for one in mutant["rounds"]]
-    assert {one["engine"] for one in found} == {engine}, done.stderr
-    assert {one["verdict"] for one in found} <= {"killed", "survived"}
+    found = [end for mutant in json.loads(done.stdout)["mutants"] for end in mutant["rounds"]]
+    assert {end["engine"] for end in found} == {engine}, done.stderr
+    assert {end["verdict"] for end in found} <= {"killed", "survived"}
     assert ("asks for the process id" in done.stderr) == (engine == "replay")

@@ -181,8 +181,10 @@ def test_damage_is_an_error_of_its_mutant_and_never_a_survivor(tmp_path: Path) -
     folder = write_project(tmp_path, MISSION, TESTS)
     path = run_campaign(request_for(folder, engine="replay"), Quiet())
     found = outcomes(path)
-    assert {one.verdict for one in found} == {Verdict.ERROR}
-    assert all("what processes below the tests reported was damaged" in str(one.message) for one in found)
+    assert {outcome.verdict for outcome in found} == {Verdict.ERROR}
+    assert all(
+        "what processes below the tests reported was damaged" in str(outcome.message) for outcome in found
+    )
 
 
 #: whatever looks which test is running then dies of SIGBUS, as it would not in plain pytest
@@ -216,11 +218,11 @@ def test_a_process_that_dies_since_it_shortened_a_file_of_ours_is_no_kill(
 ) -> None:
     folder = write_project(tmp_path, SHORT, DIED)
     path = run_campaign(request_for(folder, engine=engine, only=("*#1:*",)), Quiet())
-    found = {one.mutant: one for one in outcomes(path)}
-    harmful = next(one for one in found if "reverse" in one)
+    found = {outcome.mutant: outcome for outcome in outcomes(path)}
+    harmful = next(mutant for mutant in found if "reverse" in mutant)
     assert found[harmful].verdict is Verdict.ERROR
     assert "the number of the running test was deleted or changed" in str(found[harmful].message)
-    assert {one.verdict for name, one in found.items() if name != harmful} == {Verdict.SURVIVED}
+    assert {outcome.verdict for name, outcome in found.items() if name != harmful} == {Verdict.SURVIVED}
 
 
 #: a mutant fills the disk, as far as its processes are concerned: no file of theirs may grow any more
@@ -261,12 +263,12 @@ def test_a_process_that_cannot_write_is_an_error_of_its_mutant_and_touches_no_ot
     for name, mission in (("harmless", harmless), ("full", FULL_MISSION)):
         folder = write_project(tmp_path / name, mission, FULL)
         path = run_campaign(request_for(folder, engine=engine, only=("*move_by*",)), Quiet())
-        found[name] = {one.mutant: one for one in outcomes(path)}
-    harmful = next(one for one in found["full"] if "reverse" in one)
+        found[name] = {outcome.mutant: outcome for outcome in outcomes(path)}
+    harmful = next(mutant for mutant in found["full"] if "reverse" in mutant)
     assert found["full"].keys() == found["harmless"].keys()
     assert found["harmless"][harmful].verdict is Verdict.KILLED
     assert found["full"][harmful].verdict is Verdict.ERROR
     assert "could not write what it had to tell" in str(found["full"][harmful].message)
-    assert {one: each.verdict for one, each in found["full"].items() if one != harmful} == {
-        one: each.verdict for one, each in found["harmless"].items() if one != harmful
+    assert {mutant: each.verdict for mutant, each in found["full"].items() if mutant != harmful} == {
+        mutant: each.verdict for mutant, each in found["harmless"].items() if mutant != harmful
     }

@@ -87,7 +87,9 @@ arguments.dx = { kind = "translation", mode = "by", unit = "m" }
 
 
 def stage_with(make_stage: Make, *probes: str, operation: str = OPERATION) -> Stage:
-    return make_stage(ROBOT, PROGRAM, operation + "".join(f'[[probe]]\ncall = "{one}"\n' for one in probes))
+    return make_stage(
+        ROBOT, PROGRAM, operation + "".join(f'[[probe]]\ncall = "{probe}"\n' for probe in probes)
+    )
 
 
 def read(stage: Stage, *starts: float) -> Reading:
@@ -99,7 +101,7 @@ def read(stage: Stage, *starts: float) -> Reading:
     names = f"{stage.robot_name}:"
     return Reading(
         *(
-            {key.replace(names, ""): one for key, one in part.items()}
+            {key.replace(names, ""): value for key, value in part.items()}
             for part in (reading.values, reading.unread)
         )
     )

@@ -123,7 +123,7 @@ ASYNC = {
 ALL = [(name, lines, name in ASYNC) for name, lines in (SYNC | ASYNC).items()]
 
 
-@pytest.mark.parametrize(("lines", "is_async"), [one[1:] for one in ALL], ids=[one[0] for one in ALL])
+@pytest.mark.parametrize(("lines", "is_async"), [case[1:] for case in ALL], ids=[case[0] for case in ALL])
 def test_a_call_of_the_program_in_what_an_operation_calls_back_is_a_site(
     make_stage: Make, lines: list[str], is_async: bool
 ) -> None:

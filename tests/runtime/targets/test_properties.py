@@ -27,7 +27,7 @@ def _findings(folder: Path, name: str, line: str) -> list[tuple[str, str]]:
         f'[[operation]]\ncall = "robot:Arm.{name}"\n{line}\n', encoding="utf-8"
     )
     (operation,) = load_vocabulary(["robot.toml"], folder).operations
-    return [(one.key, one.text) for one in look_at(operation, vars(_Arm)[name])]
+    return [(problem.key, problem.text) for problem in look_at(operation, vars(_Arm)[name])]
 
 
 @pytest.mark.parametrize("name", ["speed", "height", "reach"])

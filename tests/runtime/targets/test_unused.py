@@ -11,9 +11,9 @@ from mutabot.runtime.targets.target import Messages, unheard, unused
 
 
 def said(wanted: str, *used: str) -> list[str]:
-    found = unused([Named.of(wanted)], [Named.of(one) for one in used])
+    found = unused([Named.of(wanted)], [Named.of(usage) for usage in used])
     assert all(target == wanted for target, _ in found)
-    return [finding.text for _, finding in unused([Named.of(wanted)], [Named.of(one) for one in used])]
+    return [finding.text for _, finding in unused([Named.of(wanted)], [Named.of(usage) for usage in used])]
 
 
 @pytest.mark.parametrize(
@@ -108,5 +108,5 @@ def test_what_a_process_below_the_tests_does_counts() -> None:
 )
 def test_a_refusal_that_nobody_can_hear_is_told(used: list[str], is_told: bool) -> None:
     refused = [Refused("status", (5,), "/arm/ended"), Refused("ok", (False,))]
-    found = [finding.text for finding in unheard(refused, [Named.of(one) for one in used])]
+    found = [finding.text for finding in unheard(refused, [Named.of(usage) for usage in used])]
     assert [text.startswith("no node listens to /arm/ended") for text in found] == [True] * is_told

@@ -65,8 +65,8 @@ def _codes(code: CodeType) -> Iterator[CodeType]:
 
 
 def _calls(code: CodeType) -> Counter[Any]:
-    made = (one for one in dis.get_instructions(code) if one.opname in CALLING)
-    return Counter(tuple(one.positions) for one in made if one.positions is not None)
+    made = (instruction for instruction in dis.get_instructions(code) if instruction.opname in CALLING)
+    return Counter(tuple(instruction.positions) for instruction in made if instruction.positions is not None)
 
 
 @pytest.fixture
@@ -80,8 +80,8 @@ def sites() -> Iterator[Callable[..., CallSites]]:
 
     before = getattr(builtins, CALLS, None)
     yield make
-    for one in made:
-        forget(one)
+    for site in made:
+        forget(site)
     if before is None and hasattr(builtins, CALLS):
         delattr(builtins, CALLS)
 

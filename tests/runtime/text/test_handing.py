@@ -201,7 +201,9 @@ def test_plain_data_of_an_operations_name_stays(stage: Stage) -> None:
     session = stage.session()
     stage.load_program()
     value: list[int] = []
-    assert all(one is value for one in stage.run(session, "data", SimpleNamespace(move_by=value)))
+    assert all(
+        value_handed is value for value_handed in stage.run(session, "data", SimpleNamespace(move_by=value))
+    )
     with pytest.raises(AttributeError, match="move_by"):
         stage.run(session, "hand", object())
 

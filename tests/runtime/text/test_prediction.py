@@ -238,7 +238,7 @@ def test_what_a_function_keeps_of_its_local_names_is_not_brought_up_to_date() ->
 
 
 @pytest.mark.parametrize(
-    ("one", "other", "same"),
+    ("first", "second", "same"),
     [
         (1, 1, True),
         (1, 1.0, False),
@@ -250,9 +250,9 @@ def test_what_a_function_keeps_of_its_local_names_is_not_brought_up_to_date() ->
     ],
 )
 def test_values_are_identical_only_if_no_program_can_tell_them_apart(
-    one: Any, other: Any, same: bool
+    first: Any, second: Any, same: bool
 ) -> None:
-    assert is_identical(one, other) is same
+    assert is_identical(first, second) is same
 
 
 def test_only_alternatives_with_another_value_differ() -> None:

@@ -198,8 +198,8 @@ def test_values_become_plain_data(value: object, data: object) -> None:
 
 
 def test_large_values_are_told_apart_by_a_digest() -> None:
-    one, other = list(range(LONGEST)), list(range(LONGEST + 1))
-    assert plain(one) == plain(list(one)) != plain(other)
+    first, second = list(range(LONGEST)), list(range(LONGEST + 1))
+    assert plain(first) == plain(list(first)) != plain(second)
     assert plain("a" * 1000) == plain("a" * 1000) != plain("a" * 999 + "b")
 
 

@@ -103,7 +103,7 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[str]]:
         )
         for name in names
     }
-    return {name: json.loads(one.communicate()[0]) for name, one in started.items()}
+    return {name: json.loads(value.communicate()[0]) for name, value in started.items()}
 
 
 def test_imports_and_what_shows_lines_read_no_text(found: dict[str, list[str]]) -> None:

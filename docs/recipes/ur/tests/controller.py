@@ -51,7 +51,7 @@ class Controller:
 
     def _execute(self, line):
         name, _, rest = line.partition("(")
-        numbers = [float(one) for one in NUMBERS.findall(rest)]
+        numbers = [float(number) for number in NUMBERS.findall(rest)]
         if name == "movej":
             self.joints = numbers[:6]
         elif name == "movel":
@@ -67,7 +67,9 @@ class Controller:
 
     def _state(self):
         mode = struct.pack("!iBQ???????Bd", 29, 0, 1, True, True, True, False, False, False, False, 0, 1.0)
-        joints = b"".join(struct.pack("!dddffffB", one, one, 0, 0, 0, 0, 0, 0) for one in self.joints)
+        joints = b"".join(
+            struct.pack("!dddffffB", position, position, 0, 0, 0, 0, 0, 0) for position in self.joints
+        )
         parts = [
             mode,
             struct.pack("!iB", 5 + len(joints), 1) + joints,

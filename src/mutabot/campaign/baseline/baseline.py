@@ -55,13 +55,13 @@ class PlantedFaults:
         for provider, found in planned.items():
             made.texts += found.texts
             made.providers.update((place, provider) for _, place in found.reached)
-            for one in found.mutants:
-                if one.reason is None:
-                    made.by_id[one.mutant.id] = one
-                    if one.active is not None:
-                        made._at_place.setdefault(Place.of(one.mutant), one.active)
+            for planned_mutant in found.mutants:
+                if planned_mutant.reason is None:
+                    made.by_id[planned_mutant.mutant.id] = planned_mutant
+                    if planned_mutant.active is not None:
+                        made._at_place.setdefault(Place.of(planned_mutant.mutant), planned_mutant.active)
                 elif provider not in (CALLS, MESSAGES):
-                    made.left_out_beforehand.append(one)
+                    made.left_out_beforehand.append(planned_mutant)
         return made
 
     def active(self, mutant: Mutant) -> Activation:
@@ -226,12 +226,12 @@ class Baseline(Original):
     def add_planned(self, planned: Mapping[str, Planned]) -> None:
         """Add the mutants that the providers have planned, by provider, and the places that tests reach."""
         self.faults = PlantedFaults.of(planned)
-        for one in planned.values():
-            self.early |= one.early
-            for key, origins in one.below.items():
+        for planned_mutants in planned.values():
+            self.early |= planned_mutants.early
+            for key, origins in planned_mutants.below.items():
                 self.below.setdefault(key, set()).update(origins)
-            for (round, place), tests in one.reached.items():
-                self.reach(round, place, None if place in one.early else frozenset(tests))
+            for (round, place), tests in planned_mutants.reached.items():
+                self.reach(round, place, None if place in planned_mutants.early else frozenset(tests))
 
     def reach(self, round: int, place: Place, tests: Collection[str] | None) -> None:
         """Note that these tests reach a place in a round; None is a place that affects all tests."""
@@ -295,8 +295,8 @@ class Baseline(Original):
 
     def add_seed(self, found: Mapping[str, Observation]) -> None:
         """Add a run of the original, by test, with the seed of a round in which no mutant runs."""
-        for test, one in found.items():
-            self.further.setdefault(test, []).append(one)
+        for test, value in found.items():
+            self.further.setdefault(test, []).append(value)
 
     def probe_spread(self, round: int, test: str, probes: Sequence[Probe]) -> ProbeSpread:
         """Return how far probes are apart in runs of a test with other seeds than that of the round."""
@@ -369,6 +369,6 @@ def refused_of(result: Result, places: Mapping[int, Place]) -> dict[str, tuple[R
         for index, number in sorted({*end.refused_calls}):
             numbers.setdefault(index, []).append(number)
         of_places = ((places[index], tuple(those)) for index, those in numbers.items())
-        calls = tuple(RefusedAt(one.site, one.operation, one.pattern, those) for one, those in of_places)
+        calls = tuple(RefusedAt(item.site, item.operation, item.pattern, those) for item, those in of_places)
         found |= {end.test: calls} if calls else {}
     return found

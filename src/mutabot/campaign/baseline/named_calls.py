@@ -134,18 +134,18 @@ class _Origins:
     def __init__(self, tree: ast.Module, file: str) -> None:
         self.file = file
         self.imported: dict[str, str] = {}
-        self.defined = {one.name for one in tree.body if isinstance(one, _NamedNode)}
+        self.defined = {statement.name for statement in tree.body if isinstance(statement, _NamedNode)}
         self._module = tree
         self._values: dict[ast.AST, dict[str, ast.expr]] = {}
         for node in ast.walk(tree):
             if isinstance(node, ast.Import):
-                for one in node.names:
-                    self.imported[one.asname or one.name.partition(".")[0]] = (
-                        one.name if one.asname else one.name.partition(".")[0]
+                for alias in node.names:
+                    self.imported[alias.asname or alias.name.partition(".")[0]] = (
+                        alias.name if alias.asname else alias.name.partition(".")[0]
                     )
             elif isinstance(node, ast.ImportFrom):
                 module = "." * node.level + (node.module or "")
-                self.imported |= {one.asname or one.name: f"{module}.{one.name}" for one in node.names}
+                self.imported |= {name.asname or name.name: f"{module}.{name.name}" for name in node.names}
 
     def last_name(self, function: ast.expr) -> str:
         """Return the last part of a called name, before it was renamed by an import."""
@@ -184,9 +184,9 @@ class _Origins:
     def _of_name(self, name: str, scope: _CallScope, depth: int) -> str | None:
         for function in reversed(scope.functions):
             arguments = function.args
-            for one in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs):
-                if one.arg == name:
-                    return self._of_value(one.annotation, scope, depth)
+            for parameter in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs):
+                if parameter.arg == name:
+                    return self._of_value(parameter.annotation, scope, depth)
             stored = self._stored(function, name)
             if stored is not None:
                 return self._of_value(stored, scope, depth)
@@ -213,7 +213,7 @@ def _is_name(text: str) -> bool:
 
 
 def _methods(owner: ast.ClassDef) -> set[str]:
-    return {one.name for one in owner.body if isinstance(one, _NamedNode)}
+    return {statement.name for statement in owner.body if isinstance(statement, _NamedNode)}
 
 
 def _stored_in(around: ast.AST) -> dict[str, ast.expr]:
@@ -237,17 +237,17 @@ def _operation(
 ) -> tuple[Operation, str] | None:
     """Return the operation that a call is of, and why that is in doubt; None if it is of none."""
     candidates = known.operations[last]
-    told = [one for one in candidates if one.target in known.reached.get(text, ())]
-    if told:
-        return told[0], ""
+    reached = [operation for operation in candidates if operation.target in known.reached.get(text, ())]
+    if reached:
+        return reached[0], ""
     doubts: list[tuple[Operation, str]] = []
     sure: list[Operation] = []
-    for one in candidates:
-        doubt = _doubt(call, one, scope, origins, known)
+    for candidate in candidates:
+        doubt = _doubt(call, candidate, scope, origins, known)
         if doubt == "":
-            sure.append(one)
+            sure.append(candidate)
         elif doubt is not None:
-            doubts.append((one, doubt))
+            doubts.append((candidate, doubt))
     if sure and text in known.alone:
         return sure[0], "where tests reach this text, it is not an operation"
     if sure:
@@ -319,23 +319,23 @@ def _best(call: ast.Call, operations: Sequence[Operation], scope: _CallScope, or
     """Return the operation of this name whose class or arguments fit; the first if none does."""
     value = call.func.value if isinstance(call.func, ast.Attribute) else call.func
     origin = origins.of(value, scope) or ""
-    given = {one.arg for one in call.keywords}
+    given = {keyword.arg for keyword in call.keywords}
 
-    def fits(one: Operation) -> tuple[bool, bool]:
-        owner = owner_of(one.target).rpartition(":")[2]
-        return bool(owner) and origin.endswith(owner), not given.isdisjoint(one.described)
+    def fits(operation: Operation) -> tuple[bool, bool]:
+        owner = owner_of(operation.target).rpartition(":")[2]
+        return bool(owner) and origin.endswith(owner), not given.isdisjoint(operation.described)
 
     return max(operations, key=fits)
 
 
 def _pattern(call: ast.Call, operation: Operation) -> Pattern | None:
     """Return the text command of a call, by its string literals; None if these do not determine it."""
-    named = {one.arg: one.value for one in call.keywords if one.arg}
+    named = {keyword.arg: keyword.value for keyword in call.keywords if keyword.arg}
     root = Path.parse(operation.message, rooted=True).root if operation.message is not None else None
     values = [named[root]] if root in named else [*call.args, *named.values()]
     texts = [text for value in values for text in _texts(value)]
     for pattern in operation.patterns:
-        cases = {Path.parse(one.argument, rooted=True).root or "": one.value for one in pattern.when}
+        cases = {Path.parse(case.argument, rooted=True).root or "": case.value for case in pattern.when}
         if not all(_is_case(named.get(name), value) for name, value in cases.items()):
             continue
         if pattern.notation is None or _reads(pattern.notation, texts):
@@ -357,5 +357,5 @@ def _texts(node: ast.expr) -> Iterator[str]:
         yield node.value
     elif isinstance(node, ast.JoinedStr):
         for sample in ("1", "1.0", "a"):
-            parts = (one.value if isinstance(one, ast.Constant) else sample for one in node.values)
+            parts = (value.value if isinstance(value, ast.Constant) else sample for value in node.values)
             yield "".join(map(str, parts))

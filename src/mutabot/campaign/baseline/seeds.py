@@ -29,7 +29,7 @@ def record_more_seeds(campaign: Campaign, mutants: Iterable[Mutant]) -> None:
     """
     evidence, request, baseline = campaign.evidence, campaign.request, campaign.baseline
     rounds = range(request.rounds, _SEEDS)
-    reaching = {test for one in mutants for test in baseline.tests_reaching(0, one)}
+    reaching = {test for mutant in mutants for test in baseline.tests_reaching(0, mutant)}
     tests = tuple(test for test in baseline.suite(0) if test in reaching)
     if evidence is None or not rounds or not tests or not evidence.has_tracks:
         return

@@ -133,7 +133,7 @@ class _Suite:
                 continue
             round, repetition = result.task.key
             self.results[round, repetition] = result
-            if any("::" in one for one in self.request.arguments):
+            if any("::" in argument for argument in self.request.arguments):
                 self._note_unread(result)
             _refuse(result, self.request.arguments)
             counts = Counter(end.outcome for end in result.ends)
@@ -147,11 +147,11 @@ class _Suite:
 
     def _note_unread(self, result: Result) -> None:
         """Turn problems of results that were not read into remarks, if only single tests are run."""
-        unread = [one for one in result.problems if one.key.startswith("result.")]
-        result.problems = [one for one in result.problems if one not in unread]
-        for one in unread:
+        unread = [remark for remark in result.problems if remark.key.startswith("result.")]
+        result.problems = [remark for remark in result.problems if remark not in unread]
+        for problem in unread:
             why = "no result had it: only single tests are run, and others may read it"
-            self._note(Remark(one.source, one.key, why))
+            self._note(Remark(problem.source, problem.key, why))
 
     def task(self, round: int, repetition: int, **details: Any) -> Task:
         """Return the task that runs the original in a round; forks share imports and collection."""
@@ -216,7 +216,7 @@ def _run(
 ) -> bool:
     """Run the suite as often as necessary; False if it ends with the first runs, since tests fail in them."""
     request = suite.request
-    texts = tuple(text for one in of_providers.values() for text in one)
+    texts = tuple(text for texts_of_provider in of_providers.values() for text in texts_of_provider)
     recording = Instrumentation(texts, record=True) if texts else None
     suite.run(_first_runs(suite, recording))
     is_looked_at = recording is None or not _fails_if_instrumented(suite, recording)
@@ -299,7 +299,7 @@ def _read(suite: _Suite, texts: Mapping[str, tuple[ProgramText, ...]]) -> Baseli
         raise NothingToDoError(_no_tests(baseline))
     ends = list(baseline.ends.values())
     found = (baseline.why_exclusive(round) for round in range(len(baseline.tests)))
-    for test, how in [one for one in found if one is not None][:1]:
+    for test, how in [reader for reader in found if reader is not None][:1]:
         progress.note(f"{test}: it {how}: mutants run one after the other, with nothing beside them")
     ended = (result.end for result in suite.results.values() if result.end is not None)
     why = next((end.not_private for end in ended if end.not_private), None)
@@ -321,13 +321,15 @@ def _note_read_texts(baseline: Baseline, request: Request, progress: Progress) -
     """Tell which files of the program tests read as text, and what comes of that."""
     files = program_files(request.root, request.configuration.program)
     read = [file for file in files if baseline.is_read(file)]
-    told = ["each of its mutants changes the file, in a process of its own"] if baseline.texts else []
+    reasons = ["each of its mutants changes the file, in a process of its own"] if baseline.texts else []
     if not {*request.families}.isdisjoint(OF_CALLS):
-        told.append("what they do with it has no mutants of calls")
-    if read and told:
+        reasons.append("what they do with it has no mutants of calls")
+    if read and reasons:
         rounds = range(len(baseline.tests))
-        first = next(tests[0] for tests in (baseline.readers(one, read[0]) for one in rounds) if tests)
-        progress.note(f"tests from {first} on may have the text of {in_short(read, 2)}: {'; '.join(told)}")
+        first = next(
+            tests[0] for tests in (baseline.readers(seed_round, read[0]) for seed_round in rounds) if tests
+        )
+        progress.note(f"tests from {first} on may have the text of {in_short(read, 2)}: {'; '.join(reasons)}")
 
 
 def _refuse(result: Result, arguments: Sequence[str]) -> None:
@@ -343,7 +345,7 @@ def _refuse(result: Result, arguments: Sequence[str]) -> None:
             "they have not opened, or delete .mutabot?"
         )
     if result.end is None:
-        text = f"the tests cannot be run on the original: {result.death(said=False)}"
+        text = f"the tests cannot be run on the original: {result.death(with_message=False)}"
         raise BaselineError(f"{text}{tail_of(result.log)}")
     if result.end.errors:
         raise BaselineError("the tests cannot be collected:\n" + "\n".join(result.end.errors))
@@ -388,7 +390,7 @@ def _add_round(
             baseline.skipped += end.outcome == "skipped"
             good.append(test)
             seen = [end, *(other for other in others if other is not None)]
-            wall, cpu = max(one.wall for one in seen), max(one.cpu for one in seen)
+            wall, cpu = max(seen_end.wall for seen_end in seen), max(seen_end.cpu for seen_end in seen)
             baseline.ends[round, test] = replace(end, wall=wall, cpu=cpu, recording=None, executed=None)
             baseline.observations[round, test] = observation(end, places[0])
             for again, there in zip(others, places[1:], strict=True):
@@ -421,7 +423,9 @@ def _add_hits(
 ) -> None:
     good = set(baseline.tests[round])
     live = {places[index] for end in result.ends for index in end.live}
-    baseline.written_through |= {one for one in live if sources.is_among(one.site.span, written_through)}
+    baseline.written_through |= {
+        live_place for live_place in live if sources.is_among(live_place.site.span, written_through)
+    }
     for seen in result.sites:
         place = places[seen.index]
         is_unused = seen.direct and sources.is_among(seen.span, unused_calls)

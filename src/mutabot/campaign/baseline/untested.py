@@ -58,13 +58,13 @@ class _OriginalCode:
     def of(cls, results: Iterable[Result]) -> _OriginalCode:
         results = list(results)
         sites = [site.span for result in results for site in result.sites]
-        asked = [one for result in results for one in result.asked]
+        asked = [event for result in results for event in result.asked]
         executed = together(end.executed for result in results for end in result.ends)
         imported = {file for result in results if result.seen for file in result.seen.imported}
-        files = {file for one in asked for file in one.files}
+        files = {file for event in asked for file in event.files}
         return cls(
             frozenset(map(_end, sites)),
-            frozenset(_end(span) for one in asked for span in one.alone),
+            frozenset(_end(span) for event in asked for span in event.alone),
             frozenset(files),
             frozenset({*imported, *files, *(executed or ()), *(span.file for span in sites)}),
             executed,
@@ -94,24 +94,24 @@ def add_untested(
     functions, idle = _functions(texts, seen) if seen.knows_files else (0, [])
     calls, total = _calls(baseline, vocabulary, texts, seen)
     is_unseen = any(remark.source == UNSEEN for remark in baseline.remarks)
-    doubts = [one.doubt or (_DOUBT if is_unseen else "") for one in calls]
+    doubts = [call.doubt or (_DOUBT if is_unseen else "") for call in calls]
     baseline.unreached = tuple(
-        Place(one.site, one.operation, one.pattern)
-        for one, doubt in zip(calls, doubts, strict=True)
+        Place(call.site, call.operation, call.pattern)
+        for call, doubt in zip(calls, doubts, strict=True)
         if not doubt
     )
-    told = [
-        UntestedCall(one.site.place, one.site.text, one.operation, doubt)
-        for one, doubt in zip(calls, doubts, strict=True)
+    untested = [
+        UntestedCall(call.site.place, call.site.text, call.operation, doubt)
+        for call, doubt in zip(calls, doubts, strict=True)
     ]
     baseline.untested = Untested(
         calls=total + len(baseline.unreached),
         functions=functions,
         files=len(texts),
-        unreached_calls=tuple(one for one in told if not one.doubt),
+        unreached_calls=tuple(call for call in untested if not call.doubt),
         unreached_functions=tuple(idle),
         unreached_files=tuple(files),
-        doubtful_calls=tuple(one for one in told if one.doubt),
+        doubtful_calls=tuple(call for call in untested if call.doubt),
     )
 
 
@@ -131,7 +131,10 @@ def _texts(root: Path, files: Iterable[str]) -> Iterator[tuple[str, str]]:
         except (SyntaxError, ValueError, RecursionError, MemoryError):
             yield file, ""
             continue
-        if any(not isinstance(one, ast.Expr) or not isinstance(one.value, ast.Constant) for one in body):
+        if any(
+            not isinstance(statement, ast.Expr) or not isinstance(statement.value, ast.Constant)
+            for statement in body
+        ):
             yield file, text
 
 
@@ -152,9 +155,15 @@ def _calls(
     baseline: Baseline, vocabulary: Vocabulary, texts: Mapping[str, str], seen: _OriginalCode
 ) -> tuple[list[NamedCall], int]:
     """Return the calls that no test reaches, and the number of sites that tests reach."""
-    operations = [one for one in vocabulary.operations if one.named is None and one.kind in (None, "methods")]
-    targets = {one.target for one in operations}
-    places = [one for one in baseline.hits if one.operation in targets and one.site.role is Role.PROGRAM]
+    operations = [
+        operation
+        for operation in vocabulary.operations
+        if operation.named is None and operation.kind in (None, "methods")
+    ]
+    targets = {operation.target for operation in operations}
+    places = [
+        place for place in baseline.hits if place.operation in targets and place.site.role is Role.PROGRAM
+    ]
     known = _known(operations, places, texts, seen)
     spans = {place.site.span for place in places}
     found = []
@@ -162,10 +171,12 @@ def _calls(
         if file in seen.imported and file not in seen.asked:
             continue  # whether its calls were made is not known
         unreached = [
-            one for one in calls_in(text, file, known) if _end(one.site.span) not in seen.sites | seen.alone
+            call
+            for call in calls_in(text, file, known)
+            if _end(call.site.span) not in seen.sites | seen.alone
         ]
         if unreached and not _are_of(text, [span for span in spans if span.file == file]):
-            unreached = [replace(one, doubt=one.doubt or _OTHER_TEXT) for one in unreached]
+            unreached = [replace(call, doubt=call.doubt or _OTHER_TEXT) for call in unreached]
         found += unreached
     return found, len({place.site for place in places})
 
@@ -183,8 +194,8 @@ def _known(
     operations: Iterable[Operation], places: Iterable[Place], texts: Mapping[str, str], seen: _OriginalCode
 ) -> KnownCalls:
     by_name: dict[str, list[Operation]] = {}
-    for one in operations:
-        by_name.setdefault(one.last_name, []).append(one)
+    for operation in operations:
+        by_name.setdefault(operation.last_name, []).append(operation)
     own = {part.removesuffix(".py") for file in texts for part in file.split("/")}
     reached: dict[str, set[str]] = {}
     for place in places:
@@ -192,5 +203,5 @@ def _known(
     alone: set[str] = set()
     for file in {file for file, _, _ in seen.alone} & texts.keys():
         everything = calls_in(texts[file], file, KnownCalls(by_name, own, {}, ()))
-        alone |= {one.site.text for one in everything if _end(one.site.span) in seen.alone}
+        alone |= {call.site.text for call in everything if _end(call.site.span) in seen.alone}
     return KnownCalls(by_name, own, reached, alone)

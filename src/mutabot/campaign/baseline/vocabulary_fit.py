@@ -42,7 +42,7 @@ def refuse_unhooked(vocabulary: Vocabulary) -> None:
 
     Raises ConfigurationError that says where the first of them stands, and what is needed.
     """
-    named = next((one for one in vocabulary.operations if one.named is not None), None)
+    named = next((operation for operation in vocabulary.operations if operation.named is not None), None)
     if named is not None and not brought("middlewares"):
         raise problem_error(Problem(named.source, "", _NO_MIDDLEWARE))
 
@@ -121,10 +121,17 @@ def _of_operations(baseline: Baseline, vocabulary: Vocabulary) -> Iterator[Probl
 def _of_probes(baseline: Baseline, vocabulary: Vocabulary) -> Iterator[Problem]:
     readings = [end.probes for end in baseline.ends.values()]
     for probe in vocabulary.probes:
-        known = [(one, names) for one in readings if (names := readings_of(probe, one))]
+        known = [
+            (reading_values, names)
+            for reading_values in readings
+            if (names := readings_of(probe, reading_values))
+        ]
         for quantity in probe.result if known else ():
             values = [
-                value for one, names in known for name in names for value in parts_of(name, quantity, one)
+                value
+                for reading_values, names in known
+                for name in names
+                for value in parts_of(name, quantity, reading_values)
             ]
             if not values and is_pattern(quantity):
                 continue
@@ -147,7 +154,7 @@ def _out_of_range(baseline: Baseline, vocabulary: Vocabulary) -> Iterator[Remark
             continue
         each = (value if isinstance(value, list | tuple) else [value] for value in values)
         numbers = [found for items in each if (found := [*filter(is_number, items)])]
-        outside = [[one for one in some if not quantity.allows(one)] for some in numbers]
+        outside = [[number for number in some if not quantity.allows(number)] for some in numbers]
         examples = [some[0] for some in outside if some]
         limits = "[{:g}, {:g}]".format(*quantity.range)
         remedy = f"clip = {limits} if the robot limits what it is sent, else a wider range"

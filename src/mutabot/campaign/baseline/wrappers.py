@@ -25,7 +25,7 @@ def shared_sites(
     baseline: Baseline, vocabulary: Vocabulary, sources: Sources, files: Iterable[str]
 ) -> Iterator[Remark]:
     """Yield remarks on sites inside such functions, saying what to describe in the vocabulary instead."""
-    described = {one.last_name for one in vocabulary.operations}
+    described = {described_operation.last_name for described_operation in vocabulary.operations}
     for place in baseline.hits:
         span, operation = place.site.span, vocabulary.operation(place.operation)
         name = span.function.rpartition(".")[2]
@@ -55,7 +55,7 @@ def passed_on(source: str) -> frozenset[Extent]:
 def call_names(source: str) -> Counter[str]:
     """Count the calls in a source by the last part of their names."""
     functions = (node.func for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Call))
-    names = (getattr(one, "attr", None) or getattr(one, "id", None) for one in functions)
+    names = (getattr(function, "attr", None) or getattr(function, "id", None) for function in functions)
     return Counter(name for name in names if name is not None)
 
 
@@ -70,10 +70,11 @@ def _fits(call: ast.Call, function: FunctionNode) -> bool:
     """Return whether a call passes on arguments of the function, and otherwise only constants."""
     given = function.args
     own = [*given.posonlyargs, *given.args, *given.kwonlyargs, given.vararg, given.kwarg]
-    names = {one.arg for one in own if one is not None} - {"self", "cls"}
-    values = [*call.args, *(one.value for one in call.keywords)]
-    plain = [one.value if isinstance(one, ast.Starred) else one for one in values]
-    passed = [isinstance(one, ast.Name) and one.id in names for one in plain]
+    names = {parameter.arg for parameter in own if parameter is not None} - {"self", "cls"}
+    values = [*call.args, *(keyword.value for keyword in call.keywords)]
+    plain = [value.value if isinstance(value, ast.Starred) else value for value in values]
+    passed = [isinstance(expression, ast.Name) and expression.id in names for expression in plain]
     return any(passed) and all(
-        is_own or isinstance(one, ast.Constant) for is_own, one in zip(passed, plain, strict=True)
+        is_own or isinstance(expression, ast.Constant)
+        for is_own, expression in zip(passed, plain, strict=True)
     )

@@ -141,7 +141,7 @@ def _changed_by(node: ast.Call) -> Iterator[ast.expr]:
         yield node.func.value
     if name in _CHANGING_FIRST and node.args:
         yield node.args[0]
-    yield from (one.value for one in node.keywords if one.arg == "out")
+    yield from (keyword.value for keyword in node.keywords if keyword.arg == "out")
 
 
 def _name_of(function: ast.expr) -> str:

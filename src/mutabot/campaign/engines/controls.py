@@ -144,17 +144,22 @@ def controls_of(baseline: Baseline, mutants: Iterable[Mutant], *, forked: bool =
         has_processes = forked and any(end.processes for end in ends)
         seconds = min(end.wall for end in passing)
         facts = (round, apart[place], is_early, has_processes, seconds, first)
-        one = _Candidate(*facts, place, quickest.test)
+        candidate = _Candidate(*facts, place, quickest.test)
         way = (baseline.faults.providers.get(place, CALLS), forked and is_early)
-        found.setdefault(way, []).append(one)
+        found.setdefault(way, []).append(candidate)
     controls: list[Control] = []
     for (by, early), candidates in found.items():
         has_other = (by, not early) in found
         wanted = {"forked": forked and not early, "as_late_as_possible": has_other and not early}
-        one = min(candidates, key=lambda one: one.rank(**wanted))  # it is called at once
-        subject, suite = IMPORT if early else one.test.partition("::")[0], baseline.suite(one.round)
+        candidate = min(
+            candidates, key=lambda found_candidate: found_candidate.rank(**wanted)
+        )  # it is called at once
+        subject, suite = (
+            IMPORT if early else candidate.test.partition("::")[0],
+            baseline.suite(candidate.round),
+        )
         names = (IDENTITY,) if has_other and early else (IDENTITY, FATAL)
-        controls += [Control(name, one.place, by, one.round, suite, subject) for name in names]
+        controls += [Control(name, candidate.place, by, candidate.round, suite, subject) for name in names]
     return controls
 
 
@@ -164,7 +169,7 @@ def run_controls(campaign: Campaign, mutants: Iterable[Mutant]) -> Iterator[Cont
     Raises ControlError for a control that ends wrongly, after it was yielded.
     """
     found = controls_of(campaign.baseline, mutants)
-    controls = [one for one in found if (REPLAY, *one.way) not in campaign.proven]
+    controls = [candidate for candidate in found if (REPLAY, *candidate.way) not in campaign.proven]
     if controls:
         campaign.progress.stage("controls", len(controls))
     for control, outcome in _replayed(campaign, controls):
@@ -264,6 +269,9 @@ class ForkTrust:
 
 
 def _replayed(campaign: Campaign, controls: Iterable[Control]) -> Iterator[tuple[Control, Outcome]]:
-    tasks = (replace(campaign.task(*one.run, one.tests, stop=one.name == FATAL), key=one) for one in controls)
+    tasks = (
+        replace(campaign.task(*control.run, control.tests, stop=control.name == FATAL), key=control)
+        for control in controls
+    )
     for result in campaign.executor.run(tasks):
         yield result.task.key, judge(campaign, run_of(result, campaign.sources))

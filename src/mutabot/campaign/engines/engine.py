@@ -56,17 +56,17 @@ def run_trials(
         runs, left = left.runs, Unhandled()
         if not runs:
             return
-        for one in _by_fork(campaign, runs, left) if engine == FORK else _by_replay(campaign, runs):
-            if isinstance(one, ControlEnd):
-                writer.journal.add_control(one)
+        for event in _by_fork(campaign, runs, left) if engine == FORK else _by_replay(campaign, runs):
+            if isinstance(event, ControlEnd):
+                writer.journal.add_control(event)
                 continue
-            mutant = mutants[one.mutant]
-            if not _counts(campaign, mutant, one):
-                campaign.again.append(one)
-                campaign.progress.advance(f"{_name(mutant, one)}, to be confirmed by the whole suite")
+            mutant = mutants[event.mutant]
+            if not _counts(campaign, mutant, event):
+                campaign.again.append(event)
+                campaign.progress.advance(f"{_name(mutant, event)}, to be confirmed by the whole suite")
                 continue
-            is_confirmed = (one.mutant, one.round) in let_through
-            outcome = replace(one, confirmed=True) if is_confirmed else one
+            is_confirmed = (event.mutant, event.round) in let_through
+            outcome = replace(event, confirmed=True) if is_confirmed else event
             _write(campaign, mutant, outcome, writer, found)
     for mutant, round in left.runs:
         text = f"it could not be forked: {left.why(mutant) or 'its fork gave no answer'}"
@@ -118,7 +118,7 @@ def _by_fork(
     campaign.progress.stage("mutants", len(runs))
     hindered: list[tuple[Mutant, Outcome]] = []
     trust, held = ForkTrust(campaign, controls), list[Outcome]()
-    for outcome in run_forks(campaign, [*(one.run for one in controls.values()), *runs], left):
+    for outcome in run_forks(campaign, [*(control.run for control in controls.values()), *runs], left):
         if outcome.mutant in controls:
             yield from trust.take(outcome)
             held, ready = [], held
@@ -127,18 +127,26 @@ def _by_fork(
             continue
         else:
             ready = [outcome]
-        for one in ready:
+        for ready_outcome in ready:
             if not trust.is_open:
-                yield one
-            elif trust.awaits(mutants[one.mutant], one):
-                held.append(one)
+                yield ready_outcome
+            elif trust.awaits(mutants[ready_outcome.mutant], ready_outcome):
+                held.append(ready_outcome)
             else:
-                yield from _believed(trust, mutants[one.mutant], one, left)
+                yield from _believed(trust, mutants[ready_outcome.mutant], ready_outcome, left)
     trust.close()
-    for one in held:
-        yield from _believed(trust, mutants[one.mutant], one, left)
-    left.runs += [(mutant, one.round) for mutant, one in hindered if not trust.believes(one)]
-    hindered = [(mutant, one) for mutant, one in hindered if trust.believes(one)]
+    for held_outcome in held:
+        yield from _believed(trust, mutants[held_outcome.mutant], held_outcome, left)
+    left.runs += [
+        (mutant, hindered_outcome.round)
+        for mutant, hindered_outcome in hindered
+        if not trust.believes(hindered_outcome)
+    ]
+    hindered = [
+        (mutant, hindered_outcome)
+        for mutant, hindered_outcome in hindered
+        if trust.believes(hindered_outcome)
+    ]
     _report_replayed(campaign, left)
     clear_up(campaign, left.suspects)
     left.runs = [run for run in left.runs if run[0].id not in controls]
@@ -155,7 +163,7 @@ def _believed(trust: ForkTrust, mutant: Mutant, outcome: Outcome, left: Unhandle
 def _forked_controls(campaign: Campaign, mutants: Collection[Mutant]) -> dict[str, Control]:
     """Return the controls that are to be forked, by the ids of their mutants."""
     found = controls_of(campaign.baseline, mutants, forked=True)
-    return {one.mutant.id: one for one in found if (FORK, *one.way) not in campaign.proven}
+    return {control.mutant.id: control for control in found if (FORK, *control.way) not in campaign.proven}
 
 
 def try_controls(campaign: Campaign, mutants: Sequence[Mutant]) -> tuple[int, Unhandled]:
@@ -169,11 +177,13 @@ def try_controls(campaign: Campaign, mutants: Sequence[Mutant]) -> tuple[int, Un
         controls = _forked_controls(campaign, mutants)
         campaign.progress.stage("controls", len(controls))
         trust = ForkTrust(campaign, controls)
-        for outcome in run_forks(campaign, [one.run for one in controls.values()], left):
+        for outcome in run_forks(campaign, [control.run for control in controls.values()], left):
             ended += len(list(trust.take(outcome)))
             campaign.progress.advance()
-        left.runs += [one.run for one in controls.values() if (FORK, *one.way) not in campaign.proven]
-        apart = [one for one in mutants if campaign.baseline.is_apart(one)]
+        left.runs += [
+            control.run for control in controls.values() if (FORK, *control.way) not in campaign.proven
+        ]
+        apart = [mutant for mutant in mutants if campaign.baseline.is_apart(mutant)]
         rest = mutants if left.runs else apart
     if REPLAY in campaign.request.engines and rest:
         ended += len(list(run_controls(campaign, rest)))

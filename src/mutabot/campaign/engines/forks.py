@@ -99,7 +99,9 @@ def run_forks(campaign: Campaign, runs: Iterable[MutantRun], left: Unhandled) ->
             parents[round].add(mutant)
     # the text of all rounds alike, so that one fork server can serve them
     text = baseline.faults.instrumentation(
-        {one.id: one for parent in parents.values() for one in parent.mutants}.values()
+        {
+            forked_mutant.id: forked_mutant for parent in parents.values() for forked_mutant in parent.mutants
+        }.values()
     )
     by_key = dict(enumerate(cut(list(parents.values()), campaign.executor.spread)))
     tasks = (parent.task(key, text) for key, parent in by_key.items())
@@ -113,10 +115,10 @@ def run_forks(campaign: Campaign, runs: Iterable[MutantRun], left: Unhandled) ->
 
 
 def _taken(
-    told: Iterable[Result | tuple[Task, events.Event]], parents: Mapping[int, _ForkRound]
+    ended: Iterable[Result | tuple[Task, events.Event]], parents: Mapping[int, _ForkRound]
 ) -> Iterator[Outcome]:
     """Yield the outcomes that follow from the events of fork parents."""
-    for event in told:
+    for event in ended:
         if isinstance(event, Result):
             yield from parents[event.task.key].finish(event)
         else:
@@ -127,8 +129,8 @@ def cut(parents: list[_ForkRound], places: int) -> list[_ForkRound]:
     """Split fork parents into parts for workers that share nothing, the longest first."""
     if places < 2 or not parents:
         return parents
-    whole = sum(one.seconds for one in parents) or 1.0
-    parts = [part for one in parents for part in one.parts(places * one.seconds / whole)]
+    whole = sum(parent.seconds for parent in parents) or 1.0
+    parts = [part for parent in parents for part in parent.parts(places * parent.seconds / whole)]
     return sorted(parts, key=lambda part: -part.seconds)
 
 
@@ -163,7 +165,9 @@ class _ForkOutcome(Run):
 
     def unpack(self) -> None:
         """Unpack the ends of tests, which ``hold`` has packed to save memory."""
-        unpacked = (one for data in self.packed for one in pickle.loads(zlib.decompress(data)))  # packed here
+        unpacked = (
+            packed_mutant for data in self.packed for packed_mutant in pickle.loads(zlib.decompress(data))
+        )  # packed here
         for end, seen in (*unpacked, *self.held):
             self.own[end.test] = end
             if seen is not None:
@@ -218,7 +222,7 @@ class _ForkRound:
     def _awaited(self) -> list[int]:
         """Return the numbers of the tests that ended forks wait for; the last test's if a control runs."""
         awaited = [number for number, mutants in self._waiting.items() if mutants & self._open.keys()]
-        is_controlled = any(one.family == CONTROL for one in self.mutants)
+        is_controlled = any(mutant.family == CONTROL for mutant in self.mutants)
         return [*awaited, len(self._tests) - 1] if is_controlled else awaited
 
     def parts(self, places: float) -> list[_ForkRound]:
@@ -228,7 +232,10 @@ class _ForkRound:
         if count < 2:
             return [self]
         reaching = self._baseline.tests_reaching
-        mutants = sorted(self.mutants, key=lambda one: (reaching(self._round, one), one.id))
+        mutants = sorted(
+            self.mutants,
+            key=lambda waiting_mutant: (reaching(self._round, waiting_mutant), waiting_mutant.id),
+        )
         found = [_ForkRound(self._campaign, self._left, self._round) for _ in range(count)]
         for number, mutant in enumerate(mutants):
             found[number * count // len(mutants)].add(mutant)
@@ -241,7 +248,7 @@ class _ForkRound:
         forking = Forking(
             mutants=mutants,
             limits=limits,
-            limit=max(limits.values(), key=lambda one: one.wall, default=campaign.startup_limit),
+            limit=max(limits.values(), key=lambda limit: limit.wall, default=campaign.startup_limit),
             startup=campaign.startup_limit,
             every_test=campaign.request.every_test,
             serial=baseline.is_exclusive(self._round),
@@ -254,7 +261,9 @@ class _ForkRound:
         for fork in self._open.values():
             fork.left_out = job.left_out(fork.mutant.id)
         # it waits for forks that go to the end
-        patience = Limit(2.0 * sum(one.wall for one in limits.values()) + forking.startup.wall + _PATIENCE)
+        patience = Limit(
+            2.0 * sum(limit.wall for limit in limits.values()) + forking.startup.wall + _PATIENCE
+        )
         # else it forks while it imports the program
         may_share = baseline.may_share and not any(map(baseline.is_early, mutants))
         return Task(

@@ -33,9 +33,14 @@ def run_alone(campaign: Campaign, hindered: Sequence[tuple[Mutant, Outcome]]) ->
     """Re-run, with no other task in parallel, the runs that other load delayed. These outcomes are final."""
     if not hindered:
         return
-    first = {(one.mutant, one.round): one for _, one in hindered}
+    first = {
+        (hindered_outcome.mutant, hindered_outcome.round): hindered_outcome
+        for _, hindered_outcome in hindered
+    }
     changed = 0
-    for _, outcome in _run(campaign, [(mutant, one.round) for mutant, one in hindered], alone=True):
+    for _, outcome in _run(
+        campaign, [(mutant, hindered_outcome.round) for mutant, hindered_outcome in hindered], alone=True
+    ):
         before = first[outcome.mutant, outcome.round]
         changed += outcome.verdict is not before.verdict
         yield replace(outcome, beside=before.beside)

@@ -66,7 +66,11 @@ class Doubts:
 
     def kills(self) -> list[RunId]:
         """Return all kills by a test that ended."""
-        return [key for key, one in self.outcomes.items() if one.verdict is Verdict.KILLED and one.test]
+        return [
+            key
+            for key, outcome in self.outcomes.items()
+            if outcome.verdict is Verdict.KILLED and outcome.test
+        ]
 
     def in_doubt(self) -> list[RunId]:
         """Return the kills that may be chance and were not repeated by an earlier campaign."""
@@ -78,8 +82,8 @@ class Doubts:
         """Return outcomes of racy operators that no earlier campaign has repeated."""
         return [
             key
-            for key, one in self.outcomes.items()
-            if one.verdict in (Verdict.KILLED, Verdict.SURVIVED) and not one.repeats
+            for key, outcome in self.outcomes.items()
+            if outcome.verdict in (Verdict.KILLED, Verdict.SURVIVED) and not outcome.repeats
             if provider(self.mutants[key[0]].provider).is_raced(self.mutants[key[0]].operator)
         ]
 
@@ -134,7 +138,9 @@ def rerun(campaign: Campaign, mutants: Sequence[Mutant], writer: OutcomeWriter, 
     request, journal = campaign.request, writer.journal
     journal.set_meta(records.FLAKY, flaky_of(campaign.baseline))
     by_id = {mutant.id: mutant for mutant in mutants}
-    outcomes = {(one.mutant, one.round): one for one in journal.outcomes() if one.mutant in by_id}
+    outcomes = {
+        (outcome.mutant, outcome.round): outcome for outcome in journal.outcomes() if outcome.mutant in by_id
+    }
     reruns = _Reruns(campaign, writer, Doubts(campaign.baseline, by_id, outcomes))
     default = VERIFIED if campaign.real is not None else 0
     if count := default if request.verify is None else request.verify:
@@ -170,7 +176,7 @@ class _Reruns:
         left, checked, wrong = dict(self.doubts.outcomes), 0, list[records.Disagreement]()
         if real is not None:
             left = {
-                key: one for key, one in left.items()
+                key: outcome for key, outcome in left.items()
                 if real.baseline.tests_reaching(key[1], self.doubts.mutants[key[0]])
             }  # fmt: skip
         while keys := choose(left.values(), count, seed):
@@ -183,7 +189,7 @@ class _Reruns:
                 _disagreement(self.doubts.mutants[key[0]], self.doubts.outcomes[key], self.found[key])
                 for key in differing
             ]
-            left = {key: one for key, one in left.items() if key not in self.found}
+            left = {key: outcome for key, outcome in left.items() if key not in self.found}
             if real is None or not differing:
                 break
         result = records.Verification(count, checked, tuple(wrong))
@@ -245,7 +251,9 @@ class _Reruns:
         certain = {key for key in kills if key not in self.found and self.doubts.is_certain(key)}
         doubted = set(self.doubts.in_doubt()) - certain
         others = [key for key in kills if key not in certain and key not in doubted]
-        survivors = [key for key, one in self.doubts.outcomes.items() if one.verdict is Verdict.SURVIVED]
+        survivors = [
+            key for key, outcome in self.doubts.outcomes.items() if outcome.verdict is Verdict.SURVIVED
+        ]
         return records.Repeats(
             self._counted(doubted), self._counted(others), len(certain), self._counted(survivors)
         )
@@ -275,7 +283,7 @@ class _Reruns:
         if not any(map(is_in_time, ends[:1])):
             return looked
         self.campaign.progress.stage("second look", len(keys))
-        due = takewhile(lambda one: is_in_time(one[1]), zip(cheapest, ends, strict=True))
+        due = takewhile(lambda run_and_end: is_in_time(run_and_end[1]), zip(cheapest, ends, strict=True))
         runs = ((self.doubts.mutants[key[0]], key[1]) for key, _ in due)
         for outcome in replay(over or self.campaign, runs):
             looked.append((outcome.mutant, outcome.round))
@@ -302,7 +310,9 @@ def choose(outcomes: Iterable[Outcome], count: int, seed: int) -> list[RunId]:
 
     Outcomes for which no test was run are left out: there is nothing to run again.
     """
-    ran = sorted((one.mutant, one.round) for one in outcomes if one.tests or one.test is not None)
+    ran = sorted(
+        (outcome.mutant, outcome.round) for outcome in outcomes if outcome.tests or outcome.test is not None
+    )
     return random.Random(f"{seed}:verify").sample(ran, min(count, len(ran)))
 
 
@@ -316,10 +326,10 @@ def unconfirmed(first: Outcome, second: Outcome) -> Outcome:
 
 
 def _disagreement(mutant: Mutant, first: Outcome, second: Outcome) -> records.Disagreement:
-    words = in_words(first), in_words(second)
-    if words[0] == words[1]:  # they differ in a later line of the message
-        words = f"{first.verdict}: {first.message}", f"{second.verdict}: {second.message}"
-    return records.Disagreement(mutant.id, mutant.number, first.round, *words)
+    texts = in_words(first), in_words(second)
+    if texts[0] == texts[1]:  # they differ in a later line of the message
+        texts = f"{first.verdict}: {first.message}", f"{second.verdict}: {second.message}"
+    return records.Disagreement(mutant.id, mutant.number, first.round, *texts)
 
 
 def flaky_of(baseline: Baseline) -> records.Flaky:

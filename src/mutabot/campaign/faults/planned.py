@@ -43,16 +43,18 @@ def _at_moments(
 ) -> list[PlannedMutant]:
     """Return the mutants; each whose operator has moments stands once for each moment asked for."""
     found = []
-    for one in planted:
-        rule = rules.get(one.mutant.operator)
-        if one.reason is not None or rule is None or not rule.has_moments:
-            found.append(one)
+    for planned_mutant in planted:
+        rule = rules.get(planned_mutant.mutant.operator)
+        if planned_mutant.reason is not None or rule is None or not rule.has_moments:
+            found.append(planned_mutant)
             continue
         for moment in project.moments:
-            made = one.mutant if moment is None else _at(one.mutant, moment, original)
+            made = planned_mutant.mutant if moment is None else _at(planned_mutant.mutant, moment, original)
             reason = _why_not(made, rule, project, original)
-            order = one.order if reason is None else (1, *one.order[1:])  # left out here: behind the others
-            found.append(replace(one, mutant=made, reason=reason, order=order))
+            order = (
+                planned_mutant.order if reason is None else (1, *planned_mutant.order[1:])
+            )  # left out here: behind the others
+            found.append(replace(planned_mutant, mutant=made, reason=reason, order=order))
     return found
 
 
@@ -95,29 +97,46 @@ def _with_demanded(
     demands, families = project.demands, project.families
     if not demands:
         return [*planted]
-    ladders = split_ladders(one.mutant for one in planted if one.reason is None)[1]
+    ladders = split_ladders(
+        planned_mutant.mutant for planned_mutant in planted if planned_mutant.reason is None
+    )[1]
     wanted = demanded_of(ladders, demands, project.vocabulary)
     found = [
-        one
-        for one in planted
-        if one.mutant.family in families
-        or (one.mutant.has_sizes and (one.reason is not None or wanted.get(one.mutant.ladder)))
+        planned_mutant
+        for planned_mutant in planted
+        if planned_mutant.mutant.family in families
+        or (
+            planned_mutant.mutant.has_sizes
+            and (planned_mutant.reason is not None or wanted.get(planned_mutant.mutant.ladder))
+        )
     ]
     least = {mutants[0].id for mutants in ladders.values()}
-    firsts = {one.mutant.ladder: one for one in found if one.reason is None and one.mutant.id in least}
+    firsts = {
+        planned_mutant.mutant.ladder: planned_mutant
+        for planned_mutant in found
+        if planned_mutant.reason is None and planned_mutant.mutant.id in least
+    }
     for name, mutants in ladders.items():
         found += [
             provider.at_magnitude(firsts[name], size)
             for size in wanted.get(name, ())
-            if not any(is_same(one.magnitude or 0.0, size) for one in mutants)
+            if not any(is_same(mutant.magnitude or 0.0, size) for mutant in mutants)
         ]
     return found
 
 
 def _ladders_last(planted: Sequence[PlannedMutant]) -> list[PlannedMutant]:
     """Renumber the mutants so that graded ones come last, ladder by ladder."""
-    _, ladders = split_ladders(one.mutant for one in planted if one.reason is None)
+    _, ladders = split_ladders(
+        planned_mutant.mutant for planned_mutant in planted if planned_mutant.reason is None
+    )
     steps = [mutant.id for mutants in ladders.values() for mutant in mutants]
     order = {mutant: (1, number) for number, mutant in enumerate(steps)}
-    others = ((one, order.get(one.mutant.id) if one.reason is None else None) for one in planted)
-    return [replace(one, order=(0, *one.order) if last is None else last) for one, last in others]
+    others = (
+        (planned_mutant, order.get(planned_mutant.mutant.id) if planned_mutant.reason is None else None)
+        for planned_mutant in planted
+    )
+    return [
+        replace(planned_mutant, order=(0, *planned_mutant.order) if last is None else last)
+        for planned_mutant, last in others
+    ]

@@ -184,7 +184,7 @@ def _answers(original: Original, place: Place, *, of_any: bool) -> RecordedAnswe
         for other, answers in original.answers.items()
         if (other.operation, other.pattern) == (place.operation, place.pattern) and answers.first
     ]
-    is_told = others and (of_any or all(one.is_nothing for one in others))
+    is_told = others and (of_any or all(other.is_nothing for other in others))
     return others[0] if is_told else own
 
 
@@ -300,9 +300,9 @@ def _has_raised(original: Original, place: Place) -> bool:
         return original.answers[place].has_raised
     command = place.operation, place.pattern
     of_command = (
-        one for other, one in original.answers.items() if (other.operation, other.pattern) == command
+        answers for call, answers in original.answers.items() if (call.operation, call.pattern) == command
     )
-    return any(one.has_raised for one in of_command)
+    return any(answers.has_raised for answers in of_command)
 
 
 def _has_reading(subject: Subject, vocabulary: Vocabulary) -> bool:
@@ -422,8 +422,10 @@ def texts_of(project: Project, tell: Callable[[str], None]) -> dict[str, tuple[P
 
 def provider(name: str) -> FaultProvider:
     """Return the provider of this name. Raises ExtensionError if there is none."""
-    own = {one.name: one for one in _OWN}
-    known = own if name in own else {one.name: one for one in all_providers()}
+    own = {known_provider.name: known_provider for known_provider in _OWN}
+    known = (
+        own if name in own else {known_provider.name: known_provider for known_provider in all_providers()}
+    )
     if name in known:
         return known[name]
     raise ExtensionError(unknown_name_text("provider of faults", name, known))
@@ -440,10 +442,14 @@ def family_of(mutant: str) -> str:
 def rules_of(families: Collection[str]) -> list[Rule]:
     """Return the operators of the providers of these families; of other packages nothing is loaded."""
     known = _OWN if set(families) <= set(OF_CALLS) else all_providers()
-    wanted = (one for one in known if one in _OWN or not set(one.families).isdisjoint(families))
-    return [rule for one in wanted for rule in one.rules()]
+    wanted = (
+        known_provider
+        for known_provider in known
+        if known_provider in _OWN or not set(known_provider.families).isdisjoint(families)
+    )
+    return [rule for wanted_provider in wanted for rule in wanted_provider.rules()]
 
 
 def operators_of_packages() -> dict[str, str]:
     """Return the operators of the packages' providers, with their families. Slow: it loads the packages."""
-    return {rule.name: rule.family for one in brought_providers() for rule in one.rules()}
+    return {rule.name: rule.family for package in brought_providers() for rule in package.rules()}

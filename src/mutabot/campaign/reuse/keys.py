@@ -231,8 +231,8 @@ class Dependencies:
         whole = is_noticed and not noticed.issubset(self._baseline.tests_reaching(outcome.round, mutant))
         is_first = outcome.verdict.is_killed and not self.request.every_test
         place = self.place(mutant, outcome.round, whole, (outcome.test or "") if is_first else "")
-        words = self._common, self._stored(place), self.own(mutant, outcome.round), self._tree, executed
-        return " ".join(words)
+        parts = self._common, self._stored(place), self.own(mutant, outcome.round), self._tree, executed
+        return " ".join(parts)
 
     def stored(self, executed: Executed | None) -> str:
         """Store executed units, and the files that were read, and return their digest."""
@@ -477,10 +477,10 @@ def _differing(names: Mapping[str, set[str] | None], old: SourceTree, new: Sourc
             found.append(f"{name} {state if name in new.digests else 'is gone'}")
             continue
         for unit in sorted(units):
-            said, says = before.said.get(unit), now.said.get(unit)
-            if said is None and says is not None:
+            stored, says = before.said.get(unit), now.said.get(unit)
+            if stored is None and says is not None:
                 made.append(f"{now.shown(unit)} is new")
-            elif said != says:
+            elif stored != says:
                 found.append(f"{before.shown(unit)} {'changed' if says is not None else 'is gone'}")
     return found + made
 
@@ -505,8 +505,8 @@ def everything_of(request: Request, files: Parts, installed: Parts) -> Parts:
         installed: what is installed.
     """
     vocabulary = request.vocabulary
-    entries = (_operation_parts(vocabulary, one.target) for one in vocabulary.operations)
-    operations = {name: digest for one in entries for name, digest in one.items()}
+    entries = (_operation_parts(vocabulary, operation.target) for operation in vocabulary.operations)
+    operations = {name: digest for entry in entries for name, digest in entry.items()}
     return {**_environment_parts(request, files, installed, read), **operations, **files}
 
 

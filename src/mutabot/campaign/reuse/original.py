@@ -113,7 +113,7 @@ class OriginalRuns:
             return None
         run = runs.popleft()
         try:
-            told = _read(run)
+            events = _read(run)
         except ValueError:
             return None
         if not self._reused and self._kept is not None:
@@ -121,9 +121,9 @@ class OriginalRuns:
             self._progress.note(f"the baseline of {when} still holds; `mutabot run --fresh` takes a new one")
         self._reused.append(run)
         result = Result(task, exit_code=run.exit_code, wall=run.wall)
-        for event in told:
+        for event in events:
             result.take(event)
-        return told, result
+        return events, result
 
     def made(self, run: OriginalRun) -> None:
         """Add a run that has ended in an orderly way."""
@@ -161,14 +161,14 @@ class _KeptRuns:
             events, result = found
             yield from ((task, event) for event in events)
             yield result
-        for one in self.executor.events(left):
-            if isinstance(one, Result):
-                run = notes.pop(one.task.key).run(one)
+        for entry in self.executor.events(left):
+            if isinstance(entry, Result):
+                run = notes.pop(entry.task.key).run(entry)
                 if run is not None:
                     self.original.made(run)
             else:
-                notes[one[0].key].add(one[1])
-            yield one
+                notes[entry[0].key].add(entry[1])
+            yield entry
 
     def _name_of(self, task: Task) -> str:
         """Return a name that is equal for tasks that do the same."""

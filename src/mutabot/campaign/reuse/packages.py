@@ -49,7 +49,7 @@ def _places(distribution: Distribution, name: str) -> Iterator[Path]:
         if not any(part.endswith(_OF_INSTALLERS) for part in file.parts):
             yield Path(str(distribution.locate_file(file)))
     named = (*entries, *(reference.partition(":")[0] for reference in references(name)))
-    for module in {one.partition(".")[0] for one in named}:
+    for module in {module_name.partition(".")[0] for module_name in named}:
         yield from _of_module(module)
 
 
@@ -68,8 +68,8 @@ def _of_module(name: str) -> Iterator[Path]:
 def _editable(distribution: Distribution) -> Path | None:
     """Return the folder in which an editable distribution is developed; None for any other distribution."""
     try:
-        told = json.loads(distribution.read_text("direct_url.json") or "{}")
-        is_editable, address = bool(told["dir_info"]["editable"]), urlsplit(told["url"])
+        direct_url = json.loads(distribution.read_text("direct_url.json") or "{}")
+        is_editable, address = bool(direct_url["dir_info"]["editable"]), urlsplit(direct_url["url"])
     except (ValueError, KeyError, TypeError, OSError):
         return None
     return Path(unquote(address.path)) if is_editable and address.scheme == "file" else None

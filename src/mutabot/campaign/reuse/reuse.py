@@ -116,9 +116,9 @@ def reuse(
     Args:
         others: journals of other campaigns of this project, to be looked into beside its own.
     """
-    sources = [Earlier(dependencies, one) for one in (journal, *others)]
+    sources = [Earlier(dependencies, source) for source in (journal, *others)]
     found = Reused(sources=sources)
-    if not any(one.kept for one in sources):
+    if not any(source.kept for source in sources):
         found.first = rounds * len(mutants)
         return found
     pairs = [(mutant, round) for round in range(rounds) for mutant in mutants]
@@ -238,8 +238,8 @@ class Revision:
             hint = "without a revision, `mutabot run` itself runs what has changed"
             raise UsageError(f"{_OPTION}: {project} is in no repository of git ({error}); {hint}") from error
         commit = _commit(project, ref)
-        words = _text(top, "diff", "--name-status", "--no-renames", "-z", commit, "--").split("\0")[:-1]
-        changed = {name: status != "A" for status, name in zip(words[::2], words[1::2], strict=True)}
+        fields = _text(top, "diff", "--name-status", "--no-renames", "-z", commit, "--").split("\0")[:-1]
+        changed = {name: status != "A" for status, name in zip(fields[::2], fields[1::2], strict=True)}
         for name in unignored(top):
             changed.setdefault(name, False)
         return cls(project, top.resolve(), ref, commit, changed)
@@ -266,7 +266,7 @@ class Revision:
         folder = self.project.relative_to(self.top).as_posix()
         prefix = "" if folder == "." else f"{folder}/"
         there = (name for name, was_there in self.changed.items() if was_there and name.startswith(prefix))
-        return [name for one in there if not (self.project / (name := one.removeprefix(prefix))).is_file()]
+        return [name for file in there if not (self.project / (name := file.removeprefix(prefix))).is_file()]
 
     def _name(self, path: Path) -> str:
         folder = path.parent.resolve()  # a link in the project is a file of its own
@@ -309,8 +309,8 @@ def _git(folder: Path, *command: str) -> bytes:
     except GitError as error:
         raise UsageError(f"{_OPTION} needs git: {error}") from error
     if done.returncode:
-        said = done.stderr.decode("utf-8", "replace").strip()
-        raise _FailedError(f"{_OPTION}: git {command[0]}: {said or f'exit code {done.returncode}'}")
+        message = done.stderr.decode("utf-8", "replace").strip()
+        raise _FailedError(f"{_OPTION}: git {command[0]}: {message or f'exit code {done.returncode}'}")
     return done.stdout
 
 
@@ -389,7 +389,9 @@ def altered_since(
     altered: dict[RunId, str] = {}
     for mutant, round in left:
         pair = (mutant.id, round)
-        known = next((one.was(one.kept[pair].key) for one in found.sources if pair in one.kept), None)
+        known = next(
+            (source.was(source.kept[pair].key) for source in found.sources if pair in source.kept), None
+        )
         whole, until = now.asked(known) if known is not None else (False, "")
         was = Was(
             then.common,

@@ -44,10 +44,12 @@ def assign(costs: Mapping[str, float], shards: int) -> dict[str, int]:
     loads = [0.0] * shards
     found: dict[str, int] = {}
     # Large ones first, as they fit the worst; by classes, so that a change of cost seldom changes the order.
-    for name, price in sorted(costs.items(), key=lambda one: (-math.frexp(one[1])[1], _hash(one[0]))):
+    for name, price in sorted(
+        costs.items(), key=lambda name_and_cost: (-math.frexp(name_and_cost[1])[1], _hash(name_and_cost[0]))
+    ):
         liked = sorted(range(shards), key=lambda shard: _hash(f"{name} {shard}"))
-        chosen = next((one for one in liked if loads[one] + price <= room), None)
-        found[name] = min(liked, key=lambda one: loads[one]) if chosen is None else chosen
+        chosen = next((number for number in liked if loads[number] + price <= room), None)
+        found[name] = min(liked, key=lambda number: loads[number]) if chosen is None else chosen
         loads[found[name]] += price
     return found
 
@@ -70,7 +72,10 @@ def part_of(plan: Plan, shard: Shard | None, baseline: Baseline) -> Plan:
         items.setdefault(mutant.ladder or mutant.id, []).append(mutant)
     found = assign({name: _cost_of(those, baseline) for name, those in items.items()}, shard.of)
     own = {name for name, number in found.items() if number == shard.number - 1}
-    return replace(plan, mutants=[one for one in plan.mutants if (one.ladder or one.id) in own])
+    return replace(
+        plan,
+        mutants=[own_mutant for own_mutant in plan.mutants if (own_mutant.ladder or own_mutant.id) in own],
+    )
 
 
 def write_shard(
@@ -84,8 +89,10 @@ def write_shard(
     """
     if shard is not None:
         depends = {**dependencies.everything, **_settings_of(dependencies.request)} if dependencies else None
-        said = records.ShardOf(shard.number, shard.of, tuple(one.number for one in part.mutants), depends)
-        journal.set_meta(records.SHARD, said)
+        shard_record = records.ShardOf(
+            shard.number, shard.of, tuple(mutant.number for mutant in part.mutants), depends
+        )
+        journal.set_meta(records.SHARD, shard_record)
 
 
 def _settings_of(request: Request) -> dict[str, str]:
@@ -95,7 +102,7 @@ def _settings_of(request: Request) -> dict[str, str]:
 
 
 def _cost_of(mutants: list[Mutant], baseline: Baseline) -> float:
-    most = max(_cost(one, baseline) for one in mutants) * min(len(mutants), _SEARCH)
+    most = max(_cost(mutant, baseline) for mutant in mutants) * min(len(mutants), _SEARCH)
     # two digits: what a simulator rounds otherwise on another machine is not to part mutants otherwise
     return float(f"{most:.1e}")
 
@@ -166,12 +173,12 @@ def refuse_strangers(parts: Sequence[ShardJournal]) -> None:
 def _differing(old: ShardJournal, new: ShardJournal) -> list[str]:
     if old.shard.of != new.shard.of:
         return [f"one is of {new.shard.of} shards, the other of {old.shard.of}"]
-    told = changes(old.shard.depends or {}, new.shard.depends or {})
-    before, now = ({(one.id, one.number) for one in part.mutants} for part in (old, new))
+    differences = changes(old.shard.depends or {}, new.shard.depends or {})
+    before, now = ({(mutant.id, mutant.number) for mutant in part.mutants} for part in (old, new))
     others = sorted(before ^ now)
-    if others and not told:  # else they differ for that reason
-        told = [f"{len(others)} mutants are planned in one of them alone, such as {others[0][0]}"]
-    return told
+    if others and not differences:  # else they differ for that reason
+        differences = [f"{len(others)} mutants are planned in one of them alone, such as {others[0][0]}"]
+    return differences
 
 
 def merge(paths: Sequence[Path], target: Path, *, root: Path, room: int) -> list[str]:
@@ -201,7 +208,7 @@ def merge(paths: Sequence[Path], target: Path, *, root: Path, room: int) -> list
                 journal.take_outcomes(part.journal)
             known = _known(journal, parts)
             journal.set_known(known)
-            _merge_recordings(stack, parts, target, room, {one.id for one, _ in known})
+            _merge_recordings(stack, parts, target, room, {mutant.id for mutant, _ in known})
             journal.finish(_INCOMPLETE if missing else "complete")
     return missing
 
@@ -234,7 +241,7 @@ def _missing(parts: Sequence[ShardJournal]) -> Iterator[str]:
     of, rounds = first.shard.of, int(first.meta.get("rounds") or 1)
     there = {part.shard.number for part in parts}
     claimed = [number for part in parts for number in part.shard.mutants]
-    free = len({one.number for one in first.mutants} - set(claimed))
+    free = len({mutant.number for mutant in first.mutants} - set(claimed))
     absent = [number for number in range(1, of + 1) if number not in there]
     if absent:
         names = ", ".join(map(str, absent))
@@ -257,8 +264,10 @@ def _missing(parts: Sequence[ShardJournal]) -> Iterator[str]:
         ended = part.journal.finished or "killed"
         if ended != "complete":
             own = set(part.shard.mutants)
-            alone = {one.id for one in part.mutants if one.number in own and not one.ladder}
-            lacking = len(alone) * rounds - sum(one.mutant in alone for one in part.journal.outcomes())
+            alone = {mutant.id for mutant in part.mutants if mutant.number in own and not mutant.ladder}
+            lacking = len(alone) * rounds - sum(
+                outcome.mutant in alone for outcome in part.journal.outcomes()
+            )
             yield (
                 f"{part.words} is not complete ({ended}), {lacking} outcomes are missing: {again} and its "
                 "journal, and merge again"
@@ -275,31 +284,38 @@ def _meta(parts: Sequence[ShardJournal]) -> dict[str, Any]:
         if values:
             found[key] = together(values)
     for key in (records.ALTERED, records.FLAKY, records.VERIFICATION, records.REPEATS):
-        said = [meta[key] for meta in metas if key in meta]
-        if said and key == records.FLAKY:
-            tests = dict.fromkeys(test for one in said for test in one.tests)
-            found[key] = records.Flaky(tuple(tests), max(one.known for one in said))
-        elif said:
-            found[key] = _summed([to_data(one) for one in said])
+        known_values = [meta[key] for meta in metas if key in meta]
+        if known_values and key == records.FLAKY:
+            tests = dict.fromkeys(test for value in known_values for test in value.tests)
+            found[key] = records.Flaky(tuple(tests), max(value.known for value in known_values))
+        elif known_values:
+            found[key] = _summed([to_data(value) for value in known_values])
     return found
 
 
-def _summed(said: Sequence[Any]) -> Any:
+def _summed(values: Sequence[Any]) -> Any:
     """Return the sum of data of one shape: numbers are added, lists concatenated."""
-    first = said[0]
+    first = values[0]
     if isinstance(first, dict):
-        return {key: _summed([one[key] for one in said]) for key in first}
-    return [item for one in said for item in one] if isinstance(first, list) else sum(said)
+        return {key: _summed([value[key] for value in values]) for key in first}
+    return [item for value in values for item in value] if isinstance(first, list) else sum(values)
 
 
 def _known(journal: Journal, parts: Sequence[ShardJournal]) -> list[tuple[Mutant, bool]]:
     """Return mutants of earlier campaigns beside the plan; the last shard's description counts."""
     planned = parts[0].mutants
     readers = [journal, *(part.journal for part in parts)]
-    found = {one.id: (one, outdated) for part in readers for one, outdated in part.known()}
-    for one in planned:
-        found.pop(one.id, None)
-    return [(one, found[one.id][1]) for one in renumbered([one for one, _ in found.values()], planned)]
+    found = {
+        known_mutant.id: (known_mutant, outdated)
+        for part in readers
+        for known_mutant, outdated in part.known()
+    }
+    for mutant in planned:
+        found.pop(mutant.id, None)
+    return [
+        (known_mutant, found[known_mutant.id][1])
+        for known_mutant in renumbered([known_mutant for known_mutant, _ in found.values()], planned)
+    ]
 
 
 def _merge_recordings(
@@ -307,8 +323,8 @@ def _merge_recordings(
 ) -> None:
     is_there = target.exists()  # a shard may lie where the whole is to lie
     found = [Recordings.to_read(part.path, copied=is_there and part.path.samefile(target)) for part in parts]
-    opened = [stack.enter_context(one) for one in found if one is not None]
+    opened = [stack.enter_context(recording) for recording in found if recording is not None]
     if opened:
-        mutants = known | {one.id for one in parts[0].mutants}
+        mutants = known | {mutant.id for mutant in parts[0].mutants}
         with Recordings.to_write(target, room) as recordings:
             recordings.take(opened, mutants)

@@ -44,9 +44,9 @@ def load_vocabulary(names: Sequence[str], root: Path, families: Iterable[str] = 
     others = merged.others.values()
     return Vocabulary(
         operations=tuple(operation for operation, _ in merged.read.values()),
-        clock=next((one for one in others if isinstance(one, Clock)), None),
-        probes=tuple(one for one in others if isinstance(one, Probe)),
-        wait=next((one for one in others if isinstance(one, Wait)), None),
+        clock=next((other for other in others if isinstance(other, Clock)), None),
+        probes=tuple(other for other in others if isinstance(other, Probe)),
+        wait=next((other for other in others if isinstance(other, Wait)), None),
         **{name: tuple(dict.fromkeys(targets)) for name, targets in merged.targets.items()},
     )
 
@@ -169,7 +169,7 @@ def check_operations(entries: Iterable[Read], read: Mapping[str, Read]) -> None:
                     (place / key).attempt(check, operation, name, read[name][0])
                 else:
                     (place / key).unknown("operation", name, read)
-        if not operation.currents and any(one.relative for one in _all_arguments(operation)):
+        if not operation.currents and any(argument.relative for argument in _all_arguments(operation)):
             place.error("relative = true needs current: what tells where the robot is")
 
 
@@ -181,9 +181,11 @@ def _check_current(operation: Operation, name: str, reading: Operation) -> None:
     if not moved:
         raise ValueError("has no effect here: no argument is a translation or a rotation")
     readings = reading.readings
-    if not any(is_reading_of(one, written) for written in moved for one in readings):
-        missing = ", ".join(dict.fromkeys(_described(one, READING_OF[one.kind]) for one in moved))
-        found = ", ".join(_described(one, one.kind) for one in readings) or "nothing"
+    if not any(is_reading_of(quantity, written) for written in moved for quantity in readings):
+        missing = ", ".join(
+            dict.fromkeys(_described(quantity, READING_OF[quantity.kind]) for quantity in moved)
+        )
+        found = ", ".join(_described(quantity, quantity.kind) for quantity in readings) or "nothing"
         raise ValueError(f"{name} reads {found}, but here it would have to read {missing}")
 
 

@@ -52,13 +52,13 @@ def read_operations(place: DocumentPlace, raw: Any) -> list[Operation]:
     names = [Named(form, getattr(table, keys[0]), table.node, table.type) for form in forms]
     if names:
         _check_keys(place, table, keys[0], forms)
-    return [_read_operation(place, table, one.target, one, is_main=one is names[0]) for one in names]
+    return [_read_operation(place, table, name.target, name, is_main=name is names[0]) for name in names]
 
 
 def _check_keys(place: DocumentPlace, table: OperationTable, key: str, forms: Sequence[Form] = ()) -> None:
     """Note keys that have no meaning for an operation with such a name."""
     sides = [schema.SIDES[form] for form in forms if form in schema.SIDES] if forms else [schema.CALLABLE]
-    fitting = {one for side in sides for one in (side.written, side.read) if one}
+    fitting = {side_name for side in sides for side_name in (side.written, side.read) if side_name}
     writes = not forms or forms[0] in WRITTEN
     allowed = {key, *fitting, *(("type", "node") if forms else ("signature",))}
     allowed |= {other for other, only in _ONLY.items() if only == key}
@@ -153,7 +153,7 @@ def _with_commands(
             for cases, quantities in described
             if (name := name_of_cases(cases))
         )
-    patterns = tuple(replace(one, when=_rooted(one.when, sides.root)) for one in patterns)
+    patterns = tuple(replace(pattern, when=_rooted(pattern.when, sides.root)) for pattern in patterns)
     operation = replace(operation, patterns=patterns)
     operation = replace(
         operation,
@@ -192,7 +192,7 @@ def _is_command(table: OperationTable, operation: Operation) -> bool:
         return False
     if table.command is not None:
         return table.command
-    if form not in (None, Form.CALL) or operation.arguments or any(one.arguments for one in patterns):
+    if form not in (None, Form.CALL) or operation.arguments or any(pattern.arguments for pattern in patterns):
         return True
     if patterns and form is None:
         return not result and any(not pattern.result for pattern in patterns)
@@ -216,8 +216,8 @@ def _read_message(
         )
         return None
     path = path if root is None else in_message(path, root)
-    patterns = (one for pattern in operation.patterns for one in pattern.arguments)
-    if any(one.path == path for one in (*operation.arguments, *patterns)):
+    patterns = (argument for pattern in operation.patterns for argument in pattern.arguments)
+    if any(argument.path == path for argument in (*operation.arguments, *patterns)):
         where = place / "arguments" / table.message
         where.error("holds the text command, which patterns describe")
     return str(path) if root is not None else table.message
@@ -255,7 +255,9 @@ def _check_signature(place: DocumentPlace, operation: Operation) -> None:
             )
         return
     signature = at.attempt(parse_signature, operation.signature)
-    if signature is None or any(one.kind is one.VAR_KEYWORD for one in signature.parameters.values()):
+    if signature is None or any(
+        parameter.kind is parameter.VAR_KEYWORD for parameter in signature.parameters.values()
+    ):
         return
     for name, key in operation.described.items():
         if name not in signature.parameters:

@@ -80,7 +80,7 @@ def _read_pattern(
         name = f" [{name_of_cases(cases)}]" if cases else ""
         yield Pattern(
             text=table.text + name,
-            arguments=(*arguments, *(one for one in common if one.name not in names)),
+            arguments=(*arguments, *(quantity for quantity in common if quantity.name not in names)),
             result=result,
             opposite=table.opposite,
             source=f"{where} · {notation.short}{name}",
@@ -199,7 +199,7 @@ def _read_choice(place: DocumentPlace, mode: dict[str, Any]) -> tuple[str, tuple
         if not isinstance(value, str):
             (place / key).error(f'expected "by" or "to", got {shown(value)}')
         elif value not in tuple(Mode):
-            (place / key).unknown("mode", value, [one.value for one in Mode])
+            (place / key).unknown("mode", value, [known_mode.value for known_mode in Mode])
     if not isinstance(argument, str):
         place.error(f"needs the argument that decides, {_MODE}")
     elif len(named) < 2:
@@ -269,7 +269,7 @@ def in_cases(operation: Operation, cases: tuple[Case, ...]) -> Operation:
         opposite=None,
         idle=None,
         refused=(),
-        patterns=tuple(_pattern(operation, one, cases) for one in operation.patterns or (whole,)),
+        patterns=tuple(_pattern(operation, pattern, cases) for pattern in operation.patterns or (whole,)),
         is_partial=True,
     )
 
@@ -297,14 +297,14 @@ def together(first: Operation, second: Operation) -> Operation:
     """Merge two entries for different cases of one callable. Raises ValueError if they conflict."""
     known = {pattern.text: pattern for pattern in first.patterns}
     for pattern in second.patterns:
-        other = known.get(pattern.text)
-        if other is not None and replace(other, source="") != replace(pattern, source=""):
+        known_pattern = known.get(pattern.text)
+        if known_pattern is not None and replace(known_pattern, source="") != replace(pattern, source=""):
             cases = ", ".join(f"{case.argument} = {case.value}" for case in pattern.when)
             raise ValueError(f"{cases} is described twice, differently")
     for key in ("message", "signature"):
-        one, other_one = getattr(first, key), getattr(second, key)
-        if None not in (one, other_one) and one != other_one:
-            raise ValueError(f"{key} is {other_one!r} here, but {one!r} in another entry for the same call")
+        value, other_one = getattr(first, key), getattr(second, key)
+        if None not in (value, other_one) and value != other_one:
+            raise ValueError(f"{key} is {other_one!r} here, but {value!r} in another entry for the same call")
     new = (pattern for pattern in second.patterns if pattern.text not in known)
     return replace(
         first,

@@ -93,7 +93,10 @@ def read_quantities(
             quantities.append(quantity)
     if sides.is_message:
         root = sides.root if is_written else None
-        quantities = [replace(one, path=in_message(one.path, root)) for one in quantities]
+        quantities = [
+            replace(known_quantity, path=in_message(known_quantity.path, root))
+            for known_quantity in quantities
+        ]
     return tuple(quantities)
 
 
@@ -215,11 +218,11 @@ def note_faults(
 
     ``is_vector`` tells whether it is a slice that stays one quantity. Returns whether there are any.
     """
-    told: set[str] = set()
+    noted: set[str] = set()
     rules = _of_kind(table, is_written, sides)
     if not any(is_broken for _, is_broken, _ in rules):
         for key, name, known in _unknown(table):
-            told.add(key)
+            noted.add(key)
             (place / key).unknown(key, name, known)
         rules = [
             (key, kind in kinds and getattr(table, key) is not None, f"{_a(kind)} has no {key}{beside}")
@@ -230,10 +233,10 @@ def note_faults(
         rules += [*_of_meaning(table, is_written, is_vector), *_of_values(table, is_written, is_vector)]
         rules += [*_of_reading(table, is_written), *_of_ladder(table)]
     for key, is_broken, text in rules:
-        if is_broken and key not in told:
-            told.add(key)
+        if is_broken and key not in noted:
+            noted.add(key)
             (place / key).error(text)
-    return bool(told)
+    return bool(noted)
 
 
 def _of_kind(table: QuantityTable, is_written: bool, sides: Sides) -> list[_RowRule]:
@@ -271,7 +274,7 @@ def _of_meaning(table: QuantityTable, is_written: bool, is_vector: bool) -> list
         units_of(DIMENSIONS.get(table.kind, ())),
         _unit(table),
     )
-    is_named = kind is Kind.OPENING and any(isinstance(one, str | bool) for one in table.values or ())
+    is_named = kind is Kind.OPENING and any(isinstance(value, str | bool) for value in table.values or ())
     is_target = kind in _MOVED and table.mode is Mode.TO
     is_position = is_written and is_target and kind is Kind.TRANSLATION
     hidden = (

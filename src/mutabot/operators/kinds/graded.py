@@ -116,7 +116,7 @@ def _in_component(context: Context, value: Value, change: Callable[[float], floa
 
 def _turned(quantity: Quantity, axis: str, value: Value, change: Callable[[float], float]) -> Value | None:
     radians = convert_difference(change(0.0), quantity.unit or "rad", "rad")
-    turn = from_rotation_vector([radians if one == axis else 0.0 for one in "xyz"])
+    turn = from_rotation_vector([radians if other == axis else 0.0 for other in "xyz"])
     return quantity.rotated(value, turn.after)
 
 
@@ -327,11 +327,13 @@ class Lag(CommandOperator):
     )
 
     def fits(self, whole: Subject) -> bool:
-        waits = any(one.kind is Kind.DURATION for one in whole.written)
+        waits = any(quantity.kind is Kind.DURATION for quantity in whole.written)
         return (whole.is_command or bool(whole.read)) and not waits
 
     def magnitudes(self, whole: Subject) -> Magnitudes | None:
-        named = next((one for one in (*whole.written, *whole.read) if one.ladder_unit is not None), None)
+        named = next(
+            (quantity for quantity in (*whole.written, *whole.read) if quantity.ladder_unit is not None), None
+        )
         return ladder_in(named, Dimension.TIME)
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:

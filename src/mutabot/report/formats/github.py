@@ -33,15 +33,15 @@ def _lines(material: Material) -> Iterator[str]:
             yield _annotation(level, result, material)
         else:
             hidden += 1
-    told = [f"{hidden} more survivors are not shown here; `mutabot results` lists them"] if hidden else []
+    notes = [f"{hidden} more survivors are not shown here; `mutabot results` lists them"] if hidden else []
     accepted = len(material.campaign.accepted)
     if accepted:
-        told.append(f"{accepted} accepted survivor{'s are' if accepted != 1 else ' is'} not shown")
+        notes.append(f"{accepted} accepted survivor{'s are' if accepted != 1 else ' is'} not shown")
     if not material.campaign.is_complete:
         campaign = material.campaign
-        told.append(f"the campaign is not complete ({campaign.state}): {campaign.known}")
-    if told:
-        yield f"::notice title=mutabot::{_data('; '.join(told))}"
+        notes.append(f"the campaign is not complete ({campaign.state}): {campaign.known}")
+    if notes:
+        yield f"::notice title=mutabot::{_data('; '.join(notes))}"
 
 
 def _annotation(level: str, result: MutantResult, material: Material) -> str:

@@ -105,7 +105,7 @@ def _case(suite: Xml.Element, result: MutantResult, material: Material) -> None:
     reason = f": {short_reason(result)}" if state != NOT_RUN else ""
     ended = acceptance_text(result) or f"{rounds_text(result)}{reason}"
     why = told_text(result) if element == "failure" else ended
-    told = Xml.SubElement(case, element, {"message": one_line(f"{mutant.description}: {why}")})
+    child = Xml.SubElement(case, element, {"message": one_line(f"{mutant.description}: {why}")})
     if element != "skipped":
-        told.set("type", state.replace(" ", "-"))
-    told.text = text
+        child.set("type", state.replace(" ", "-"))
+    child.text = text

@@ -32,7 +32,9 @@ _HELP = (
 def make(material: Material) -> str:
     """Return the report."""
     survivors = [*material.campaign.survivors, *material.campaign.accepted]
-    rules = {name: index for index, name in enumerate(sorted({one.mutant.operator for one in survivors}))}
+    rules = {
+        name: index for index, name in enumerate(sorted({survivor.mutant.operator for survivor in survivors}))
+    }
     return dumps(
         {
             "$schema": _SCHEMA,
@@ -44,7 +46,7 @@ def make(material: Material) -> str:
                     "columnKind": "utf16CodeUnits",
                     "originalUriBaseIds": {_ROOT: {"description": {"text": "The root of the repository."}}},
                     "invocations": [_invocation(material)],
-                    "results": [_result(one, material, rules) for one in survivors],
+                    "results": [_result(survivor, material, rules) for survivor in survivors],
                 }
             ],
         }
@@ -54,7 +56,7 @@ def make(material: Material) -> str:
 def _driver(material: Material, rules: Mapping[str, int]) -> dict[str, Any]:
     version = str(material.campaign.meta.get("mutabot", ""))
     survivors = [*material.campaign.survivors, *material.campaign.accepted]
-    known = {one.mutant.operator: one.mutant for one in survivors}
+    known = {survivor.mutant.operator: survivor.mutant for survivor in survivors}
     return {
         "name": "Mutabot",
         **({"version": version} if version else {}),
@@ -75,8 +77,8 @@ def _rule(name: str, mutant: Mutant, material: Material) -> dict[str, Any]:
 def _invocation(material: Material) -> dict[str, Any]:
     campaign = material.campaign
     is_complete = campaign.is_complete
-    told = f"{campaign.state}: {campaign.known}"
-    notes = [] if is_complete else [{"level": "warning", "message": {"text": _message(told)}}]
+    state = f"{campaign.state}: {campaign.known}"
+    notes = [] if is_complete else [{"level": "warning", "message": {"text": _message(state)}}]
     if campaign.confirmation is not None:
         notes.append({"level": "note", "message": {"text": _message(f"{campaign.confirmation.text}.")}})
     untested = campaign.untested
@@ -114,7 +116,7 @@ def _level(result: MutantResult) -> str:
     """Return a survivor's level, which is higher if the robot acted differently."""
     if result.indistinguishable:
         return "note"
-    differs = any(one.divergence and not one.indistinguishable for one in result.survived)
+    differs = any(outcome.divergence and not outcome.indistinguishable for outcome in result.survived)
     return "error" if differs else "warning"
 
 
@@ -133,7 +135,7 @@ def _location(site: Site, material: Material) -> dict[str, Any]:
 def _related(site: Site, material: Material) -> dict[str, Any]:
     """Return the other places of a fault that has several."""
     spans = site.other_spans
-    found = [{"id": number, "physicalLocation": _region(one, material)} for number, one in enumerate(spans)]
+    found = [{"id": number, "physicalLocation": _region(span, material)} for number, span in enumerate(spans)]
     return {"relatedLocations": found} if found else {}
 
 

@@ -65,7 +65,7 @@ def campaign_data(campaign: Results, name: str) -> dict[str, Any]:
         name: what the project is called.
     """
     tests = {test: number for number, test in enumerate(campaign.tests)}
-    rows = [_row(one, tests) for one in campaign.mutants]
+    rows = [_row(result, tests) for result in campaign.mutants]
     thresholds = thresholds_of(campaign)
     return {
         "name": name,
@@ -78,11 +78,12 @@ def campaign_data(campaign: Results, name: str) -> dict[str, Any]:
         "meta": campaign.meta,
         # thousands of rows do not repeat the names of their cells
         "columns": [*rows[0]] if rows else [],
-        "mutants": [[*one.values()] for one in rows],
+        "mutants": [[*row.values()] for row in rows],
         "withoutEffect": [*campaign.needlessly_accepted, *campaign.accepting.unmatched],
         "unlooked": unlooked(campaign.mutants),
         "ladders": [
-            {**data_of.facts(one, _LADDER), "text": line_of(one)} for one in thresholds.ladders[:_LADDERS]
+            {**data_of.facts(ladder, _LADDER), "text": line_of(ladder)}
+            for ladder in thresholds.ladders[:_LADDERS]
         ],
         "thresholds": thresholds.summary,
         "furtherLadders": len(thresholds.ladders[_LADDERS:]),
@@ -106,7 +107,7 @@ def _row(result: MutantResult, tests: Mapping[str, int]) -> dict[str, Any]:
         **data_of.facts(result, _ROW),
         "status": state_of(result),
         "why": "; ".join(filter(None, [acceptance_text(result), effect_text(result)])),
-        "ends": "".join(mark_of(one).letter for one in result.rounds),
+        "ends": "".join(mark_of(round_outcome).letter for round_outcome in result.rounds),
         "kills": [*kills.values()],
     }
 
@@ -151,7 +152,7 @@ def check_folder(folder: Path) -> None:
     """Raise UsageError for a folder that a report must not be written into."""
     if folder.exists() and not folder.is_dir():
         raise UsageError(f"the report {folder} cannot be written: it is a file; --html takes a folder")
-    found = {one.name for one in folder.iterdir()} if folder.is_dir() else set()
+    found = {path.name for path in folder.iterdir()} if folder.is_dir() else set()
     if found and REPORT_MARK not in found:
         raise UsageError(
             f"the report {folder} cannot be written: the folder holds other files, such as {min(found)}; "
@@ -178,12 +179,12 @@ def write_folder(folder: Path, contents: Contents, limit: int = LIMIT) -> Writte
         ):
             path.mkdir(parents=True)
         without = _write_data(folder / _DATA, contents, limit)
-        for one in files(__package__).joinpath(_ASSETS).iterdir():
-            target = folder / one.name if one.name == _PAGE else folder / _ASSETS / one.name
-            target.write_bytes(one.read_bytes())
+        for entry in files(__package__).joinpath(_ASSETS).iterdir():
+            target = folder / entry.name if entry.name == _PAGE else folder / _ASSETS / entry.name
+            target.write_bytes(entry.read_bytes())
     except OSError as error:
         raise UsageError(f"the report {folder} cannot be written: {error.strerror}") from error
-    size = sum(one.stat().st_size for one in folder.rglob("*") if one.is_file())
+    size = sum(file.stat().st_size for file in folder.rglob("*") if file.is_file())
     return Written(folder / _PAGE, size, without)
 
 
@@ -237,19 +238,19 @@ def _recordings(recorded: Recorded, results: Iterable[MutantResult], limit: int)
 
     When one has no room, those behind it have none either.
     """
-    waiting = {one.mutant.number: recorded.of(one) for one in results}
+    waiting = {result.mutant.number: recorded.of(result) for result in results}
     found: dict[int, list[Any]] = {}
     used = 0
     while waiting:
         for number, those in [*waiting.items()]:
-            one = next(those, None)
-            if one is None:
+            recording = next(those, None)
+            if recording is None:
                 del waiting[number]
                 continue
-            used += len(script("", one))
+            used += len(script("", recording))
             if used > limit:
                 return found
-            found.setdefault(number, []).append(one)
+            found.setdefault(number, []).append(recording)
     return found
 
 
@@ -323,19 +324,23 @@ def kept_points(times: Sequence[float], rows: Sequence[Row], misses: Sequence[fl
     low, high = [-inf] * len(misses), [inf] * len(misses)
     for index in range(1, len(rows)):
         slopes, span = _slopes(times, rows, kept[-1], index)
-        if not all(least <= one <= most for least, one, most in zip(low, slopes, high, strict=True)):
+        if not all(least <= slope <= most for least, slope, most in zip(low, slopes, high, strict=True)):
             kept.append(index - 1)
             slopes, span = _slopes(times, rows, index - 1, index)
             low, high = [-inf] * len(misses), [inf] * len(misses)
-        low = [max(least, one - miss / span) for least, one, miss in zip(low, slopes, misses, strict=True)]
-        high = [min(most, one + miss / span) for most, one, miss in zip(high, slopes, misses, strict=True)]
+        low = [
+            max(least, slope - miss / span) for least, slope, miss in zip(low, slopes, misses, strict=True)
+        ]
+        high = [
+            min(most, slope + miss / span) for most, slope, miss in zip(high, slopes, misses, strict=True)
+        ]
     return kept if len(rows) < 2 else [*kept, len(rows) - 1]
 
 
 def _slopes(times: Sequence[float], rows: Sequence[Row], first: int, last: int) -> tuple[list[float], float]:
     """Return the slope of each axis between two points, and the time between them."""
     span = max(times[last] - times[first], 1e-9)
-    return [(one - other) / span for one, other in zip(rows[last], rows[first], strict=True)], span
+    return [(end - begin) / span for end, begin in zip(rows[last], rows[first], strict=True)], span
 
 
 def _gaps(times: Sequence[float], when: Sequence[float]) -> list[list[int]]:
@@ -437,12 +442,16 @@ class Recorded:
         return sum(len(self.evidence.tests(result.mutant.id, number)) for number in range(len(result.rounds)))
 
     def _places(self, result: MutantResult) -> Iterator[tuple[int, str]]:
-        found = [(number, one) for number, one in enumerate(result.rounds) if one is not None]
-        for number, outcome in sorted(found, key=lambda one: weight_of(one[1]), reverse=True):
-            diverged = [one.test for one in outcome.diverged]
+        found = [
+            (number, round_outcome)
+            for number, round_outcome in enumerate(result.rounds)
+            if round_outcome is not None
+        ]
+        for number, outcome in sorted(found, key=lambda numbered: weight_of(numbered[1]), reverse=True):
+            diverged = [divergence.test for divergence in outcome.diverged]
             tests = self.evidence.tests(result.mutant.id, number)
             for test in sorted(
-                tests, key=lambda one: diverged.index(one) if one in diverged else len(diverged)
+                tests, key=lambda name: diverged.index(name) if name in diverged else len(diverged)
             ):
                 yield number, test
 
@@ -459,10 +468,10 @@ class Recorded:
 def _data(recording: Recording) -> dict[str, Any]:
     tracks = (thinned(track, recording.times) for track in recording.tracks.values())
     return {
-        "tracks": [one for one in tracks if one],
-        "calls": [_call(one) for one in recording.calls],
-        "moments": [[one.time, one.what, one.text] for one in recording.moments],
-        "blocks": [[one.name, one.centre, one.size, one.colour] for one in recording.blocks],
+        "tracks": [track for track in tracks if track],
+        "calls": [_call(call) for call in recording.calls],
+        "moments": [[moment.time, moment.what, moment.text] for moment in recording.moments],
+        "blocks": [[block.name, block.centre, block.size, block.colour] for block in recording.blocks],
         "end": recording.times[-1] if recording.times else None,
         "fault": recording.fault,
         "faultyCall": recording.faulty_call,

@@ -38,7 +38,7 @@ class ReportPages:
     @staticmethod
     def assets() -> dict[str, bytes]:
         """Return the files that are the same for all campaigns by their names; ``index.html`` is the page."""
-        return {one.name: one.read_bytes() for one in files(__package__).joinpath("assets").iterdir()}
+        return {path.name: path.read_bytes() for path in files(__package__).joinpath("assets").iterdir()}
 
     @staticmethod
     def legible(text: str) -> str:
@@ -81,7 +81,7 @@ class ReportPages:
         """Return the script of the mutant with this number, with its recordings; None if there is none."""
         if self._campaign is None:
             return None
-        result = next((one for one in self._campaign.mutants if one.mutant.number == number), None)
+        result = next((mutant for mutant in self._campaign.mutants if mutant.mutant.number == number), None)
         if result is None:
             return None
         suggestion = kept_suggestions(self._journal, self._campaign.meta).get(result.mutant.id)
@@ -102,9 +102,9 @@ class ReportPages:
 def _recordings(recorded: Recorded, result: MutantResult) -> dict[str, Any]:
     found: list[Any] = []
     used = 0
-    for one in recorded.of(result):
-        used += len(script("", one))
+    for recording in recorded.of(result):
+        used += len(script("", recording))
         if used > _ROOM:
             break
-        found.append(one)
+        found.append(recording)
     return {"recordings": found, "without": recorded.count(result) - len(found)}

@@ -64,7 +64,7 @@ def _circumstances(results: Results) -> str:
     started = meta.get("started")
     if isinstance(started, int | float):
         parts.append(f"started {datetime.fromtimestamp(started).astimezone():%Y-%m-%d %H:%M}")
-    tests = {one.test.test for one in results.baseline}
+    tests = {baseline_test.test.test for baseline_test in results.baseline}
     return " · ".join([*parts, *([plural(len(tests), "test")] if tests else [])])
 
 

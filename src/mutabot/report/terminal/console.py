@@ -215,7 +215,7 @@ def letters(rounds: Sequence[Outcome | None], *, many: bool = False) -> Text:
     if many:
         parts = [Text(f"{mark.letter}{count}", style=mark.style) for mark, count in marks_in(rounds)]
     else:
-        parts = [Text(mark_of(one).letter, style=mark_of(one).style) for one in rounds]
+        parts = [Text(mark_of(outcome).letter, style=mark_of(outcome).style) for outcome in rounds]
     return Text(" ").join(parts)
 
 

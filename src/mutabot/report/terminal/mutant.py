@@ -62,11 +62,11 @@ def print_replayed(console: Console, mutant: Mutant, rounds: Iterable[Replayed])
     """Print how a mutant ended when it was re-run, beside what the journal says."""
     states = {True: "as in the journal", False: "not as in the journal", None: "not in the journal"}
     console.print(Text(f"Mutant {mutant.number}: {plain(mutant.description)}", style="bold", overflow="fold"))
-    for one in rounds:
-        console.print(heading(f"Round {one.round + 1}: {states[one.agrees]}"))
-        ends = [("now", one.second)]
-        if one.first is not None and not one.agrees:
-            ends.append((f"in the journal ({one.first.engine})", one.first))
+    for replayed_round in rounds:
+        console.print(heading(f"Round {replayed_round.round + 1}: {states[replayed_round.agrees]}"))
+        ends = [("now", replayed_round.second)]
+        if replayed_round.first is not None and not replayed_round.agrees:
+            ends.append((f"in the journal ({replayed_round.first.engine})", replayed_round.first))
         for name, outcome in ends:
             console.print(below("\n".join([f"{name}: {describe_end(outcome)}", *_details(outcome)])))
 
@@ -98,8 +98,13 @@ def _facts(result: MutantResult) -> Table:
 def _quantity_text(name: str | None, quantity: Quantity | None) -> str:
     if name is None or quantity is None:
         return name or "the call as a whole"
-    words = (quantity.kind.value, quantity.axis, quantity.unit, quantity.frame and f"frame {quantity.frame}")
-    return f"{name}: {', '.join(word for word in words if word)}"
+    details = (
+        quantity.kind.value,
+        quantity.axis,
+        quantity.unit,
+        quantity.frame and f"frame {quantity.frame}",
+    )
+    return f"{name}: {', '.join(word for word in details if word)}"
 
 
 def _rounds(result: MutantResult, *, everything: bool) -> Section:
@@ -171,13 +176,13 @@ def _checks(result: MutantResult, *, everything: bool) -> Iterator[Section]:
     outcome = result.rounds[number]
     if outcome is None or not result.is_survivor:
         return
-    tests = [one for one in outcome.looked if one.acted]
-    looked = next((one for one in tests if diverged is None or one.test == diverged.test), None)
+    tests = [test for test in outcome.looked if test.acted]
+    looked = next((test for test in tests if diverged is None or test.test == diverged.test), None)
     if looked is None or not looked.checks:
         return
-    checks = sorted(looked.checks, key=lambda one: inf if one.spare is None else one.spare)
+    checks = sorted(looked.checks, key=lambda check: inf if check.spare is None else check.spare)
     shown = checks if everything else checks[:_CHECKS]
-    lines = [f"{one.place}  {one.text}{f'  with {one.seen}' if one.seen else ''}" for one in shown]
+    lines = [f"{check.place}  {check.text}{f'  with {check.seen}' if check.seen else ''}" for check in shown]
     left = len(checks) - len(shown) + looked.more
     where = f" (round {number + 1}, {looked.test})" if diverged is None else ""
     more = [f"and {plural(left, 'more check')}"] if left else []

@@ -104,11 +104,11 @@ class Tally:
         self._states[key] = state
         self._counts[state] += 1
         # of a place that no test reaches, the mutants are told together
-        told = end.mutant.site.id if state == _NOT_COVERED else end.mutant.id
-        is_new = state in _SHOWN and told not in self._shown
+        shown = end.mutant.site.id if state == _NOT_COVERED else end.mutant.id
+        is_new = state in _SHOWN and shown not in self._shown
         if end.mutant.has_sizes or not (is_new or before in _SHOWN):
             return None
-        self._shown.add(told)
+        self._shown.add(shown)
         if end.is_reused:
             return None
         mutant = end.mutant

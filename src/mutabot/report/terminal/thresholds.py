@@ -26,7 +26,7 @@ def print_thresholds(console: Console, thresholds: Thresholds) -> None:
     """Print the thresholds of a campaign, least sensitive first."""
     size = f"{plural(len(thresholds.all), 'ladder')} × {plural(thresholds.rounds, 'round')}"
     columns = ("*fault", ">none up to", "magnitudes", ">all from", "*noticed by")
-    rows = [_row(one) for one in thresholds.ladders]
+    rows = [_row(ladder) for ladder in thresholds.ladders]
     print_section(console, Section(f"{size}: {thresholds.state}", columns, rows, [_LEGEND]))
     console.print(Text(thresholds.summary))
     for name, lines in _sections(thresholds).items():
@@ -35,10 +35,10 @@ def print_thresholds(console: Console, thresholds: Thresholds) -> None:
     console.print(Text(f"\n{_confidence(thresholds)}", style="dim"))
 
 
-def _row(one: Ladder) -> tuple[str, ...]:
-    none = amount(one.none_up_to, one.unit) if one.none_up_to else "–"
-    every = amount(one.all_from, one.unit) if one.all_from in one.sizes else "–"
-    return f"{one.place} {one.name}", none, bar(one), every, _noticed_by(one)
+def _row(ladder: Ladder) -> tuple[str, ...]:
+    none = amount(ladder.none_up_to, ladder.unit) if ladder.none_up_to else "–"
+    every = amount(ladder.all_from, ladder.unit) if ladder.all_from in ladder.sizes else "–"
+    return f"{ladder.place} {ladder.name}", none, bar(ladder), every, _noticed_by(ladder)
 
 
 def bar(ladder: Ladder) -> str:
@@ -54,37 +54,41 @@ def bar(ladder: Ladder) -> str:
 
 
 def _noticed_by(ladder: Ladder) -> str:
-    by = Counter(one.noticed_by for one in ladder.counted if one.noticed_by is not None)
+    by = Counter(
+        ladder_round.noticed_by for ladder_round in ladder.counted if ladder_round.noticed_by is not None
+    )
     rounds = len(ladder.counted)
-    told = [f"{name} in {count} of {plural(rounds, 'round')}" for name, count in by.most_common()]
-    return ", ".join(told) or line_of(ladder)
+    counts = [f"{name} in {count} of {plural(rounds, 'round')}" for name, count in by.most_common()]
+    return ", ".join(counts) or line_of(ladder)
 
 
 def _sections(thresholds: Thresholds) -> dict[str, list[str]]:
     """Return the ladders that need attention, by heading."""
-    known = [(f"{one.place} {one.name}", one) for one in thresholds.ladders]
+    known = [(f"{ladder.place} {ladder.name}", ladder) for ladder in thresholds.ladders]
     return {
         "Out of order: a larger fault was missed": [
-            f"{name}: {text}" for name, one in known for text in describe_violations(one)
+            f"{name}: {text}" for name, ladder in known for text in describe_violations(ladder)
         ],
         "Rounds that do not count": [
-            f"{name}: {text}" for name, one in known for text in rounds_left_out(one)
+            f"{name}: {text}" for name, ladder in known for text in rounds_left_out(ladder)
         ],
-        "Not judged": [f"{one.place} {one.name}: {one.why_unjudged}" for one in thresholds.unjudged],
+        "Not judged": [
+            f"{ladder.place} {ladder.name}: {ladder.why_unjudged}" for ladder in thresholds.unjudged
+        ],
     }
 
 
 def _confidence(thresholds: Thresholds) -> str:
     """Return a text on how further rounds may differ, and on the cost."""
     parts = []
-    first = max(thresholds.ladders, key=lambda one: len(one.counted), default=None)
+    first = max(thresholds.ladders, key=lambda ladder: len(ladder.counted), default=None)
     if first is not None and first.median is None:
         parts.append("One round says nothing about further rounds.")
     elif first is not None and first.median is not None:
         level = f"With {100 * first.median.level:.0f} % confidence"
         ends = "the largest fault that no round noticed and the smallest that every round noticed"
         parts.append(f"{level} the median threshold lies between {ends}.")
-        shares = [one.share_shown for one in thresholds.ladders if one.share_shown is not None]
+        shares = [ladder.share_shown for ladder in thresholds.ladders if ladder.share_shown is not None]
         if shares:
             share = f"at least {100 * min(shares):.0f} % of further rounds do (95 %)"
             parts.append(f"Where all rounds notice, {share}.")

@@ -60,9 +60,12 @@ class RefusedCalls:
     def start(self, known: Iterable[RefusedAt]) -> None:
         """Begin a test with these known refusals."""
         self._known = {
-            (where, one.operation, one.pattern): frozenset(one.numbers)
-            for one in known
-            for where in (one.site.span, _name(one.site.span, one.site.text, one.site.occurrence))
+            (where, refusal.operation, refusal.pattern): frozenset(refusal.numbers)
+            for refusal in known
+            for where in (
+                refusal.site.span,
+                _name(refusal.site.span, refusal.site.text, refusal.site.occurrence),
+            )
         }
         self._watched.clear()
 
@@ -89,7 +92,7 @@ class RefusedCalls:
             return
         self._watched.pop(made.call.operation.target, None)
         refused = refused_of(made.call)
-        if any(one.topic is not None for one in refused):
+        if any(refusal.topic is not None for refusal in refused):
             call = Call(made.call.operation, made.call.pattern)  # nothing of the program's is kept
             self._watched[made.call.operation.target] = (replace(made, call=call), refused)
 
@@ -133,9 +136,9 @@ def heard(refused: Iterable[Refused], name: str, message: Any) -> str | None:
 
     Of an action, messages are its results, and the words by which its goals end.
     """
-    for one in refused:
-        if one.topic is not None and fnmatchcase(name, one.topic):
-            found = _found(one, message)
+    for refusal in refused:
+        if refusal.topic is not None and fnmatchcase(name, refusal.topic):
+            found = _found(refusal, message)
             if found is not None:
                 return f"{name}: {found}"
     return None
@@ -282,7 +285,7 @@ class ActiveMutant:
             if reply.more:
                 reply = passage.received = call_faults.received_part(passage.call, reply)
             self.note(passage)
-            self._due += [(hit, mutated, _held(one)) for one in passage.deferred]
+            self._due += [(hit, mutated, _held(deferred)) for deferred in passage.deferred]
             last = passage.answered[-1] if passage.answered else None
             if reply.comes_as_usual:
                 return mutated.result(last, reply), last
@@ -305,8 +308,12 @@ class ActiveMutant:
         """
         if not self._due:
             return
-        due = [one for one in self._due if one[0] <= hits and (is_async or not one[1].made.is_async)]
-        self._due = [one for one in self._due if one not in due]
+        due = [
+            due_call
+            for due_call in self._due
+            if due_call[0] <= hits and (is_async or not due_call[1].made.is_async)
+        ]
+        self._due = [due_call for due_call in self._due if due_call not in due]
         for _, mutated, call in due:
             late = replace(mutated, passage=CallRecord(mutated.passage.call, [call], is_late=True))
             late.does_nothing = False
@@ -333,7 +340,9 @@ class ActiveMutant:
 
     def heard(self, name: str, message: Any) -> None:
         """Check whether a message says that the robot refuses a command."""
-        if not any(one.topic is not None and fnmatchcase(name, one.topic) for one in self._told_by):
+        if not any(
+            refusal.topic is not None and fnmatchcase(name, refusal.topic) for refusal in self._told_by
+        ):
             return
         self._reported += 1
         if self.watched:
@@ -357,10 +366,10 @@ class ActiveMutant:
         self._told_by = refused_of(call)
         self._commands += 1
 
-    def refused_as(self, said: str | None) -> None:
+    def refused_as(self, text: str | None) -> None:
         """Note the text with which the robot refused a mutated call; None if it did not."""
-        if said is not None and self.evidence.said is None:
-            self.evidence.said = said
+        if text is not None and self.evidence.said is None:
+            self.evidence.said = text
 
     def _subject(self) -> Subject:
         mutant = self.mutant
@@ -495,7 +504,7 @@ class _MutatedCall:
     def is_own(self, error: BaseException) -> bool:
         """Return whether an exception is the operator's own, not the robot's, pytest's or an event loop's."""
         error = error.error if isinstance(error, Carried) else error
-        if any(one.matches(error) for one in self.raised):
+        if any(known.matches(error) for known in self.raised):
             return False
         if isinstance(error, Exception):
             return True

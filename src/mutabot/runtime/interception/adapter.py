@@ -107,7 +107,11 @@ class Invocation:
     def _change(self, args: list[Any], kwargs: dict[str, Any], name: str, value: Any) -> None:
         parameter = self.signature.parameters.get(name)
         kind = parameter.kind if parameter is not None else Parameter.KEYWORD_ONLY
-        positional = [one.name for one in self.signature.parameters.values() if one.kind in _POSITIONAL]
+        positional = [
+            signature_parameter.name
+            for signature_parameter in self.signature.parameters.values()
+            if signature_parameter.kind in _POSITIONAL
+        ]
         values = self.values or {}
         if kind is Parameter.VAR_POSITIONAL:
             args[len(positional) :] = value
@@ -119,7 +123,7 @@ class Invocation:
             args[positional.index(name)] = value
         elif kind is Parameter.POSITIONAL_ONLY:  # a default: what comes before it must be given as well
             before = positional[len(args) : positional.index(name)]
-            args.extend(values.get(one) for one in before)
+            args.extend(values.get(parameter_name) for parameter_name in before)
             args.append(value)
         else:
             kwargs[name] = value
@@ -255,15 +259,15 @@ class Adapter:
         """Return the command of a call, if it has one, and the values that it writes."""
         undecided = []
         for pattern in self.operation.patterns:
-            said: Mapping[str, Value] | None = {}
+            values: Mapping[str, Value] | None = {}
             if pattern.notation is not None:
                 text = invocation.text
-                said = Notation.compile(pattern.notation).read(text) if text is not None else None
-            if said is None:
+                values = Notation.compile(pattern.notation).read(text) if text is not None else None
+            if values is None:
                 continue
             unfit = [case for case in pattern.when if case.value not in _names(invocation, case.argument)]
             if not unfit:
-                return pattern, self._written(pattern, said, invocation)
+                return pattern, self._written(pattern, values, invocation)
             if all(case.key == "mode" for case in unfit):
                 undecided.append(pattern)
         if undecided:
@@ -271,13 +275,13 @@ class Adapter:
         return None, self._values(self.operation.arguments, invocation)
 
     def _written(
-        self, pattern: Pattern, said: Mapping[str, Value], invocation: Invocation
+        self, pattern: Pattern, values: Mapping[str, Value], invocation: Invocation
     ) -> dict[str, Value]:
         fields, beside = self._parts[pattern.text]
         found = self._values(beside, invocation)
         needs_text = bool(fields) or (pattern.notation is not None and pattern.opposite is not None)
         if needs_text and invocation.text is not None and self._can_be_written(invocation.message):
-            found |= {name: said[name] for name in fields}
+            found |= {name: values[name] for name in fields}
         return found
 
     def _can_be_written(self, message: Any) -> bool:
@@ -291,11 +295,11 @@ class Adapter:
         return False
 
     def _values(self, quantities: tuple[Quantity, ...], invocation: Invocation) -> dict[str, Value]:
-        starts = [(one, invocation.get(one.path.root or "")) for one in quantities]
+        starts = [(quantity, invocation.get(quantity.path.root or "")) for quantity in quantities]
         return self._read([pair for pair in starts if pair[1] is not None], "arguments")
 
     def _read_result(self, quantities: tuple[Quantity, ...], result: Any) -> dict[str, Value]:
-        return self._read([(one, result) for one in quantities], "result")
+        return self._read([(quantity, result) for quantity in quantities], "result")
 
     def _read(self, quantities: list[tuple[Quantity, Any]], key: str) -> dict[str, Value]:
         """Read quantities, each from the object at which its path begins."""

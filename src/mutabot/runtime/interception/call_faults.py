@@ -95,15 +95,15 @@ def hand_over(call: Call, reply: Reply, result: Callable[[Reply], Any]) -> Calla
     if named is not None and named.form.comes_by_itself:
         parts = [(part.late, result(part)) for part in reply.parts]
         # the program may change what it got, and would find that in what comes next
-        return partial(_given, Delivery((*parts[:1], *((late, copied(one)) for late, one in parts[1:]))))
+        return partial(_given, Delivery((*parts[:1], *((late, copied(later)) for late, later in parts[1:]))))
     if reply.lost and means.lost is None:
         raise LookupError(f"no way to lose the answer of {call.operation.name} is known")
-    got = None if reply.lost else result(reply)
+    reply_value = None if reply.lost else result(reply)
 
     async def handed() -> Any:
         if reply.late:
             await means.sleep(reply.late)
-        return await means.lost() if reply.lost and means.lost is not None else got
+        return await means.lost() if reply.lost and means.lost is not None else reply_value
 
     return handed
 

@@ -28,8 +28,8 @@ class CallMutant(ActiveFault):
         self._active: ActiveMutant | None = None
         if operation is not None:
             operation = operation.by_numbers() if mutant.by_number else operation
-            told = (context.acted_in_call, context.in_mutated_call, lambda: context.seconds)
-            self._active = ActiveMutant(mutant, operation, context.refusals_of(operation), *told)
+            context_facts = (context.acted_in_call, context.in_mutated_call, lambda: context.seconds)
+            self._active = ActiveMutant(mutant, operation, context.refusals_of(operation), *context_facts)
 
     def prepare_process(self) -> None:
         """Activate the mutant: calls while the program is imported count for all tests."""

@@ -174,7 +174,11 @@ class Dispatcher:
             site = locator.locate(frame, in_operation=in_operation)
         else:
             site = locator.locate_definition(code)
-        if site is not None and node is not None and any(fnmatchcase(node, one) for one in self.oracle_nodes):
+        if (
+            site is not None
+            and node is not None
+            and any(fnmatchcase(node, pattern) for pattern in self.oracle_nodes)
+        ):
             return site[0], Role.ORACLE
         if site is None and code is None:  # in a thread, or in an operation: no frame tells it
             site = where.handed or self._given(frame, adapter, in_operation)

@@ -76,14 +76,14 @@ def without_ours(traceback: TracebackType | None) -> TracebackType | None:
     while traceback is not None:
         frames.append(traceback)
         traceback = traceback.tb_next
-    borders_here = (number for number, one in enumerate(frames) if is_border(one.tb_frame.f_code))
+    borders_here = (number for number, frame in enumerate(frames) if is_border(frame.tb_frame.f_code))
     callers = (number for number in borders_here if not is_ours(frames[number].tb_frame))
     first, following = next(callers, -1), None
-    for number, one in reversed(list(enumerate(frames))):
-        if number <= first or is_ours(one.tb_frame):
-            one.tb_frame.clear()
+    for number, step in reversed(list(enumerate(frames))):
+        if number <= first or is_ours(step.tb_frame):
+            step.tb_frame.clear()
         else:
-            one.tb_next, following = following, one
+            step.tb_next, following = following, step
     return following
 
 

@@ -43,7 +43,7 @@ def is_live(answer: Any, quantities: Iterable[Quantity]) -> bool:
     """
     try:
         return _is_held(answer, _OF_ANSWER) or any(
-            _is_held(part, _OF_PART) for one in quantities for part in _parts(answer, one.path)
+            _is_held(part, _OF_PART) for quantity in quantities for part in _parts(answer, quantity.path)
         )
     except Exception:  # objects of the user's may do anything when they are looked at: then it may be
         return True
@@ -120,10 +120,10 @@ class HandedCopies:
         waiting = self._handed[start:]
         del self._handed[start:]
         while waiting and not self.written:
-            one = waiting.pop(0)  # what it is a part of comes before a part, and goes before it
-            self.written = not _is_as_before(*one)
-            if sys.getrefcount(one[0]) > _IN_RECORD:
-                self._handed.append(one)
+            entry = waiting.pop(0)  # what it is a part of comes before a part, and goes before it
+            self.written = not _is_as_before(*entry)
+            if sys.getrefcount(entry[0]) > _IN_RECORD:
+                self._handed.append(entry)
         return self.written
 
 
@@ -172,10 +172,10 @@ def _is_remembered(value: Any, key: Any) -> bool:
     return key.startswith("_") or isinstance(getattr(type(value), key, None), cached_property)
 
 
-def _is_alike(one: Any, other: Any) -> bool:
-    if one is other:
+def _is_alike(first: Any, second: Any) -> bool:
+    if first is second:
         return True
     try:
-        return type(one) is type(other) and bool(one == other or (one != one and other != other))  # noqa: PLR0124  # NaN
+        return type(first) is type(second) and bool(first == second or (first != first and second != second))  # noqa: PLR0124  # NaN
     except Exception:  # a value of the user's may compare in any way; it is another object
         return False

@@ -188,7 +188,9 @@ def _frozen(values: Mapping[str, Any]) -> dict[str, Any]:
     found: dict[str, Any] = {
         name: list(value) if isinstance(value, list) else value for name, value in values.items()
     }
-    return {name: one.tolist() if hasattr(type(one), "tolist") else one for name, one in found.items()}
+    return {
+        name: value.tolist() if hasattr(type(value), "tolist") else value for name, value in found.items()
+    }
 
 
 class Locator:
@@ -213,7 +215,7 @@ class Locator:
         # places. It is kept beside its span, so that no other code can get its address.
         self._spans: dict[tuple[int, int], tuple[Span, CodeType]] = {}
         # every other frame is Python's: asking its front end for each would cost each call
-        self._interpreted = [one for one in front_ends() if one is not PYTHON]
+        self._interpreted = [front_end for front_end in front_ends() if front_end is not PYTHON]
 
     def locate(self, frame: FrameType | None, *, in_operation: bool = False) -> CallPlace | None:
         """Return span and role of the call that runs in ``frame`` or the nearest frame around it.

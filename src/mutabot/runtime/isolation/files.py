@@ -47,7 +47,9 @@ def _private_folders(root: str, temporary: str) -> tuple[str, ...]:
     folders = [os.path.realpath(root), os.path.realpath(temporary)]
     if os.path.isdir(_SHARED_MEMORY):
         folders.append(os.path.realpath(_SHARED_MEMORY))
-    outer = [one for one in folders if any(is_below(other, one) for other in folders if other != one)]
+    outer = [
+        folder for folder in folders if any(is_below(other, folder) for other in folders if other != folder)
+    ]
     return tuple(dict.fromkeys([*outer, *folders]))
 
 
@@ -108,7 +110,7 @@ class PrivateFiles:
                 continue
             if mode == os.O_RDWR:  # a database knows which file it has opened, and a fork has another one
                 return f"{path} is open for reading and writing"
-            if not any(is_below(path, one) for one in folders):
+            if not any(is_below(path, folder) for folder in folders):
                 return f"{path} is open for writing"
         if not keeps_ids() and (file := asks_for_id(self.root)) is not None:
             return f"{file} asks for the process id, and a fork of an ordinary user has one of its own"

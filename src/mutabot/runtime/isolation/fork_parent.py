@@ -134,7 +134,7 @@ class ForkParent:
         self._copied, self._test_controls = False, 0
         self._is_stopped()
         key = at_test(test)
-        due = {one.id for one in self._live.get(key, ())} - self._gone
+        due = {mutant.id for mutant in self._live.get(key, ())} - self._gone
         if due and self.has_nodes:
             self._gone |= due
             self.pipe.send(Unforked(test, tuple(sorted(due)), _NODES))
@@ -189,7 +189,7 @@ class ForkParent:
             self._gone.update(mutant.id for mutant in due)
             self._places = None
             for key, here in self._live.items():
-                self._live[key] = [one for one in here if one.id not in self._gone]
+                self._live[key] = [mutant for mutant in here if mutant.id not in self._gone]
             own = (pid for child in self._children.values() for pid in child.pids if pid is not None)
             due = self._wanted(due)
             reason = forkable.STARTED if self._is_overtaken() else self.files.forbids_fork()
@@ -202,10 +202,10 @@ class ForkParent:
         """Return the mutants to fork; after an interruption only controls, which other outcomes need."""
         if not self._is_stopped():
             return mutants
-        unwanted = tuple(one.id for one in mutants if one.family != Identity.family)
+        unwanted = tuple(mutant.id for mutant in mutants if mutant.family != Identity.family)
         if unwanted:
             self.pipe.send(Unforked(self._test, unwanted, _INTERRUPTED))
-        return [one for one in mutants if one.family == Identity.family]
+        return [mutant for mutant in mutants if mutant.family == Identity.family]
 
     def _test_control_of(self, mutant: Mutant) -> Mutant:
         """Return the identity control at this mutant's place, which shows the effect of forking."""
@@ -344,7 +344,7 @@ class ForkParent:
         """Return whether the campaign was interrupted, so that no more mutants begin and others are ended."""
         if not self._stopped and os.path.exists(os.path.join(self.files.home, STOP)):
             self._stopped = True
-            unwanted = [one for one in self._children.values() if not self._is_to_end(one)]
+            unwanted = [forked for forked in self._children.values() if not self._is_to_end(forked)]
             for child in unwanted:
                 child.is_unwanted = True
                 os.kill(child.pids.fork, signal.SIGKILL)

@@ -127,12 +127,12 @@ def count_threads() -> int:
 def _waits_in(thread: str, areas: list[tuple[int, int]]) -> bool:
     try:
         with open(f"{_SELF}/task/{thread}/syscall", encoding="ascii") as file:
-            words = file.read().split()
+            fields = file.read().split()
     except OSError:  # it has just ended, or the kernel does not tell
         return False
-    if len(words) < 2 or not words[1].startswith("0x"):
+    if len(fields) < 2 or not fields[1].startswith("0x"):
         return False
-    place = int(words[1], 16)
+    place = int(fields[1], 16)
     return any(start <= place < end for start, end in areas)
 
 

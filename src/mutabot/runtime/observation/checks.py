@@ -97,14 +97,14 @@ class Looks:
             else:
                 self._note(place, text, None, lambda: _arguments_in_words(passed))
 
-    def _note(self, place: str, text: str, spare: float | None, words: Callable[[], str]) -> None:
+    def _note(self, place: str, text: str, spare: float | None, describe: Callable[[], str]) -> None:
         key = f"{place}\n{text}"
         is_new = key not in self._seen
         if is_new and len(self._seen) >= MOST:
             self._more.add(key)
             return
         if is_new or (spare is not None and spare < self._least.get(key, math.inf)):
-            self._seen[key] = words()
+            self._seen[key] = describe()
             if spare is not None:
                 self._least[key] = spare
         self._times[key] = self._times.get(key, 0) + 1
@@ -139,11 +139,11 @@ def _of_approximate(value: Any, approximate: Any) -> float | None:
         value, expected = list(value.values()), [expected[key] for key in value]
     scalar_of = getattr(approximate, "_approx_scalar", lambda wanted: approximate)
     pairs = _pairs(value, expected)
-    return _least(abs(scalar_of(wanted).tolerance - abs(one - wanted)) for one, wanted in pairs)
+    return _least(abs(scalar_of(wanted).tolerance - abs(number - wanted)) for number, wanted in pairs)
 
 
 def _least(found: Iterator[float]) -> float | None:
-    return min((one for one in found if math.isfinite(one)), default=None)
+    return min((spare for spare in found if math.isfinite(spare)), default=None)
 
 
 def _pairs(left: Any, right: Any) -> list[tuple[float, float]]:
@@ -162,7 +162,7 @@ def _numbers(value: Any) -> list[float] | None:
         return [float(value)]
     if type(value) not in (list, tuple) or len(value) > _MOST_ITEMS:
         return None
-    parts = [_numbers(one) for one in value]
+    parts = [_numbers(item) for item in value]
     return None if None in parts else [number for part in parts for number in part or ()]
 
 
@@ -190,7 +190,7 @@ def _rounded(value: Any) -> Any:
     if type(value) is float:
         return float(f"{value:.6g}")
     if type(value) is dict:
-        return {key: _rounded(one) for key, one in value.items()}
+        return {key: _rounded(item) for key, item in value.items()}
     return type(value)(map(_rounded, value)) if type(value) in (list, tuple) else value
 
 
@@ -234,11 +234,11 @@ class Checks:
 
     def install(self) -> None:
         """Instrument all test files that pytest rewrites from now on."""
-        looks, told = self._looks, self._descriptions
+        looks, descriptions = self._looks, self._descriptions
         setattr(
             builtins,
             CHECKED,
-            lambda number, *compared, **passed: looks.checked(*told[number], *compared, **passed),
+            lambda number, *compared, **passed: looks.checked(*descriptions[number], *compared, **passed),
         )
         loading.hook_pytest(self._wants, self._insert, self._look)
 
@@ -252,9 +252,9 @@ class Checks:
         self._found = {}
         for node in ast.walk(tree):
             for part in _deciding(_decides(node)):
-                words = " ".join(_segment(lines, part).decode("utf-8", "replace").split())
+                text = " ".join(_segment(lines, part).decode("utf-8", "replace").split())
                 self._found[_position(part)] = len(self._descriptions)
-                self._descriptions.append((f"{name}:{part.lineno}", words))
+                self._descriptions.append((f"{name}:{part.lineno}", text))
 
     def _insert(self, tree: ast.Module, source: bytes, path: str) -> None:
         if self._found:
@@ -329,10 +329,10 @@ class _Inserter(ast.NodeTransformer):
             given += [sides[0], ast.Constant(_OPERATORS[type(value.ops[0])]), sides[1]]
         elif isinstance(value, ast.Call):
             passed = [
-                *(ast.keyword(f"_{index}", one) for index, one in enumerate(value.args)),
+                *(ast.keyword(f"_{index}", expression) for index, expression in enumerate(value.args)),
                 *value.keywords,
             ]
-            if not all(one.arg is not None and _is_variable(one.value) for one in passed):
+            if not all(keyword.arg is not None and _is_variable(keyword.value) for keyword in passed):
                 passed = []  # as above
         line = ast.Expr(ast.Call(ast.Name(CHECKED, ast.Load()), given, passed))
         return [node, ast.fix_missing_locations(ast.copy_location(line, node))]

@@ -116,7 +116,7 @@ class Instances:
 
     def _held_by_fixtures(self, name: str) -> list[Any]:
         given = self._fixtures() if self._fixtures is not None else ()
-        held = [one for one in given if name in self._names_of(type(one))]
+        held = [value for value in given if name in self._names_of(type(value))]
         return held[-1:] or self._made_last(name, False)
 
     def _names_of(self, kind: type) -> tuple[str, ...]:

@@ -119,7 +119,7 @@ def _attribute(owner: Any, name: str) -> Any:
     except AttributeError:
         if hasattr(type(owner), name):  # a property of its own accord
             raise
-        near = nearest_name(name, [one for one in dir(owner) if not one.startswith("_")])
+        near = nearest_name(name, [attribute for attribute in dir(owner) if not attribute.startswith("_")])
         of = owner.__name__ if hasattr(owner, "__name__") else type(owner).__name__
         hint = f"; did you mean {near!r}?" if near else ""
         raise UnreadableError(f"{of} has no {name!r}{hint}") from None
@@ -151,7 +151,11 @@ def needed_arguments(found: Callable[..., Any]) -> list[str]:
     except (TypeError, ValueError):  # a native function: its call will say
         return []
     variable = (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD)
-    return [one.name for one in parameters if one.default is one.empty and one.kind not in variable]
+    return [
+        parameter.name
+        for parameter in parameters
+        if parameter.default is parameter.empty and parameter.kind not in variable
+    ]
 
 
 def _needs_none(found: Callable[..., Any]) -> bool:
@@ -337,8 +341,8 @@ def _data_of(value: Any, depth: int) -> Any:
         return opaque(value)
     if isinstance(items, dict):
         return {_key(key): _data_of(item, depth + 1) for key, item in items.items()}
-    told = [_data_of(item, depth + 1) for item in items]
-    return sorted(told, key=json.dumps) if type(value) in (set, frozenset) else told
+    parts = [_data_of(item, depth + 1) for item in items]
+    return sorted(parts, key=json.dumps) if type(value) in (set, frozenset) else parts
 
 
 def _array(value: Any, depth: int) -> Any:
@@ -427,10 +431,10 @@ class TestRecording:
         recording.is_simulated = recorder.is_simulated
         recording.fault = recorder.seconds(recording.fault)
         timed = (
-            one._replace(began=recorder.seconds(one.began), ended=recorder.seconds(one.ended))
-            for one in calls
+            call._replace(began=recorder.seconds(call.began), ended=recorder.seconds(call.ended))
+            for call in calls
         )
-        recording.calls = sorted(timed, key=lambda one: one.began or 0.0)
+        recording.calls = sorted(timed, key=lambda call: call.began or 0.0)
         try:
             return to_text(recording)
         except (TypeError, ValueError, RecursionError) as error:  # values of the user's may be anything

@@ -288,22 +288,22 @@ def starts_a_killer(event: str, arguments: tuple[Any, ...]) -> bool:
     Nobody can know from outside whom such a program ends.
     """
     if event == "os.system":
-        name, words = "sh", _words(None, arguments[0])
+        name, command_line = "sh", _words(None, arguments[0])
     elif event in STARTS:
-        words = _words(None, arguments[1])
-        name = os.path.basename(words[0]) if words else ""
+        command_line = _words(None, arguments[1])
+        name = os.path.basename(command_line[0]) if command_line else ""
     else:
         return False
-    return name in _KILLERS or (name in _RUNNERS and any(map(_KILLER_IN_TEXT.search, words)))
+    return name in _KILLERS or (name in _RUNNERS and any(map(_KILLER_IN_TEXT.search, command_line)))
 
 
 def _words(executable: Any, command: Any) -> list[str]:
     try:
         given = [command] if isinstance(command, str | bytes | os.PathLike) else list(command)
-        words = [os.fsdecode(word) for word in given]
+        command_line = [os.fsdecode(word) for word in given]
     except TypeError:  # it will not start either
         return []
-    return [os.fsdecode(executable), *words[1:]] if executable is not None else words
+    return [os.fsdecode(executable), *command_line[1:]] if executable is not None else command_line
 
 
 class ProcessWatch:
@@ -355,10 +355,10 @@ class ProcessWatch:
 
 def _why_unseen(event: str, arguments: tuple[Any, ...]) -> str | None:
     """Return why a Python process that is being started cannot join the campaign; None if it can."""
-    words = _words(*arguments[:2])
-    if not words or not os.path.basename(words[0]).startswith("python"):
+    command_line = _words(*arguments[:2])
+    if not command_line or not os.path.basename(command_line[0]).startswith("python"):
         return None
-    options = takewhile(lambda word: word.startswith("-"), words[1:])
+    options = takewhile(lambda word: word.startswith("-"), command_line[1:])
     apart = next((option for option in options if option in _APART), None)
     if apart is not None:
         return f"the option {apart} isolates it"

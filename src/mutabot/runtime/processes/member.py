@@ -322,9 +322,9 @@ class Member:
 
     def _modules_of_vocabulary(self) -> set[str]:
         vocabulary = self.session.job.vocabulary
-        names = [one.target for one in vocabulary.operations if one.named is None]
+        names = [operation.target for operation in vocabulary.operations if operation.named is None]
         names += [*vocabulary.refusals, *vocabulary.checks, *vocabulary.failures]
-        names += [name for one in vocabulary.operations for name in one.refusals]
+        names += [name for operation in vocabulary.operations for name in operation.refusals]
         return {module for name in names if (module := name.partition(":")[0]) in sys.modules}
 
     def _watch_exits(self) -> None:

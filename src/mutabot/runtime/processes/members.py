@@ -54,22 +54,22 @@ class Members:
     def start_test(self, test: str) -> None:
         """Begin a test, during which earlier processes may still run."""
         self.children.number = self._running.begin(test)
-        self._present = [one for one in self.children.records.values() if is_alive(one.began.pid)]
+        self._present = [record for record in self.children.records.values() if is_alive(record.began.pid)]
 
     def merged(self, end: events.TestEnd) -> events.TestEnd:
         """Return the end of the running test with what members did in it; an error if that is not known."""
         self._take_all()
-        here = sorted(self._here(), key=lambda one: (one.name, one.began.time))
+        here = sorted(self._here(), key=lambda record: (record.name, record.began.time))
         job, watch, index_of = self._session.job, self._watch, self._session.recorder.index_of
         facts = FactsOfTest(job, index_of, self._acted, watch.codes, watch.signalled)
         end = self._with_recorded(fold(end, here, facts), here, facts)
         self._acted = self._acted or end.acted > 0
         for origin in (events.STARTED, events.FORKED):
-            if places := {place for one in here if one.origin == origin for place in one.places}:
+            if places := {place for record in here if record.origin == origin for place in record.places}:
                 self._session.pipe.send(events.PlacesReached(end.test, tuple(sorted(places)), origin))
-        end = replace(end, processes=tuple((one.began.pid, one.name) for one in here))
-        for one in here:
-            one.forget()
+        end = replace(end, processes=tuple((record.began.pid, record.name) for record in here))
+        for child in here:
+            child.forget()
         read: Executed = dict.fromkeys(sorted(self._read), (AS_TEXT, WHOLE))
         self._read.clear()
         executed = together([end.executed, read]) if read else end.executed
@@ -87,11 +87,17 @@ class Members:
 
     def _here(self) -> Iterable[ChildRecord]:
         """Return the processes that existed during the test."""
-        present = {id(one) for one in self._present}
+        present = {id(child) for child in self._present}
         number = self._running.number
-        for one in self.children.records.values():
-            if id(one) in present or one.began.test == number or one.called or one.did or one.places:
-                yield one
+        for record in self.children.records.values():
+            if (
+                id(record) in present
+                or record.began.test == number
+                or record.called
+                or record.did
+                or record.places
+            ):
+                yield record
 
     def _take_all(self) -> None:
         """Read new events, and handle those that concern the session rather than a test."""
@@ -139,7 +145,7 @@ def _write_wake(folder: str, job: Job) -> None:
         names.update(nodes if operation.named is not None else [_top(operation.target)])
     if job.vocabulary.clock is not None:
         names.add(_top(job.vocabulary.clock.tick))
-    awaited = {one.awaits for one in job.active.values()}
+    awaited = {activation.awaits for activation in job.active.values()}
     names.update(map(_top, awaited - {Activation.AT_ONCE, Activation.FIRST_TEST, Activation.FIRST_TICK}))
     files = [os.path.realpath(os.path.join(job.root, path)) for path in (*job.program, *job.oracle)]
     for path in (*job.program, *job.oracle):

@@ -53,7 +53,7 @@ def _parts(node: ast.AST) -> Iterator[ast.expr]:
     match node:
         case ast.Call():
             if hasattr(node, _PLACE) or not is_ours(node.func):
-                yield from (*node.args, *(one.value for one in node.keywords))
+                yield from (*node.args, *(keyword.value for keyword in node.keywords))
         case ast.Assign(targets=[ast.Name(id=name), *_]) if name.startswith("@"):  # pytest's own
             return
         case ast.Assign() | ast.NamedExpr():
@@ -64,7 +64,7 @@ def _parts(node: ast.AST) -> Iterator[ast.expr]:
         case ast.Lambda():
             yield node.body
         case ast.arguments():
-            yield from (*node.defaults, *(one for one in node.kw_defaults if one is not None))
+            yield from (*node.defaults, *(default for default in node.kw_defaults if default is not None))
         case ast.Dict() | ast.BoolOp():
             yield from node.values
         case ast.List() | ast.Tuple() | ast.Set():
@@ -221,8 +221,8 @@ class CallSites(SourceStep):
                     return found
             elif left_alone:  # this is run at each call of such a name
                 own = found.__func__ if kind is MethodType else found if kind is FunctionType else kind
-                for names, one, value in left_alone.get((type(receiver), own), _ASK):
-                    if names.get(one) is not value:
+                for names, known_name, value in left_alone.get((type(receiver), own), _ASK):
+                    if names.get(known_name) is not value:
                         break
                 else:
                     return found
@@ -238,7 +238,7 @@ class CallSites(SourceStep):
                 return found
             if left_alone and type(found) is FunctionType:
                 guards = left_alone.get((type(receiver), found), _ASK)
-                if all(names.get(one) is value for names, one, value in guards):
+                if all(names.get(name) is value for names, name, value in guards):
                     return found
             return self._decide(site, found, receiver, frame_of(1))
 
@@ -415,7 +415,7 @@ def _as_compiled(node: ast.Call, function: ast.Attribute) -> None:
         return
     start = max(end - len(function.attr), 0)
     is_method = len(node.args) + len(node.keywords) + bool(node.keywords) < _MOST_OF_METHOD
-    is_plain = not any(isinstance(one, ast.Starred) for one in node.args)
-    if is_method and is_plain and all(one.arg is not None for one in node.keywords):
+    is_plain = not any(isinstance(argument, ast.Starred) for argument in node.args)
+    if is_method and is_plain and all(keyword.arg is not None for keyword in node.keywords):
         node.lineno, node.col_offset = last, start
     function.lineno, function.col_offset = last, start

@@ -92,17 +92,17 @@ class CallFindings:
     def findings(self, operations: Iterable[Operation]) -> Iterator[tuple[Operation, Finding]]:
         """Yield findings about replaced operations, calls without a place, and calls that were left alone."""
         for operation in operations:
-            target, name, said = operation.target, operation.last_name, []
+            target, name, reasons = operation.target, operation.last_name, []
             replaced = self._replaced.get(target, {})
             if replaced and not target.startswith(ANY):
                 shown = (f"{what} in {_count(len(tests), 'test')}" for what, tests in replaced.items())
-                said.append(f"it is replaced by {', '.join(shown)}")
+                reasons.append(f"it is replaced by {', '.join(shown)}")
             if target in self._elsewhere:
                 which = _count(len(self._elsewhere[target]), "test")
                 where = "handed on in several places and called in a thread or by an operation"
-                said.append(f"{where} in {which}: such calls are not mutated")
-            if said:
-                yield operation, Finding("call", "; ".join(said), is_remark=True)
+                reasons.append(f"{where} in {which}: such calls are not mutated")
+            if reasons:
+                yield operation, Finding("call", "; ".join(reasons), is_remark=True)
             alone = self._alone.pop(name, {})
             if alone:
                 listed = ", ".join(f"{place} ({what})" for place, what in list(alone.items())[:_MOST])
@@ -161,16 +161,16 @@ class CallTargets:
     _meant: ModuleCache[int, dict[str, Any]] = field(default_factory=ModuleCache)
 
     def __post_init__(self) -> None:
-        for one in self.adapters:
-            self.by_name.setdefault(one.operation.last_name, []).append(one)
+        for adapter in self.adapters:
+            self.by_name.setdefault(adapter.operation.last_name, []).append(adapter)
 
     def __call__(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
         """Return what is called at a site: ``found``, or a wrapper that calls it as an operation."""
-        one = self.candidate(site, found, receiver, frame)
+        adapter = self.candidate(site, found, receiver, frame)
         if self.noted is not None:
-            operation = one.operation if one is not None else None
+            operation = adapter.operation if adapter is not None else None
             self.noted.note(site, operation, found, receiver)
-        if one is None:
+        if adapter is None:
             if _is_decided_by_type(found, receiver):
                 kind = type(found)
                 own = found.__func__ if kind is MethodType else found if kind is FunctionType else kind
@@ -178,14 +178,14 @@ class CallTargets:
             return found
         where = {"site": self.place(site, frame), "is_awaited": site.is_awaited, "frame": frame}
         where["stands_in"] = self.stands_in(found)
-        return partial(self.call, one, where, found, receiver)
+        return partial(self.call, adapter, where, found, receiver)
 
     def _guards(self, site: CallSite, frame: FrameType) -> Guards:
         """Return the conditions for skipping this call: operations and their classes are unchanged."""
         here = frame.f_globals
         named = {(id(here), name): (here, name, here.get(name)) for name in self._names_of(here)}
-        for one in self.by_name[site.name]:
-            module, _, qualname = one.operation.target.partition(":")
+        for adapter in self.by_name[site.name]:
+            module, _, qualname = adapter.operation.target.partition(":")
             names, first = vars(sys.modules.get(module, sys)), qualname.partition(".")[0]
             named[id(names), first] = (names, first, names.get(first))
         return tuple(named.values())
@@ -198,20 +198,20 @@ class CallTargets:
         paths.clear()
 
     def call(
-        self, one: Adapter, where: dict[str, Any], found: Any, receiver: Any, /, *args: Any, **kwargs: Any
+        self, adapter: Adapter, where: dict[str, Any], found: Any, receiver: Any, /, *args: Any, **kwargs: Any
     ) -> Any:
         """Call a callable that was read from ``receiver`` as an operation; ``where`` is of type ``Where``."""
         __tracebackhide__ = True
-        owner = self._owner(one)
-        is_method = owner is not None or one.operation.target.startswith(ANY)
+        owner = self._owner(adapter)
+        is_method = owner is not None or adapter.operation.target.startswith(ANY)
         given = None if receiver is NOTHING else receiver
         instance = given if is_method else None
-        is_own = one.operation.overrides and type(found) is MethodType
-        signature = signature_of(found) if is_own else self._signature_of(one)
-        if args and isinstance(receiver, type) and _is_of_objects(owner, one):  # called through its class
+        is_own = adapter.operation.overrides and type(found) is MethodType
+        signature = signature_of(found) if is_own else self._signature_of(adapter)
+        if args and isinstance(receiver, type) and _is_of_objects(owner, adapter):  # called through its class
             instance, found, args = args[0], partial(found, args[0]), args[1:]
         try:
-            return one.handler(
+            return adapter.handler(
                 found, instance, args, kwargs, Where(receiver=given, signature=signature, **where)
             )
         except BaseException:
@@ -238,15 +238,18 @@ class CallTargets:
         """Return the operation at a site, unless its calls are intercepted anyway."""
         if any(handler in self.sees_itself for handler in _handlers(found)):
             return None
-        one = self.named(site.name, found, receiver, frame)
-        if one is None and self.known:
+        adapter = self.named(site.name, found, receiver, frame)
+        if adapter is None and self.known:
             target = self.known.get(self.place(site, frame)[0])
-            one = next((one for one in self.by_name[site.name] if one.operation.target == target), None)
-        if one is None:
+            adapter = next(
+                (candidate for candidate in self.by_name[site.name] if candidate.operation.target == target),
+                None,
+            )
+        if adapter is None:
             self.alone.add(self.place(site, frame)[0])
         else:
-            self.stood[self.place(site, frame)[0]] = one.operation.target
-        return one
+            self.stood[self.place(site, frame)[0]] = adapter.operation.target
+        return adapter
 
     def named(self, name: str, found: Any, receiver: Any, frame: FrameType) -> Adapter | None:
         """Return the operation of this name that a callable replaces."""
@@ -256,55 +259,61 @@ class CallTargets:
         )  # such are called when the attribute is read, which nobody calls
         raw, kinds = self.callables.found, (property, cached_property)
         ones = [
-            one for one in self.by_name[name] if isinstance(raw.get(one.operation.target), kinds) is is_read
+            adapter
+            for adapter in self.by_name[name]
+            if isinstance(raw.get(adapter.operation.target), kinds) is is_read
         ]
-        fitting = [one for one in ones if self._is_of_class(one, found, receiver, frame)]
+        fitting = [adapter for adapter in ones if self._is_of_class(adapter, found, receiver, frame)]
         if fitting:
-            return max(fitting, key=lambda one: len(self.callables.owners[one.operation.target].__mro__))
-        fitting += [one for one in ones if self._means(one, found, receiver, frame)]
+            return max(
+                fitting, key=lambda adapter: len(self.callables.owners[adapter.operation.target].__mro__)
+            )
+        fitting += [adapter for adapter in ones if self._means(adapter, found, receiver, frame)]
         if mock is not None:
-            fitting += ones if len(ones) == 1 else [one for one in ones if self._is_mocked(one, mock)]
-        fitting += [one for one in ones if one.operation.target.startswith(ANY)]
+            fitting += (
+                ones if len(ones) == 1 else [adapter for adapter in ones if self._is_mocked(adapter, mock)]
+            )
+        fitting += [adapter for adapter in ones if adapter.operation.target.startswith(ANY)]
         return fitting[0] if fitting else None
 
-    def _is_of_class(self, one: Adapter, found: Any, receiver: Any, frame: FrameType) -> bool:
+    def _is_of_class(self, adapter: Adapter, found: Any, receiver: Any, frame: FrameType) -> bool:
         """Return whether a callable is an attribute of an object of the operation's class."""
         if receiver is NOTHING and isinstance(found, MethodType):
             receiver = found.__self__
-        owner = self._owner(one)
+        owner = self._owner(adapter)
         if owner is None or receiver is NOTHING:
             return False
         function = found.__func__ if isinstance(found, MethodType) else found
         file = function.__code__.co_filename if isinstance(function, FunctionType) else ""
-        if file and self.locator.role(file) is Role.PROGRAM and not one.operation.overrides:
+        if file and self.locator.role(file) is Role.PROGRAM and not adapter.operation.overrides:
             return False
-        return any(_is_a(receiver, kind) for kind in self._kinds(one, owner, frame))
+        return any(_is_a(receiver, kind) for kind in self._kinds(adapter, owner, frame))
 
-    def _kinds(self, one: Adapter, owner: type, frame: FrameType) -> Iterator[Any]:
+    def _kinds(self, adapter: Adapter, owner: type, frame: FrameType) -> Iterator[Any]:
         """Yield the operation's class, and its replacements."""
         yield owner
-        yield named_class(one.operation.target.rpartition(".")[0])
+        yield named_class(adapter.operation.target.rpartition(".")[0])
         for name, meant in self._names_of(frame.f_globals).items():
             if meant is owner:
                 yield frame.f_globals.get(name)
 
-    def _means(self, one: Adapter, found: Any, receiver: Any, frame: FrameType) -> bool:
+    def _means(self, adapter: Adapter, found: Any, receiver: Any, frame: FrameType) -> bool:
         """Return whether a callable is what the operation's name denotes now, or denoted first."""
-        if self._owner(one) is None and named_class(one.operation.target) is found:
+        if self._owner(adapter) is None and named_class(adapter.operation.target) is found:
             return True
         meant = self._names_of(frame.f_globals).items() if receiver is NOTHING else ()
         names = frame.f_globals
-        return any(value is one.handler and names.get(name) is found for name, value in meant)
+        return any(value is adapter.handler and names.get(name) is found for name, value in meant)
 
-    def _is_mocked(self, one: Adapter, mock: Any) -> bool:
+    def _is_mocked(self, adapter: Adapter, mock: Any) -> bool:
         """Return whether a mock's specification shows that it replaces an operation."""
         wrapped = vars(mock).get("_mock_wraps")
         parent = vars(mock).get("_mock_parent") or vars(mock).get("_mock_new_parent")
         spec = vars(parent).get("_spec_class") if parent is not None else None
-        owner = self._owner(one)
+        owner = self._owner(adapter)
         if owner is not None and isinstance(spec, type) and issubclass(spec, owner):
             return True
-        return any(handler is one.handler for handler in _handlers(wrapped))
+        return any(handler is adapter.handler for handler in _handlers(wrapped))
 
     def _names_of(self, names: dict[str, Any]) -> dict[str, Any]:
         """Return the names of a module that denoted operations, or their classes, when it was first seen.
@@ -323,28 +332,28 @@ class CallTargets:
             known = self._meant.keep(names, id(names), found)
         return known
 
-    def _owner(self, one: Adapter) -> type | None:
-        return self.callables.owners.get(one.operation.target)
+    def _owner(self, adapter: Adapter) -> type | None:
+        return self.callables.owners.get(adapter.operation.target)
 
-    def _signature_of(self, one: Adapter) -> Signature | None:
+    def _signature_of(self, adapter: Adapter) -> Signature | None:
         """Return the operation's own signature; None if it has none, or was not found yet."""
-        original = self.callables.found.get(one.operation.target)
+        original = self.callables.found.get(adapter.operation.target)
         if isinstance(original, property):
-            original = original.fset if one.operation.described else original.fget
-        if one not in self._signatures and original is not None:
+            original = original.fset if adapter.operation.described else original.fget
+        if adapter not in self._signatures and original is not None:
             found = signature_of(getattr(original, "__func__", original))
-            is_method = self._owner(one) is not None and not isinstance(original, staticmethod)
+            is_method = self._owner(adapter) is not None and not isinstance(original, staticmethod)
             if found is not None and is_method:
                 found = found.replace(parameters=list(found.parameters.values())[1:])
-            self._signatures[one] = found
-        return self._signatures.get(one)
+            self._signatures[adapter] = found
+        return self._signatures.get(adapter)
 
 
-def _is_of_objects(owner: type | None, one: Adapter) -> bool:
+def _is_of_objects(owner: type | None, adapter: Adapter) -> bool:
     """Return whether an operation is an instance method, rather than a class method or static method."""
     if owner is None:
         return False
-    raw = inspect.getattr_static(owner, one.operation.last_name, None)
+    raw = inspect.getattr_static(owner, adapter.operation.last_name, None)
     return not isinstance(getattr(raw, "__wrapped__", raw), classmethod | staticmethod)
 
 
@@ -425,7 +434,7 @@ class PassedCallables:
         place = self._call_targets.place(site, frame)
         if type(found) in WRAPPERS:
             adapters, handler = self._call_targets.adapters, found._self_wrapper
-            own = next((one for one in adapters if one.handler is handler), None)
+            own = next((candidate for candidate in adapters if candidate.handler is handler), None)
             if own is None:
                 return found
             self._call_targets.stood[place[0]] = own.operation.target
@@ -435,24 +444,24 @@ class PassedCallables:
                     self._given[own] = place if known == place else None
                     return found
             return self._wrapped(own, place, receiver, found, found.__wrapped__)
-        one = self._call_targets.candidate(site, found, receiver, frame)
-        if one is None:
+        adapter = self._call_targets.candidate(site, found, receiver, frame)
+        if adapter is None:
             return found
         if self._call_targets.noted is not None:
-            self._call_targets.noted.note(site, one.operation, found, receiver)
+            self._call_targets.noted.note(site, adapter.operation, found, receiver)
         mock = mock_of(found)
         if mock is not None:
-            known = vars(mock).get(_MARK, (one, _weakly(receiver), place))
+            known = vars(mock).get(_MARK, (adapter, _weakly(receiver), place))
             if known[2] == place or not site.is_given:
                 vars(mock)[_MARK] = (*known[:2], place if known[2] == place else None)
                 return found
-        return self._wrapped(one, place, receiver, found, found)
+        return self._wrapped(adapter, place, receiver, found, found)
 
     def _wrapped(
-        self, one: Adapter, place: CallPlace, receiver: Any, looks: Any, found: Any
+        self, adapter: Adapter, place: CallPlace, receiver: Any, looks: Any, found: Any
     ) -> PassedCallable:
         """Return a wrapper that looks like ``looks`` and calls ``found`` as an operation."""
-        calls = partial(self._call, one, place, receiver, found)
+        calls = partial(self._call, adapter, place, receiver, found)
         says_it_is_one = mock_of(looks) is looks and isinstance(looks, WRAPPERS)
         # such a mock was made after a wrapped function. wrapt would ask it how it binds, which it refuses to
         # say, and then no wrapper can be made on Python 3.13: so wrapt first sees another callable
@@ -463,7 +472,7 @@ class PassedCallables:
 
     def _call(
         self,
-        one: Adapter,
+        adapter: Adapter,
         place: CallPlace,
         receiver: Any,
         found: Any,
@@ -476,7 +485,7 @@ class PassedCallables:
         if receiver is NOTHING and instance is not None:  # it was made a method, or is one
             receiver, found = instance, wrapped
         where = {"handed": place, "frame": sys._getframe(1), "stands_in": self._call_targets.stands_in(found)}
-        return self._call_targets.call(one, where, found, receiver, *args, **kwargs)
+        return self._call_targets.call(adapter, where, found, receiver, *args, **kwargs)
 
     def _watch(self, mock: ModuleType) -> None:
         """Watch the calls of all mocks."""
@@ -504,20 +513,22 @@ class PassedCallables:
         if is_untracked() or (caller is not None and is_border(caller.f_code)):  # the operation itself
             return original(mock, *args, **kwargs)
         if mark is not None:
-            one, receiver, place = mark[0], mark[1](), mark[2]
+            adapter, receiver, place = mark[0], mark[1](), mark[2]
         else:
             parent = own.get("_mock_new_parent")
-            one, receiver, place = None, NOTHING if parent is None else parent, None
+            adapter, receiver, place = None, NOTHING if parent is None else parent, None
             if caller is not None and self._call_targets.locator.role(caller.f_code.co_filename) is not None:
-                one = self._call_targets.named(name, mock, receiver, caller)
+                adapter = self._call_targets.named(name, mock, receiver, caller)
         is_property = is_mock(mock, "PropertyMock")
-        if one is None or (is_property and bool(args) is not bool(one.operation.described)):
+        if adapter is None or (is_property and bool(args) is not bool(adapter.operation.described)):
             return original(mock, *args, **kwargs)
         if place is None and mark is not None and self._call_targets.noted is not None:
-            self._call_targets.noted.note_elsewhere(one.operation, self._call_targets.locator.locate(caller))
+            self._call_targets.noted.note_elsewhere(
+                adapter.operation, self._call_targets.locator.locate(caller)
+            )
         is_awaited = is_coroutine_function(mock)
         where = {"handed": place, "frame": caller, "is_awaited": is_awaited, "stands_in": True}
-        return self._call_targets.call(one, where, partial(original, mock), receiver, *args, **kwargs)
+        return self._call_targets.call(adapter, where, partial(original, mock), receiver, *args, **kwargs)
 
 
 def _weakly(receiver: Any) -> Callable[[], Any]:

@@ -146,9 +146,9 @@ def _compile(
     is_whole = not is_tree and _is_same(source, data)
     text = data if is_tree or is_whole else _bytes_of(source)
     is_plain = is_whole and not is_parsed
-    due = [one for one in steps if one.wants(path) and is_due(one)]
+    due = [step for step in steps if step.wants(path) and is_due(step)]
     made = _through_steps(
-        path, text, parse, finish, [one for one in due if is_plain or not hasattr(one, "is_optional")]
+        path, text, parse, finish, [step for step in due if is_plain or not hasattr(step, "is_optional")]
     )
     if request is not None and is_own:
         request.is_met, request.is_changed = True, request.is_changed or made is not None

@@ -125,7 +125,7 @@ class _Instrumenter(ast.NodeTransformer):
         if self._record:
             self.generic_visit(node)
             return _seen(node, place, node)
-        others = [_filled(_expression(one), place, node) for one in place.alternatives]
+        others = [_filled(_expression(alternative), place, node) for alternative in place.alternatives]
         if not others:
             self.generic_visit(node)
             return node
@@ -146,11 +146,14 @@ class _Instrumenter(ast.NodeTransformer):
         if self._record:
             self.generic_visit(node)
             return [placed(ast.Expr(_seen(ast.Constant(None), place, node)), node), node]
-        others = [_filled(ast.parse(one.template).body[0], place, node) for one in place.alternatives]
+        others = [
+            _filled(ast.parse(alternative.template).body[0], place, node)
+            for alternative in place.alternatives
+        ]
         self.generic_visit(node)
         if not others:
             return [node]
-        raising = all(one.raises for one in place.alternatives)
+        raising = all(alternative.raises for alternative in place.alternatives)
         chain: list[ast.stmt] = [others[-1]]
         for index in reversed(range(len(others) - 1)):
             chain = [placed(ast.If(_is_index(place, index), [others[index]], chain), node)]
@@ -165,17 +168,17 @@ class _Instrumenter(ast.NodeTransformer):
 
 def _near(node: ast.AST, lines: list[int]) -> Iterator[ast.AST]:
     """Yield the nodes below a node, skipping statements that none of these lines belongs to."""
-    for one in ast.iter_child_nodes(node):
-        if _is_around(one, lines):
-            yield one
-            yield from _near(one, lines)
+    for child in ast.iter_child_nodes(node):
+        if _is_around(child, lines):
+            yield child
+            yield from _near(child, lines)
 
 
 def _is_around(node: ast.AST, lines: list[int]) -> bool:
     """Return whether a statement spans one of these sorted lines; always true for expressions."""
     if not isinstance(node, ast.stmt):
         return True
-    first = min([node.lineno, *(one.lineno for one in getattr(node, "decorator_list", ()))])
+    first = min([node.lineno, *(decorator.lineno for decorator in getattr(node, "decorator_list", ()))])
     index = bisect_left(lines, first)
     return index < len(lines) and lines[index] <= (node.end_lineno or first)
 
@@ -275,10 +278,10 @@ def declare_global(tree: ast.Module, name: str) -> None:
 def _statements(node: ast.AST) -> Iterator[ast.stmt]:
     """Yield all statements below a node, without entering expressions."""
     for name in ("body", "handlers", "cases", "orelse", "finalbody"):
-        for one in getattr(node, name, ()):
-            if isinstance(one, ast.stmt):
-                yield one
-            yield from _statements(one)
+        for statement in getattr(node, name, ()):
+            if isinstance(statement, ast.stmt):
+                yield statement
+            yield from _statements(statement)
 
 
 class _ChangedError(MismatchError):
@@ -394,7 +397,10 @@ class SessionText:
         if original is None:
             return None
         place = self._places[number]
-        others = [_filled(_expression(one), place, original, observed=False) for one in place.alternatives]
+        others = [
+            _filled(_expression(alternative), place, original, observed=False)
+            for alternative in place.alternatives
+        ]
         return Forms(PredictedForm(original), tuple(map(PredictedForm, others)))
 
     def _refuse(self, text: ProgramText, reason: str) -> None:
@@ -434,8 +440,8 @@ class SessionText:
         if self.sightings is not None:
             others = list(others)
             self._note_unseen()
-            imported = dict.fromkeys([*self.imported, *(file for one in others for file in one.imported)])
-            seen = [*self.sightings.seen(), *(seen for one in others for seen in one.sightings)]
+            imported = dict.fromkeys([*self.imported, *(file for other in others for file in other.imported)])
+            seen = [*self.sightings.seen(), *(seen for other in others for seen in other.sightings)]
             self.pipe.send(TextsSeen(tuple(imported), tuple(seen)))
 
     def _note_unseen(self) -> None:

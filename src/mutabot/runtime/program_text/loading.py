@@ -26,7 +26,7 @@ from mutabot.runtime.program_text import compiling
 from mutabot.runtime.program_text.compiling import LoaderRequest, SourceStep, is_wanted
 
 #: where ``get_code`` stands that loaders of source files inherit, those of other packages as well
-_SourceLoader: Any = next(one for one in SourceFileLoader.__mro__ if "get_code" in vars(one))
+_SourceLoader: Any = next(cls for cls in SourceFileLoader.__mro__ if "get_code" in vars(cls))
 _original = _SourceLoader.get_code
 
 

@@ -45,7 +45,7 @@ class UnpredictableError(Exception):
     """The value of an expression cannot be known without evaluating it."""
 
 
-def _fail_if(value: Any, wrong: Any, *told: str) -> Any:
+def _fail_if(value: Any, wrong: Any, *values: str) -> Any:
     if value == wrong:
         raise ZeroDivisionError
     return value
@@ -124,12 +124,12 @@ class _Leaves(ast.NodeTransformer):
     def visit_Call(self, node: ast.Call) -> ast.expr:  # the name that ast looks for
         if node.keywords:
             raise UnpredictableError
-        told: list[ast.expr] = []
+        texts: list[ast.expr] = []
         if ast.unparse(node.func) in _HELPER_NAMES:
-            told = [one for one in node.args if isinstance(getattr(one, "value", None), str)]
+            texts = [argument for argument in node.args if isinstance(getattr(argument, "value", None), str)]
         else:
             node.func = self._stand_in(node.func, self.functions)
-        node.args = [argument if argument in told else self._argument(argument) for argument in node.args]
+        node.args = [argument if argument in texts else self._argument(argument) for argument in node.args]
         return node
 
     def _argument(self, node: ast.expr) -> Any:
@@ -167,11 +167,11 @@ class Forms:
             return False
 
 
-def is_identical(one: Any, other: Any) -> bool:
+def is_identical(first: Any, second: Any) -> bool:
     """Return whether a program cannot distinguish two plain values, except by identity."""
-    if type(one) is not type(other) or one != other:
+    if type(first) is not type(second) or first != second:
         return False
-    return type(one) is not float or math.copysign(1.0, one) == math.copysign(1.0, other)
+    return type(first) is not float or math.copysign(1.0, first) == math.copysign(1.0, second)
 
 
 def locals_of(frame: types.FrameType) -> Mapping[str, Any]:

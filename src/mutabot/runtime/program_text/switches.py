@@ -385,7 +385,11 @@ class _Witness:
     def __init__(self, owner: Sightings, number: int, place: TextPlace | None) -> None:
         self._owner, self.place = owner, number
         self._variable = place.text if place is not None and place.variable else None
-        self._lacking = {one.needs for one in place.alternatives if one.needs} if place is not None else set()
+        self._lacking = (
+            {alternative.needs for alternative in place.alternatives if alternative.needs}
+            if place is not None
+            else set()
+        )
         self._is_around = self._variable is not None  # as far as is known, others may stand in its place
         self._has_looked_around = False
         self.hits = self.looks = self.looks_around = 0
@@ -420,7 +424,7 @@ class _Witness:
     def _note_kind(self, kind: type, value: Any) -> None:
         self._types.add(kind)
         self._kinds.add(kind_of(value))
-        self._lacking -= {one for one in self._lacking if fits_kinds(one, self._kinds)}
+        self._lacking -= {need for need in self._lacking if fits_kinds(need, self._kinds)}
         self.looks_around = 0
 
     def _keep_variables(self, value: Any, frame: types.FrameType) -> None:

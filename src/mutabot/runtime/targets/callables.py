@@ -54,7 +54,7 @@ def look_at(operation: Operation, original: Any) -> Iterator[Finding]:
         if unnamed:
             yield Finding("signature", _advice(operation, signature is None), is_remark=True)
         return
-    if any(one.kind is inspect.Parameter.VAR_KEYWORD for one in signature.parameters.values()):
+    if any(parameter.kind is inspect.Parameter.VAR_KEYWORD for parameter in signature.parameters.values()):
         return
     known = tuple(name for name in signature.parameters if name not in ("self", "cls"))
     for root, key in described.items():

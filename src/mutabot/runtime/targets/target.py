@@ -180,7 +180,7 @@ class Where:
                 self._means.later(late, partial(callback, part))
             else:
                 returned.append(callback(part))
-        if any(inspect.isawaitable(one) for one in returned):
+        if any(inspect.isawaitable(value) for value in returned):
             return _in_turn(returned)
         return returned[-1] if returned else None
 
@@ -255,8 +255,8 @@ def _done(awaitable: Awaitable[None]) -> None:
 
 async def _in_turn(returned: Sequence[Any]) -> Any:
     last = None
-    for one in returned:
-        last = await one if inspect.isawaitable(one) else one
+    for awaitable in returned:
+        last = await awaitable if inspect.isawaitable(awaitable) else awaitable
     return last
 
 
@@ -406,7 +406,9 @@ class Environment(Protocol):
 def prepare(root: str, home: str, operations: Sequence[Operation] | None) -> bool:
     """Let all packages set up the environment of nodes. Return whether any did."""
     environments: list[Environment] = [part.load() for part in brought("environments").values()]
-    found = [one.prepare(root, home, operations) for one in environments]  # all of them, not up to the first
+    found = [
+        environment.prepare(root, home, operations) for environment in environments
+    ]  # all of them, not up to the first
     return any(found)
 
 
@@ -535,7 +537,7 @@ class Messages:
 def unused(wanted: Collection[Named], used: Collection[Named]) -> Iterator[tuple[str, Finding]]:
     """Yield each operation of the vocabulary that was never used, with the uses that come nearest."""
     for named in wanted:
-        if named.form not in _FORMS or any(named.fits(one.form, one.name, one.node) for one in used):
+        if named.form not in _FORMS or any(named.fits(use.form, use.name, use.node) for use in used):
             continue
         where = f" in a node {named.node}" if named.node is not None else ""
         sentence = f"{_FORMS[named.form][0].format(named.name)}{where}; {_instead(named, used)}"
@@ -544,9 +546,9 @@ def unused(wanted: Collection[Named], used: Collection[Named]) -> Iterator[tuple
 
 def unheard(refused: Collection[Refused], used: Collection[Named]) -> Iterator[Finding]:
     """Yield names on which the vocabulary expects refusals, and to which nothing listens."""
-    for name in dict.fromkeys(one.topic for one in refused if one.topic is not None):
+    for name in dict.fromkeys(refusal.topic for refusal in refused if refusal.topic is not None):
         wanted = [Named(form, name) for form in _LISTENING]
-        if any(one.fits(other.form, other.name, other.node) for one in wanted for other in used):
+        if any(target.fits(use.form, use.name, use.node) for target in wanted for use in used):
             continue
         instead = _instead(Named(Form.RECEIVE, name), used)
         sentence = f"no node listens to {name}, so refusals published there are not seen; {instead}"
@@ -556,8 +558,8 @@ def unheard(refused: Collection[Refused], used: Collection[Named]) -> Iterator[F
 def _instead(named: Named, used: Collection[Named]) -> str:
     """Describe other uses of the same name or type, nearest first."""
     wanted = (_FORMS[named.form][1], named.form)  # of one name, what was done is told, not what was set up
-    told = sorted((wanted.index(one.form), one.target, one.name) for one in used if one.form in wanted)
-    alike = {name: target for _, target, name in told}
+    similar = sorted((wanted.index(use.form), use.target, use.name) for use in used if use.form in wanted)
+    alike = {name: target for _, target, name in similar}
     if not alike:
         known = f"; middlewares that are known here: {', '.join(brought('middlewares')) or 'none'}"
         return f"nothing of that kind was seen under any name{'' if used else known}"

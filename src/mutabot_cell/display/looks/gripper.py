@@ -98,14 +98,14 @@ def _solved(half: float) -> tuple[float, float, float, PadPoint]:
     return angle, _between(crank, joint - _DRIVER), _between(_COUPLER_ARM, follower - joint), _PAD + moved
 
 
-def _intersection(one: PadPoint, far: float, other: PadPoint, away: float) -> PadPoint:
+def _intersection(first: PadPoint, far: float, second: PadPoint, away: float) -> PadPoint:
     """Return the outer of the points at distance `far` from one point and `away` from the other."""
-    line = other - one
+    line = second - first
     distance = float(np.hypot(*line))
     along = (far**2 - away**2 + distance**2) / (2 * distance)
     aside = math.sqrt(max(0.0, far**2 - along**2))
     unit = line / distance
-    found: PadPoint = one + along * unit + aside * np.array([unit[1], -unit[0]])
+    found: PadPoint = first + along * unit + aside * np.array([unit[1], -unit[0]])
     return found
 
 
@@ -120,9 +120,9 @@ def _on(pivot: PadPoint, point: PadPoint, angle: float) -> PadPoint:
     return found
 
 
-def _between(one: PadPoint, other: PadPoint) -> float:
+def _between(first: PadPoint, second: PadPoint) -> float:
     """Return the angle from one vector to another."""
-    return math.atan2(one[0] * other[1] - one[1] * other[0], float(one @ other))
+    return math.atan2(first[0] * second[1] - first[1] * second[0], float(first @ second))
 
 
 def _quaternion(angle: float, sign: int) -> tuple[float, float, float, float]:

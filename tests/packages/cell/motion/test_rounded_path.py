@@ -49,7 +49,7 @@ def test_the_way_is_travelled_evenly_and_without_a_kink(end: tuple[float, float,
     lengths = np.linalg.norm(steps, axis=1)
     assert lengths == pytest.approx(np.full(len(lengths), path.length / len(lengths)), rel=1e-3)
     ways = steps / lengths[:, None]
-    turns = [math.acos(min(1.0, float(one @ other))) for one, other in pairwise(ways)]
+    turns = [math.acos(min(1.0, float(first @ second))) for first, second in pairwise(ways)]
     sharpest = max(turns)
     assert sharpest < 2.0 * path.length / len(lengths) / 0.001  # no tighter than 1 mm
 

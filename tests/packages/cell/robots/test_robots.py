@@ -149,7 +149,7 @@ def pick(cell: Cell) -> None:
 
 def test_the_vocabulary_describes_as_many_joints_as_the_arm_has(robot: RobotModel) -> None:
     cell = Cell(1, robot=robot, scene=EMPTY)
-    operations = {one.target: one for one in load_vocabulary(["cell"], Path()).operations}
+    operations = {operation.target: operation for operation in load_vocabulary(["cell"], Path()).operations}
 
     def of(method: MethodType) -> Operation:
         return operations[f"{method.__module__}:{method.__qualname__}"]
@@ -182,12 +182,14 @@ def test_a_urdf_and_an_mjcf_of_one_robot_agree(ur5e: RobotModel) -> None:
     read = RobotModel.from_urdf(file, tool_link="tool0", home=home, limits=Limits(speed=math.pi))
     assert read.limits.peak_torque == ur5e.limits.peak_torque
     assert read.ranges == pytest.approx(np.array(ur5e.ranges), abs=1e-3)
-    first, second = (Cell(1, robot=one, scene=EMPTY) for one in (read, ur5e.with_tool(None)))
+    first, second = (Cell(1, robot=robot, scene=EMPTY) for robot in (read, ur5e.with_tool(None)))
     for move in ((0, -80, 80, -90, -90, 0), (40, -60, 70, -100, -70, 30)):
         for cell in (first, second):
             cell.arm.move_joints(move)
-        one, other = first.truth.tool_position(), second.truth.tool_position()
-        assert (-one.x, -one.y, one.z) == pytest.approx((other.x, other.y, other.z), abs=0.002)
+        first_place, second_place = first.truth.tool_position(), second.truth.tool_position()
+        assert (-first_place.x, -first_place.y, first_place.z) == pytest.approx(
+            (second_place.x, second_place.y, second_place.z), abs=0.002
+        )
 
 
 FLIPS = ((-10, 10), (-4, 6), (-90, 10))

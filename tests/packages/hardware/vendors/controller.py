@@ -40,7 +40,7 @@ class Controller:
 
     def of(self, name: str) -> list[tuple[float, ...]]:
         """The numbers of all commands of this name."""
-        return [one.values for one in self.received if one.name == name]
+        return [message.values for message in self.received if message.name == name]
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ class Vendor:
 
     def outside(self, controller: Controller) -> list[tuple[float, ...]]:
         """What the controller got that the guard does not allow."""
-        return [one for one in controller.of(self.moving) if not self._is_within(one)]
+        return [values for values in controller.of(self.moving) if not self._is_within(values)]
 
     def _is_within(self, values: tuple[float, ...]) -> bool:
         sides = zip(values, self.least, self.greatest, strict=True)
@@ -91,7 +91,7 @@ class Vendor:
     def write(self, folder: Path, *, guard: bool = True, program: str = "", more: str = "") -> Path:
         """The project on disk."""
         own = ("own.toml",) if self.vocabulary else ()
-        files = ", ".join(f'"{one}"' for one in (*own, *self.shipped))
+        files = ", ".join(f'"{file_name}"' for file_name in (*own, *self.shipped))
         texts = {
             "program.py": program or self.program, "tests/test_program.py": self.tests,
             "own.toml": self.vocabulary, "cell_io.py": CELL_IO, "conftest.py": self.prepare,

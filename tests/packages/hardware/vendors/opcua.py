@@ -23,8 +23,8 @@ def serve() -> Iterator[Controller]:
 
     def note(event: Any, service: Any) -> None:
         if event.is_external:
-            for one in event.request_params.NodesToWrite:
-                controller.note(f"write {one.NodeId.Identifier}", float(one.Value.Value.Value))
+            for node in event.request_params.NodesToWrite:
+                controller.note(f"write {node.NodeId.Identifier}", float(node.Value.Value.Value))
 
     server = Server()
     server.set_endpoint(controller.address)

@@ -62,7 +62,7 @@ class UrController(Controller):
         if found is None:
             self.note(line.strip())
             return
-        numbers = tuple(float(one) for one in found[3].split(","))
+        numbers = tuple(float(number) for number in found[3].split(","))
         self.note(found[1], *numbers)
         if found[2]:
             self.pose = list(numbers)

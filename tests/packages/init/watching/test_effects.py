@@ -23,12 +23,12 @@ class Robot:
         return cls(line)
 
     def forward(self, q: list[float]) -> list[float]:
-        return [math.sin(one) for one in self._turned(q)]
+        return [math.sin(angle) for angle in self._turned(q)]
 
     def _turned(self, q: list[float]) -> list[float]:
         found = []
-        for one in q:
-            found.append(-one)  # noqa: PERF401  # the text is the test
+        for angle in q:
+            found.append(-angle)  # noqa: PERF401  # the text is the test
         return found
 
     def where(self) -> float:
@@ -46,7 +46,7 @@ class Robot:
         return x
 
     def each(self, q: list[float]) -> list[Any]:
-        return [joint.move(one) for joint, one in zip(self.joints, q, strict=True)]
+        return [joint.move(angle) for joint, angle in zip(self.joints, q, strict=True)]
 
     def turn(self, angle: float) -> float:
         self.angle = angle

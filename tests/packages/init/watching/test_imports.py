@@ -35,7 +35,7 @@ def test_it_imports_the_standard_library_and_the_interface() -> None:
         name
         for name in names
         if name.partition(".")[0] not in sys.stdlib_module_names
-        and not any(name == one or name.startswith(f"{one}.") for one in ALLOWED)
+        and not any(name == allowed or name.startswith(f"{allowed}.") for allowed in ALLOWED)
     }
     assert wrong == set()
 

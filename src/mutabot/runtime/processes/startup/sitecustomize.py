@@ -27,9 +27,9 @@ _NEWEST_TOO_OLD = (3, 10)
 class _Finder:
     """Joins the campaign when a module of interest is imported; it finds no module itself."""
 
-    def __init__(self, folder: str, told: "dict[str, list[str]]") -> None:
-        self.folder, self.join, self.key = folder, told["join"][-1], told["key"][-1]
-        self.names, self.files = frozenset(told["name"]), told["file"]
+    def __init__(self, folder: str, entries: "dict[str, list[str]]") -> None:
+        self.folder, self.join, self.key = folder, entries["join"][-1], entries["key"][-1]
+        self.names, self.files = frozenset(entries["name"]), entries["file"]
 
     def find_spec(
         self, name: str, path: "Sequence[str] | None" = None, target: "ModuleType | None" = None
@@ -85,9 +85,11 @@ def _wake(finder: _Finder) -> None:
 
 def _report_unable(finder: _Finder, why: str) -> None:
     def quoted(text: str) -> str:
-        return '"%s"' % "".join(one if one.isalnum() or one in " ._-/:()'," else "?" for one in text)
+        return '"%s"' % "".join(
+            character if character.isalnum() or character in " ._-/:()'," else "?" for character in text
+        )
 
-    command = ",".join(quoted(one) for one in getattr(sys, "orig_argv", sys.argv))
+    command = ",".join(quoted(argument) for argument in getattr(sys, "orig_argv", sys.argv))
     name = "%d-unable" % os.getpid()
     event = '{"type":"Began","pid":%d,"group":%d,"command":[%s],"time":0.0,"unable":%s}'
     text = event % (os.getpid(), os.getpgrp(), command, quoted(why))
@@ -117,14 +119,14 @@ def enter(command: "str | None" = None) -> None:
             lines = [line.rstrip("\n").partition(" ") for line in file]
     except OSError:  # the campaign is over
         return
-    told: "dict[str, list[str]]" = {"join": [""], "key": [""]}
-    told.update((key, []) for key in ("path", "own", "name", "file", "readers"))
+    entries: "dict[str, list[str]]" = {"join": [""], "key": [""]}
+    entries.update((key, []) for key in ("path", "own", "name", "file", "readers"))
     for key, _, value in lines:
-        told[key].append(value)
-    finder = _Finder(folder, told)
-    sys.meta_path.append(_MutabotFinder(told["path"], told["own"]))
+        entries[key].append(value)
+    finder = _Finder(folder, entries)
+    sys.meta_path.append(_MutabotFinder(entries["path"], entries["own"]))
     sys.meta_path.insert(0, finder)
-    if told["readers"]:
+    if entries["readers"]:
         sys.addaudithook(finder.on_audit_event)
     script = command if command is not None else getattr(sys, "argv", [""])[0]
     if script and script[0] != "-" and finder.is_of_interest(script):

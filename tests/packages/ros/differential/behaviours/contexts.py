@@ -95,14 +95,14 @@ def callbacks_at_the_end() -> Any:
     context = Context()
     rclpy.init(args=[], context=context)
     called: list[str] = []
-    one, two = (lambda: called.append("one")), (lambda: called.append("two"))
+    first, second = (lambda: called.append("one")), (lambda: called.append("two"))
 
     class Keeper:
         def late(self) -> None:
             called.append("late")
 
     keeper = Keeper()
-    keep = [_method(one), _method(two)]
+    keep = [_method(first), _method(second)]
     for method in keep:
         context.on_shutdown(method)
     rclpy.shutdown(context=context)
@@ -167,10 +167,10 @@ def domains_that_are_wrong() -> Any:
 @behaviour()
 def one_domain_in_two_contexts() -> Any:
     with Graph("one", domain_id=9) as first, Graph("two", domain_id=9) as second:
-        (one,), (two,) = first, second
-        seen = first.until(lambda: "two" in one.get_node_names())
+        (first_node,), (second_node,) = first, second
+        seen = first.until(lambda: "two" in first_node.get_node_names())
         first.context.shutdown()
-        return seen, second.context.ok(), second.until(lambda: "one" not in two.get_node_names())
+        return seen, second.context.ok(), second.until(lambda: "one" not in second_node.get_node_names())
 
 
 @behaviour()

@@ -60,15 +60,15 @@ def _most_at_once(make_groups: Any, in_threads: bool = True) -> int:
     source=GROUPS + ": callbacks of a mutually exclusive group are never run at the same time",
 )
 def callbacks_in_groups() -> Any:
-    def one() -> list[CallbackGroup]:
+    def one_group() -> list[CallbackGroup]:
         return [MutuallyExclusiveCallbackGroup()] * 2
 
-    def two() -> list[CallbackGroup]:
+    def two_groups() -> list[CallbackGroup]:
         return [MutuallyExclusiveCallbackGroup(), MutuallyExclusiveCallbackGroup()]
 
     return {
-        "one exclusive group": _most_at_once(one),
-        "two exclusive groups": _most_at_once(two),
+        "one exclusive group": _most_at_once(one_group),
+        "two exclusive groups": _most_at_once(two_groups),
         "the default group": _most_at_once(lambda: [None, None]),
         "one thread": _most_at_once(lambda: [ReentrantCallbackGroup()] * 2, in_threads=False),
     }
@@ -180,9 +180,9 @@ def nodes_are_added_and_removed() -> Any:
         node = rclpy.create_node("node", context=graph.context)
         graph.nodes.append(node)
         added = graph.executor.add_node(node), graph.executor.add_node(node)
-        names = [one.get_name() for one in graph.executor.get_nodes()]
+        names = [member.get_name() for member in graph.executor.get_nodes()]
         graph.executor.remove_node(node)
-        left = [one.get_name() for one in graph.executor.get_nodes()]
+        left = [member.get_name() for member in graph.executor.get_nodes()]
         return [*added, names, left, graph.executor.shutdown()]
 
 
@@ -193,7 +193,7 @@ def a_node_moves_to_another_executor() -> Any:
         other = SingleThreadedExecutor(context=graph.context)
         first = node.executor is graph.executor
         other.add_node(node)
-        moved = node.executor is other, [one.get_name() for one in graph.executor.get_nodes()]
+        moved = node.executor is other, [member.get_name() for member in graph.executor.get_nodes()]
         other.shutdown()
         return first, moved
 
@@ -219,8 +219,8 @@ def tasks_are_executed() -> Any:
         done: list[int] = []
         graph.executor.create_task(done.append, 1)
 
-        async def add(one: int, two: int) -> int:
-            return one + two
+        async def add(first: int, second: int) -> int:
+            return first + second
 
         def fail() -> None:
             raise ValueError("no")

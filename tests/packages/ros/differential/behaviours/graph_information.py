@@ -20,11 +20,11 @@ from .graph import Graph, raised, ready
 )
 def nodes_are_listed() -> Any:
     with Graph() as graph:
-        one = graph.node("one", namespace="arm")
+        first_node = graph.node("one", namespace="arm")
         graph.node("two")
-        found = sorted(one.get_node_names_and_namespaces())
+        found = sorted(first_node.get_node_names_and_namespaces())
         names = [f"{space.rstrip('/')}/{name}" for name, space in found]
-        return (names, [space for _, space in found]), sorted(one.get_fully_qualified_node_names())
+        return (names, [space for _, space in found]), sorted(first_node.get_fully_qualified_node_names())
 
 
 @behaviour()
@@ -105,13 +105,13 @@ def endpoints_are_counted() -> Any:
 @behaviour()
 def information_about_endpoints() -> Any:
     with Graph() as graph:
-        one = graph.node("one", namespace="/arm")
-        two = graph.node("two")
-        one.create_publisher(Int32, "/topic", 3)
-        two.create_subscription(Int32, "topic", print, 7)
-        graph.until(lambda: one.count_publishers("/topic") and one.count_subscribers("/topic"))
-        (publisher,) = two.get_publishers_info_by_topic("/topic")
-        (subscription,) = two.get_subscriptions_info_by_topic("topic")
+        first_node = graph.node("one", namespace="/arm")
+        second_node = graph.node("two")
+        first_node.create_publisher(Int32, "/topic", 3)
+        second_node.create_subscription(Int32, "topic", print, 7)
+        graph.until(lambda: first_node.count_publishers("/topic") and first_node.count_subscribers("/topic"))
+        (publisher,) = second_node.get_publishers_info_by_topic("/topic")
+        (subscription,) = second_node.get_subscriptions_info_by_topic("topic")
         return [
             [
                 info.node_name,

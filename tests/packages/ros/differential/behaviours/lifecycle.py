@@ -96,11 +96,11 @@ def a_whole_life() -> Any:
 )
 def a_transition_fails() -> Any:
     with Graph() as graph:
-        one = graph.node("one", Machine, answers={"configure": FAILURE})
-        two = graph.node("two", Machine, answers={"activate": FAILURE})
-        first = one.trigger_configure().name, one.state
-        two.trigger_configure()
-        return first, (two.trigger_activate().name, two.state)
+        first_node = graph.node("one", Machine, answers={"configure": FAILURE})
+        second_node = graph.node("two", Machine, answers={"activate": FAILURE})
+        first = first_node.trigger_configure().name, first_node.state
+        second_node.trigger_configure()
+        return first, (second_node.trigger_activate().name, second_node.state)
 
 
 @behaviour(
@@ -112,11 +112,11 @@ def a_transition_fails() -> Any:
 )
 def a_transition_raises() -> Any:
     with Graph() as graph:
-        one = graph.node("one", Machine, answers={"configure": ValueError("no")})
-        two = graph.node("two", Machine, answers={"activate": ERROR, "error": FAILURE})
-        first = one.trigger_configure().name, one.state, one.called[-1]
-        two.trigger_configure()
-        return first, (two.trigger_activate().name, two.state, two.called[-1])
+        first_node = graph.node("one", Machine, answers={"configure": ValueError("no")})
+        second_node = graph.node("two", Machine, answers={"activate": ERROR, "error": FAILURE})
+        first = first_node.trigger_configure().name, first_node.state, first_node.called[-1]
+        second_node.trigger_configure()
+        return first, (second_node.trigger_activate().name, second_node.state, second_node.called[-1])
 
 
 @behaviour()
@@ -225,7 +225,10 @@ def states_and_transitions_are_listed() -> Any:
         goals = {"activate": "active", "cleanup": "unconfigured", "shutdown": "finalized"}
         primary = (State.PRIMARY_STATE_UNCONFIGURED, State.PRIMARY_STATE_FINALIZED)
         return [
-            sorted((one.transition.label, goals.get(one.transition.label, "?")) for one in found),
+            sorted(
+                (description.transition.label, goals.get(description.transition.label, "?"))
+                for description in found
+            ),
             sorted(state.label for state in known if primary[0] <= state.id <= primary[1]),
         ]
 
@@ -239,8 +242,13 @@ def the_whole_graph_of_transitions() -> Any:
         ready(graph, client)
         found = graph.result(client.call_async(GetAvailableTransitions.Request())).available_transitions
         return sorted(
-            (one.start_state.label, one.transition.label, one.transition.id, one.goal_state.label)
-            for one in found
+            (
+                description.start_state.label,
+                description.transition.label,
+                description.transition.id,
+                description.goal_state.label,
+            )
+            for description in found
         )
 
 

@@ -189,7 +189,7 @@ def levels_by_services() -> Any:
         results = graph.result(setter.call_async(SetLoggerLevels.Request(levels=levels))).results
         return (
             before,
-            [one.successful for one in results],
+            [result.successful for result in results],
             level(),
             node.get_logger().get_effective_level().name,
         )

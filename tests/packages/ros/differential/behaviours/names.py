@@ -218,11 +218,11 @@ def nodes_are_renamed() -> Any:
 def rules_for_one_node() -> Any:
     args = ["--ros-args", "-r", "one:topic:=renamed", "-r", "two:__node:=two_renamed"]
     with Graph("one", "other", "two", args=args) as graph:
-        one, other, two = graph
+        first_node, second_node, third_node = graph
         return [
-            one.create_publisher(Int32, "topic", 1).topic_name,
-            other.create_publisher(Int32, "topic", 1).topic_name,
-            two.get_fully_qualified_name(),
+            first_node.create_publisher(Int32, "topic", 1).topic_name,
+            second_node.create_publisher(Int32, "topic", 1).topic_name,
+            third_node.get_fully_qualified_name(),
         ]
 
 

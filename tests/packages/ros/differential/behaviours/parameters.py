@@ -402,11 +402,17 @@ def parameter_events_are_published() -> Any:
         node.set_parameters([Parameter("n")])
         graph.until(lambda: len(told) == 3)
         return {
-            "new": [(one.name, one.value.integer_value) for event in told for one in event.new_parameters],
-            "changed": [
-                (one.name, one.value.integer_value) for event in told for one in event.changed_parameters
+            "new": [
+                (parameter.name, parameter.value.integer_value)
+                for event in told
+                for parameter in event.new_parameters
             ],
-            "deleted": [one.name for event in told for one in event.deleted_parameters],
+            "changed": [
+                (parameter.name, parameter.value.integer_value)
+                for event in told
+                for parameter in event.changed_parameters
+            ],
+            "deleted": [parameter.name for event in told for parameter in event.deleted_parameters],
             "node": sorted({event.node for event in told}),
         }
 
@@ -479,8 +485,8 @@ def the_services_of_a_node_are_there_by_default() -> Any:
         (node,) = graph
         graph.node("bare", start_parameter_services=False)
         return [
-            sorted(name for name, _ in node.get_service_names_and_types_by_node(one, "/"))
-            for one in ("node", "bare")
+            sorted(name for name, _ in node.get_service_names_and_types_by_node(node_name, "/"))
+            for node_name in ("node", "bare")
         ]
 
 

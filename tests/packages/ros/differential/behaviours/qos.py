@@ -78,7 +78,7 @@ def reliability_matches() -> Any:
         (BEST_EFFORT, RELIABLE),
         (RELIABLE, RELIABLE),
     ]
-    return [meeting(profile(reliability=one), profile(reliability=two)) for one, two in policies]
+    return [meeting(profile(reliability=first), profile(reliability=second)) for first, second in policies]
 
 
 @behaviour(
@@ -87,7 +87,7 @@ def reliability_matches() -> Any:
 )
 def durability_matches() -> Any:
     policies = [(VOLATILE, VOLATILE), (VOLATILE, LATCHED), (LATCHED, VOLATILE), (LATCHED, LATCHED)]
-    return [meeting(profile(durability=one), profile(durability=two)) for one, two in policies]
+    return [meeting(profile(durability=first), profile(durability=second)) for first, second in policies]
 
 
 @behaviour(
@@ -97,7 +97,7 @@ def durability_matches() -> Any:
 def deadlines_match() -> Any:
     short, long = Duration(seconds=1), Duration(seconds=2)
     pairs = [(Infinite, Infinite), (Infinite, short), (short, Infinite), (short, long), (long, short)]
-    return [meeting(profile(deadline=one), profile(deadline=two)) for one, two in pairs]
+    return [meeting(profile(deadline=first), profile(deadline=second)) for first, second in pairs]
 
 
 @behaviour(
@@ -106,7 +106,7 @@ def deadlines_match() -> Any:
 )
 def liveliness_matches() -> Any:
     policies = [(AUTOMATIC, AUTOMATIC), (AUTOMATIC, BY_TOPIC), (BY_TOPIC, AUTOMATIC), (BY_TOPIC, BY_TOPIC)]
-    return [meeting(profile(liveliness=one), profile(liveliness=two)) for one, two in policies]
+    return [meeting(profile(liveliness=first), profile(liveliness=second)) for first, second in policies]
 
 
 @behaviour(
@@ -117,8 +117,8 @@ def lease_durations_match() -> Any:
     short, long = Duration(seconds=1), Duration(seconds=2)
     pairs = [(Infinite, short), (short, Infinite), (long, short), (short, long)]
     return [
-        meeting(profile(liveliness_lease_duration=one), profile(liveliness_lease_duration=two))
-        for one, two in pairs
+        meeting(profile(liveliness_lease_duration=first), profile(liveliness_lease_duration=second))
+        for first, second in pairs
     ]
 
 
@@ -135,7 +135,9 @@ def profiles_are_checked_for_compatibility() -> Any:
         (profile(reliability=ReliabilityPolicy.SYSTEM_DEFAULT), profile(reliability=RELIABLE)),
         (profile(reliability=ReliabilityPolicy.BEST_AVAILABLE), profile(reliability=RELIABLE)),
     ]
-    return [(str(answer[0]), answer[1]) for answer in (qos_check_compatible(one, two) for one, two in pairs)]
+    return [
+        (str(answer[0]), answer[1]) for answer in (qos_check_compatible(left, right) for left, right in pairs)
+    ]
 
 
 @behaviour(expected=[7, 8, 9], source=ABOUT_QOS + ": keep last, only store up to N samples")

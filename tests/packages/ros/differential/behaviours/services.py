@@ -61,9 +61,9 @@ def several_requests_are_under_way() -> Any:
 @behaviour(expected=[[2], [11]], source=SERVICES + ": the response goes to the client that asked")
 def each_client_hears_its_own_answer() -> Any:
     with Graph("server", "one", "two") as graph:
-        server, one, two = graph
+        server, first_node, second_node = graph
         server.create_service(BasicTypes, "increase", increase)
-        clients = [node.create_client(BasicTypes, "increase") for node in (one, two)]
+        clients = [node.create_client(BasicTypes, "increase") for node in (first_node, second_node)]
         for client in clients:
             ready(graph, client)
         futures = [client.call_async(asking(number)) for client, number in zip(clients, (1, 10), strict=True)]
@@ -312,7 +312,7 @@ def a_service_asks_another_service() -> Any:
 @behaviour()
 def two_servers_of_one_name() -> Any:
     with Graph("one", "two", "asker") as graph:
-        one, two, asker = graph
+        first_node, second_node, asker = graph
         asked: list[str] = []
 
         def answering(name: str) -> Any:
@@ -322,8 +322,8 @@ def two_servers_of_one_name() -> Any:
 
             return answer
 
-        one.create_service(Empty, "empty", answering("one"))
-        two.create_service(Empty, "empty", answering("two"))
+        first_node.create_service(Empty, "empty", answering("one"))
+        second_node.create_service(Empty, "empty", answering("two"))
         client = asker.create_client(Empty, "empty")
         ready(graph, client)
         graph.until(lambda: asker.count_services("empty") == 2)

@@ -277,18 +277,18 @@ def a_watchdog_that_is_fed() -> Any:
     source="rclpy.time.Time and rclpy.duration.Duration",
 )
 def arithmetic_of_times() -> Any:
-    one = Time(seconds=1, clock_type=ClockType.ROS_TIME)
+    ros_time = Time(seconds=1, clock_type=ClockType.ROS_TIME)
     half = Duration(seconds=0.5)
-    other = Time(seconds=1, clock_type=ClockType.STEADY_TIME)
+    steady_time = Time(seconds=1, clock_type=ClockType.STEADY_TIME)
     return [
         [
             raised(Time, seconds=-1),
             raised(lambda: Time(seconds=1) - Duration(seconds=2)),
-            raised(lambda: one - other),
+            raised(lambda: ros_time - steady_time),
         ],
-        (one + half).nanoseconds / 1e9,
-        (one - (one + half)).nanoseconds / 1e9,
-        [one < one + half, one == one + half],
+        (ros_time + half).nanoseconds / 1e9,
+        (ros_time - (ros_time + half)).nanoseconds / 1e9,
+        [ros_time < ros_time + half, ros_time == ros_time + half],
         raised(Duration, seconds=2**40),
     ]
 

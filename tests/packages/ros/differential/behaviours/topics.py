@@ -34,11 +34,11 @@ def messages_arrive_in_order() -> Any:
 @behaviour(expected=[[1, 2], [1, 2], [1, 2]], source=TOPICS + ": zero or more subscribers to a topic")
 def every_subscription_hears_every_message() -> Any:
     with Graph("talker", "one", "two") as graph:
-        talker, one, two = graph
+        talker, first_node, second_node = graph
         heard: list[list[int]] = [[], [], []]
-        one.create_subscription(Int32, "numbers", lambda message: heard[0].append(message.data), 10)
-        one.create_subscription(Int32, "numbers", lambda message: heard[1].append(message.data), 10)
-        two.create_subscription(Int32, "numbers", lambda message: heard[2].append(message.data), 10)
+        first_node.create_subscription(Int32, "numbers", lambda message: heard[0].append(message.data), 10)
+        first_node.create_subscription(Int32, "numbers", lambda message: heard[1].append(message.data), 10)
+        second_node.create_subscription(Int32, "numbers", lambda message: heard[2].append(message.data), 10)
         publisher = talker.create_publisher(Int32, "numbers", 10)
         connect(graph, publisher, 3)
         publisher.publish(Int32(data=1))
@@ -50,10 +50,10 @@ def every_subscription_hears_every_message() -> Any:
 @behaviour(expected=[[1, 2, 3], [10, 20, 30]], source=TOPICS + ": zero or more publishers of a topic")
 def two_publishers_of_one_topic() -> Any:
     with Graph("one", "two", "listener") as graph:
-        one, two, listener = graph
+        first_node, second_node, listener = graph
         heard: list[int] = []
         listener.create_subscription(Int32, "numbers", lambda message: heard.append(message.data), 10)
-        publishers = [node.create_publisher(Int32, "numbers", 10) for node in (one, two)]
+        publishers = [node.create_publisher(Int32, "numbers", 10) for node in (first_node, second_node)]
         for publisher in publishers:
             connect(graph, publisher)
         for number in (1, 2, 3):

@@ -42,7 +42,7 @@ class Buffer:
         while frame != root:
             if frame not in self.moving:
                 return None
-            latest = max(self.moving[frame], key=lambda one: one.header.stamp.sec)
+            latest = max(self.moving[frame], key=lambda stamped: stamped.header.stamp.sec)
             place += latest.transform.translation.x
             frame = latest.header.frame_id
         return place
@@ -77,7 +77,7 @@ def a_moving_frame_under_a_static_one() -> Any:
             moving.publish(transform("map", "base", x, second=second))
             graph.until(
                 lambda second=second: any(
-                    one.header.stamp.sec == second for one in buffer.moving.get("base", [])
+                    stamped.header.stamp.sec == second for stamped in buffer.moving.get("base", [])
                 )
             )
             places.append(buffer.x("camera", "map"))
