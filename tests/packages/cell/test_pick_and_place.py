@@ -42,7 +42,7 @@ def test_the_shipped_vocabulary_of_the_cell_loads(project: Path) -> None:
     configuration = load_configuration(project)
     vocabulary = load_vocabulary(configuration.vocabulary, configuration.root)
     assert configuration.vocabulary == ("cell",)
-    assert len(vocabulary.operations) == 51
+    assert vocabulary.operations
     assert vocabulary.clock is not None
     assert vocabulary.probes
 
