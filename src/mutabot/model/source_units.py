@@ -161,7 +161,7 @@ class File:
     def __init__(
         self, name: str, text: bytes, units: Callable[[bytes], Mapping[str, TextUnit]] | None = None
     ) -> None:
-        self.name, self._text, self._told = name, text, units
+        self.name, self._text, self._units_of = name, text, units
 
     @cached_property
     def digest(self) -> str:
@@ -171,10 +171,10 @@ class File:
     @cached_property
     def _units(self) -> _Units | None:
         """The units; None if the file cannot be parsed. Trees, a hundred times larger, are not kept."""
-        if self._told is not None:
-            told = self._told(self._text)
-            texts = {name: digest(text.encode()) for name, (_, text, _) in told.items()}
-            return _Units({name: number for name, (number, *_) in told.items()}, texts, is_quiet=False)
+        if self._units_of is not None:
+            units = self._units_of(self._text)
+            texts = {name: digest(text.encode()) for name, (_, text, _) in units.items()}
+            return _Units({name: number for name, (number, *_) in units.items()}, texts, is_quiet=False)
         nodes = self._nodes()
         if nodes is None:
             return None
@@ -250,8 +250,8 @@ class File:
 
     def _places(self) -> Mapping[str, Iterable[NodeExtent]]:
         """Return the places in each unit, in the same order for all units that say the same."""
-        if self._told is not None:
-            return {name: extents for name, (_, _, extents) in self._told(self._text).items()}
+        if self._units_of is not None:
+            return {name: extents for name, (_, _, extents) in self._units_of(self._text).items()}
         return {name: map(_extent, ast.walk(node)) for name, node in (self._nodes() or {}).items()}
 
     def _said_by(self, node: ast.AST) -> str:

@@ -20,7 +20,6 @@ from .tree import STATEMENTS, ProgramNode, in_short, routines
 
 #: the rest of a file among its units
 MODULE = -1
-_LINE = "\n"
 _CALL = Station.call.__code__
 #: expressions that may read something of the cell
 _EXPRESSIONS = frozenset({"call", "method", "index", "name", "field"})
@@ -79,8 +78,8 @@ class RobotLanguage:
             owners[first:last] = [number] * (last - first)
         said: dict[int, list[str]] = {number: [] for number in names}
         for owner, kind, start, end in zip(owners, tokens.kinds, tokens.starts, tokens.ends, strict=True):
-            word = _LINE if kind == "newline" else source.text[start:end]
-            if word != _LINE or said[owner][-1:] not in ([], [_LINE]):  # how many lines are empty is layout
+            word = "\n" if kind == "newline" else source.text[start:end]
+            if word != "\n" or said[owner][-1:] not in ([], ["\n"]):  # how many lines are empty is layout
                 said[owner].append(word)
         extents: dict[int, list[TextSpan]] = {number: [] for number in names}
         for node in parsed.tree.walk():

@@ -17,6 +17,7 @@ class TextDifference(ActiveFault):
     """
 
     is_checked: ClassVar[bool] = False
+    is_of_text: ClassVar[bool] = True
 
     def prepare_process(self) -> None:
         """From now on. Raises LanguageError if the file was run here before, as the original."""

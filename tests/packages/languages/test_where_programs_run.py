@@ -82,9 +82,11 @@ VERDICTS = {
 }
 
 
-def verdicts(folder: Path, suite: str, engine: str, vocabulary: str) -> dict[str, tuple[str, str]]:
+def verdicts(
+    folder: Path, suite: str, engine: str, vocabulary: str, program: str = PROGRAM
+) -> dict[str, tuple[str, str]]:
     """Verdict and message of each mutant of a project with this suite."""
-    (folder / "pick.mod").write_text(PROGRAM)
+    (folder / "pick.mod").write_text(program)
     (folder / "child.py").write_text(CHILD)
     (folder / "test_pick.py").write_text(HEAD + MOVES + suite)
     (folder / "pyproject.toml").write_text(
@@ -135,3 +137,44 @@ def test_what_was_run_before_any_fork_is_no_verdict_of_a_fork(tmp_path: Path) ->
     found = verdicts(tmp_path, SUITES["the import of the tests"], "fork", '["cell"]')
     assert {verdict for verdict, _ in found.values()} == {"error"}
     assert all("was run before the first test" in text for _, text in found.values())
+
+
+#: a program that goes out of reach where its condition does not hold
+FAR = """MODULE Pick
+  VAR num count := 0;
+  PROC main()
+    count := 3;
+    IF count > 2 THEN
+      MoveL Offs(CRobT(),0,0,-20),v200,fine,tool0;
+    ELSE
+      MoveL Offs(CRobT(),0,0,-9000),v200,fine,tool0;
+    ENDIF
+  ENDPROC
+ENDMODULE
+"""
+CAUGHT = """
+def test_it_does_not_come_that_far(new_cell, mutabot_seed):
+    ends = False
+    try:
+        load("pick.mod").run(new_cell(mutabot_seed))
+        ends = True
+    except Exception:
+        pass
+    assert ends
+"""
+
+
+@pytest.mark.parametrize("engine", ["fork", pytest.param("replay", marks=pytest.mark.whole)])
+@pytest.mark.parametrize(
+    ("suite", "verdict"), [("", "refused"), pytest.param(CAUGHT, "killed", marks=pytest.mark.whole)]
+)
+def test_a_motion_that_the_mutants_text_asks_for_and_the_robot_refuses_is_no_kill(
+    suite: str, verdict: str, engine: str, tmp_path: Path
+) -> None:
+    found = ends(verdicts(tmp_path, suite, engine, '["cell"]', FAR))
+    assert found == {
+        "count := 3 deleted": verdict,
+        "count > 2 → NOT (count > 2)": verdict,
+        "count > 2 → count >= 2": "survived",
+        "count > 2 → count <= 2": verdict,
+    }
