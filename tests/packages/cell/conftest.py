@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
@@ -12,6 +14,15 @@ from mutabot_cell import Box, Cell, Scene
 @pytest.fixture
 def cell() -> Cell:
     return Cell(seed=1)
+
+
+@pytest.fixture
+def project(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
+    """A copy of the example that the test's module is about."""
+    example: Path = request.module.EXAMPLE
+    return shutil.copytree(
+        example, tmp_path / example.name, ignore=shutil.ignore_patterns(".*", "__pycache__")
+    )
 
 
 @pytest.fixture

