@@ -42,12 +42,16 @@ print(json.dumps(expected))
 """
 
 
-def differences(found: list[Outcome]) -> list[str]:
-    """The behaviours whose records are not those that are kept, with both."""
+def differences(found: list[Outcome], over: str = "dds") -> list[str]:
+    """The behaviours whose records are not those that are kept, with both.
+
+    On a busy machine a behaviour can miss its times, so each that differs is recorded once more, alone.
+    """
     kept = read(KEPT)
+    again = [behaviour.name for behaviour in found if not behaviour.equals(kept[behaviour.name])]
     return [
         f"{behaviour.name}: {behaviour.told()} not {kept[behaviour.name].told()}"
-        for behaviour in found
+        for behaviour in (run(again, over, jobs=1) if again else ())
         if not behaviour.equals(kept[behaviour.name])
     ]
 
@@ -85,4 +89,4 @@ def test_all_behaviours_over_dds_are_as_they_were_recorded() -> None:
     any(find_spec(name) is None for name in ("greenlet", "ros_in_process")), reason="no simulation"
 )
 def test_all_behaviours_over_the_simulation_are_as_over_dds() -> None:
-    assert differences(list(run(over="simulation"))) == []
+    assert differences(list(run(over="simulation")), "simulation") == []

@@ -30,14 +30,29 @@ def start(program: str, *arguments: str, **options: Any) -> subprocess.Popen[str
 
 
 def end(process: subprocess.Popen[str], number: signal.Signals) -> int:
-    """Send a signal until the process has ended: a node that is about to wait may miss it."""
+    """Send a signal until the process has ended: a node that is about to wait may miss it.
+
+    Gives how many signals that took.
+    """
+    sent = 0
     while process.poll() is None:
         process.send_signal(number)
+        sent += 1
         try:
             process.wait(1.0)
         except subprocess.TimeoutExpired:
             continue
-    return process.returncode
+    return sent
+
+
+def ended_as_expected(process: subprocess.Popen[str], number: signal.Signals) -> bool:
+    """Whether the adder ended by its own return after a signal.
+
+    On a slow machine a second signal meets a node that has shut down and given its handlers back: then the
+    signal itself ends the process.
+    """
+    sent = end(process, number)
+    return process.returncode in ENDED or (sent > 1 and process.returncode == -number)
 
 
 @contextmanager
@@ -94,21 +109,21 @@ def a_process_keeps_what_it_knows() -> Any:
 def a_process_is_interrupted() -> Any:
     with adder() as (graph, client, process):
         ask(graph, client, 1)
-        return end(process, signal.SIGINT) in ENDED
+        return ended_as_expected(process, signal.SIGINT)
 
 
 @behaviour()
 def a_process_is_terminated() -> Any:
     with adder() as (graph, client, process):
         ask(graph, client, 1)
-        return end(process, signal.SIGTERM) in ENDED
+        return ended_as_expected(process, signal.SIGTERM)
 
 
 @behaviour()
 def a_process_is_killed_and_started_again() -> Any:
     with adder() as (graph, client, process):
         before = ask(graph, client, 1), ask(graph, client, 1)
-        code = end(process, signal.SIGKILL)
+        end(process, signal.SIGKILL)
         unanswered = client.call_async(BasicTypes.Request(int32_value=1))
         graph.spin()
         again = start("adder.py")
@@ -121,7 +136,7 @@ def a_process_is_killed_and_started_again() -> Any:
             time.sleep(1.0)
             answers = []
             graph.until(lambda: _answered(graph, other, answers))
-            return before, code, unanswered.done(), found, answers[0][0]
+            return before, process.returncode, unanswered.done(), found, answers[0][0]
         finally:
             again.kill()
             again.wait()
