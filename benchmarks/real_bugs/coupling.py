@@ -7,7 +7,9 @@ as it was found in public robot programs. All tests run with every bug and every
 * whether, of many random parts of a program's tests, all of one size, those that kill more mutants catch more
   bugs: the rank correlation (Spearman), beside that of the lines covered;
 * for how many bugs there is a mutant that is killed by exactly the tests that catch the bug;
-* how many dominators there are: classes of mutants that no other one subsumes (``comparison.subsumption``).
+* how many dominators there are: classes of mutants that no other one subsumes (``comparison.subsumption``);
+* which share of the bugs parts of any size catch that have some score: what reports say beside a score
+  (``mutabot.results.bugs_caught``).
 
 Intervals are those of 2000 draws of programs with replacement (bootstrap, 95 %).
 
@@ -29,6 +31,7 @@ from typing import TypeVar
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from comparison.subsumption import dominators
+from mutabot.results.bugs_caught import Caught, band_of
 from real_bugs.gathering import BUGS, FAMILIES, PROGRAMS, STRENGTHS, Found, gather, read, write
 
 #: what a score may be made of
@@ -74,7 +77,7 @@ def main() -> int:
             programs = pool.starmap(gather, [(name, given.sample) for name in names], chunksize=1)
     if given.json is not None:
         write(given.json, programs)
-    for part in (of_suites, of_parts, of_coupling, of_operators, of_minimal):
+    for part in (of_suites, of_parts, of_coupling, of_operators, of_minimal, of_scores):
         print("\n".join([*part(programs), ""]))
     return 0
 
@@ -197,6 +200,39 @@ def of_minimal(programs: Sequence[Found]) -> Iterable[str]:
 
 def _with_rounds(kills: Sequence[frozenset[str]]) -> dict[int, frozenset[tuple[str, int]]]:
     return {number: frozenset((test, 0) for test in tests) for number, tests in enumerate(kills)}
+
+
+def of_scores(programs: Sequence[Found]) -> Iterable[str]:
+    """Which share of the bugs parts of any size catch that have some score."""
+    yield "| score of the part | robot | bugs | conventional |"
+    yield "|---|---|---|---|"
+    columns = [bands(programs, family) for family in FAMILIES]
+    for band, row in enumerate(zip(*columns, strict=True)):
+        cells = [f"{own.mean} % ({own.low}–{own.high}; {own.programs} programs)" for own in row]
+        yield f"| {20 * band}–{20 * band + 20} % | {' | '.join(cells)} |"
+
+
+def bands(programs: Sequence[Found], family: str) -> tuple[Caught, ...]:
+    """Return what parts with scores of each band catch, over programs.
+
+    Of each program as many parts are drawn, of sizes that are drawn evenly from one test to all.
+    """
+    found: list[dict[str, list[float]]] = [{} for _ in range(5)]
+    for program in programs:
+        draw = random.Random(SEED)
+        kills, bugs = program.kills((family,)), program.kills((BUGS,))
+        for _ in range(PARTS):
+            tests = frozenset(draw.sample(program.tests, draw.randint(1, len(program.tests))))
+            band = found[band_of(noticed(kills, tests))]
+            band.setdefault(program.name, []).append(noticed(bugs, tests))
+    return tuple(map(_caught, found))
+
+
+def _caught(by_program: Mapping[str, Sequence[float]]) -> Caught:
+    shares = sorted(share for own in by_program.values() for share in own)
+    low, high = shares[len(shares) // 10], shares[len(shares) * 9 // 10]
+    mean = fmean(map(fmean, by_program.values()))
+    return Caught(len(by_program), round(100 * mean), round(100 * low), round(100 * high))
 
 
 def noticed(kills: Sequence[frozenset[str]], tests: frozenset[str]) -> float:

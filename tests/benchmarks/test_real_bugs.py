@@ -14,6 +14,7 @@ import pytest
 
 from mutabot.campaign.faults.providers import rules_of
 from mutabot.faults import known_families
+from mutabot.results.bugs_caught import BANDS
 from mutabot_patches.changes import read_patch
 from mutabot_patches.suite import looks_like_tests
 from mutabot_source.registry import names, operator
@@ -75,7 +76,13 @@ def test_the_data_have_the_bugs_and_tests_that_there_are() -> None:
         assert {test.rpartition("::")[2].partition("[")[0] for test in real_program.tests} == defined
 
 
-@pytest.mark.parametrize("part", [coupling.of_suites, coupling.of_coupling, coupling.of_minimal])
+def test_reports_say_of_scores_what_the_data_say() -> None:
+    assert {family: coupling.bands(FOUND, family) for family in BANDS} == BANDS
+
+
+@pytest.mark.parametrize(
+    "part", [coupling.of_suites, coupling.of_coupling, coupling.of_minimal, coupling.of_scores]
+)
 def test_the_page_has_the_tables_of_the_data(part: coupling.Table) -> None:
     assert "\n".join(part(FOUND)) in PAGE
 

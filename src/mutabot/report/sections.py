@@ -100,7 +100,8 @@ def _scores(results: Results) -> Iterator[Section]:
         columns = (*columns, ">accepted")
         rows = [(*row, str(group.scores.accepted)) for row, group in zip(rows, results.groups, strict=True)]
     if rows:
-        yield Section("Scores", columns, rows, [_INTERVALS] if results.rounds > 1 else [])
+        lines = [_INTERVALS] if results.rounds > 1 else []
+        yield Section("Scores", columns, rows, [*lines, *results.bugs_caught])
     if results.drawing is not None:
         drawn = sum(group.mutants for group in results.drawn)
         title = f"Sample of {results.drawing.sample}: {drawn} of {plural(results.drawing.selected, 'mutant')}"

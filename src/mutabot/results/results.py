@@ -205,6 +205,13 @@ class Results:
         return self.state == "complete"
 
     @property
+    def bugs_caught(self) -> list[str]:
+        """What suites with such scores caught of real bugs; empty where only some mutants were run."""
+        if not self.is_complete or self.since is not None:
+            return []
+        return [text for group in self.groups if (text := group.bugs_caught) is not None]
+
+    @property
     def everything(self) -> tuple[MutantResult, ...]:
         """All mutants, graded ones included, by number."""
         if not self.graded:

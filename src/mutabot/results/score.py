@@ -9,7 +9,8 @@ from statistics import fmean
 from typing import TYPE_CHECKING
 
 from mutabot.frozen import frozen
-from mutabot.model import By, Mutant, Outcome, Verdict
+from mutabot.model import By, Mutant, Outcome, Role, Verdict
+from mutabot.results.bugs_caught import bugs_caught
 from mutabot.results.statistics import Interval, crossed, sampled, wilson
 
 if TYPE_CHECKING:
@@ -169,6 +170,14 @@ class Group:
     mutants: int
     scores: RoundScores
     population: int | None = None
+
+    @property
+    def bugs_caught(self) -> str | None:
+        """What suites with such a score caught of real bugs, in a sentence; None where that is not known."""
+        if self.role != Role.PROGRAM.value:
+            return None
+        valid = max((score.valid for score in self.scores.rounds), default=0)
+        return bugs_caught(self.family, self.scores.mean, valid)
 
 
 def groups_of(

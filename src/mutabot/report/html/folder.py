@@ -72,7 +72,7 @@ def campaign_data(campaign: Results, name: str) -> dict[str, Any]:
         **data_of.facts(
             campaign,
             "state attempt done planned rounds groups controls verification repeats drawing tests baseline "
-            "reaching left_out operators untested named=untested.named flaky=flaky.tests "
+            "bugs_caught reaching left_out operators untested named=untested.named flaky=flaky.tests "
             "confirmed=confirmation.text",
         ),
         "meta": campaign.meta,

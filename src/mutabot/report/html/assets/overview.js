@@ -68,7 +68,8 @@
       h("div", { class: "scroll", role: "region", tabindex: "0", "aria-label": "Table of scores" },
         h("table", { class: "scores" }, h("thead", null, head), h("tbody", null, campaign.groups.map((one) => group(one))))),
       h("p", { class: "hint" }, "Score: share of valid mutants that were killed, averaged over rounds. Check score: the share killed by an assertion rather than by a crash or robot error. ",
-        "Bar: 95 % interval; ticks: single rounds; hollow mark: check score. There is no combined score across families and roles."));
+        "Bar: 95 % interval; ticks: single rounds; hollow mark: check score. There is no combined score across families and roles."),
+      (campaign.bugs_caught || []).map((text) => h("p", { class: "hint" }, text)));
   }
 
   function group(one) {
