@@ -123,7 +123,7 @@ bench: $(READY)
 ## slow: kill the controller at 30 random moments and finish by resuming; stop campaigns on hardware at 1,000 moments;
 ## both engines on every mutant of the examples; both engines against plain pytest; ten thousand mutants; ten thousand
 ## tests; 200 campaigns in a row; 20 whose tests start processes, on each example with some; 400 campaigns with a test
-## that fails at random
+## that fails at random; --since after 40 edits
 stress: $(READY) $(ROS1)/.ready $(ROS2)/.ready
 	$(RUN) benchmarks/kill_and_resume.py --kills 30
 	$(RUN) benchmarks/hardware_stops.py --held 1000 --ended 30
@@ -142,6 +142,7 @@ stress: $(READY) $(ROS1)/.ready $(ROS2)/.ready
 	            --families robot,middleware,conventional,text; } || exit; \
 	done
 	$(RUN) benchmarks/flaky_campaigns.py
+	$(RUN) benchmarks/since_edits.py --edits 40
 
 ## slow: every verdict on the corpus of tests/suites and on mutants of the examples, by both engines, against plain
 ## pytest on program text that was edited
