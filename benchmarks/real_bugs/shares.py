@@ -8,7 +8,7 @@ from __future__ import annotations
 import sys
 import tomllib
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from math import sqrt
 from pathlib import Path
 from typing import Any
@@ -48,6 +48,33 @@ def by_operator(bugs: Sequence[Bug]) -> dict[str, Counter[str]]:
     return found
 
 
+def agreement(first: Sequence[bool], second: Sequence[bool]) -> str:
+    """Return how often two readers agree, as text: share, and Cohen's kappa.
+
+    Source: J. Cohen, A coefficient of agreement for nominal scales, Educational and Psychological Measurement
+    20 (1960): kappa = (observed - expected) / (1 - expected); expected is what readers would share who class
+    at random as often.
+    """
+    size = len(first)
+    same = sum(a == b for a, b in zip(first, second, strict=True)) / size
+    expected = sum(first.count(name) * second.count(name) for name in set(first)) / size**2
+    return f"{100 * same:.0f} %, κ = {(same - expected) / (1 - expected):.2f}"
+
+
+def second_reading(bugs: Sequence[Bug]) -> Iterable[str]:
+    """Yield the table of both readers' classes."""
+    yield "| | first reader | second reader | they agree |"
+    yield "|---|---|---|---|"
+    readers = {
+        "robot operators and family `bugs`": ([now(bug) for bug in bugs], [bug["second"][0] for bug in bugs]),
+        "conventional operators": ([bug["conventional"] for bug in bugs], [bug["second"][1] for bug in bugs]),
+    }
+    for name, (first, second) in readers.items():
+        for title, classes in (("exact", "E"), ("exact or near", "EM")):
+            ours, theirs = ([end in classes for end in ends] for ends in (first, second))
+            yield f"| {name}: {title} | {share(ours)} | {share(theirs)} | {agreement(ours, theirs)} |"
+
+
 def main() -> int:
     """The command."""
     bugs = silent()
@@ -62,6 +89,7 @@ def main() -> int:
         print(
             f"| {name} | {share([end == 'E' for end in found])} | {share([end in 'EM' for end in found])} |"
         )
+    print("\n".join(["", *second_reading(bugs)]))
     print("\n| operator | exact | near | exact, and by no conventional operator |\n|---|---|---|---|")
     for name, counts in sorted(
         by_operator(bugs).items(), key=lambda operator_and_counts: -operator_and_counts[1]["E"]

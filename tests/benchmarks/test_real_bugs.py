@@ -21,7 +21,7 @@ from mutabot_source.registry import names, operator
 from real_bugs import coupling
 from real_bugs.gathering import BUGS, KILLED, PROGRAMS, SAME, STILLBORN, Found, Noticed, read, write
 from real_bugs.rates import DATA, Rate, rates
-from real_bugs.shares import by_operator, now, share, silent
+from real_bugs.shares import agreement, by_operator, now, second_reading, share, silent
 
 PAGE = (Path(__file__).parents[2] / "docs" / "real-bugs.md").read_text(encoding="utf-8")
 FOUND = read(DATA)
@@ -52,6 +52,25 @@ def test_the_page_has_the_shares() -> None:
         share(["E" in (now(bug), bug["conventional"]) for bug in bugs]),
     ):
         assert re.search(rf"\| {re.escape(told)} \|", PAGE)
+
+
+def test_the_page_has_both_readers_classes() -> None:
+    bugs = silent()
+    assert "\n".join(second_reading(bugs)) in PAGE
+    agreed = sum(now(bug) == "E" == bug["second"][0] for bug in bugs)
+    assert f"Both call {agreed} of 253 exact" in PAGE
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "told"),
+    [
+        ("1100", "1100", "100 %, κ = 1.00"),
+        ("1100", "1010", "50 %, κ = 0.00"),
+        ("1100", "0011", "0 %, κ = -1.00"),
+    ],
+)
+def test_agreement_is_what_is_more_than_chance(first: str, second: str, told: str) -> None:
+    assert agreement(*([mark == "1" for mark in marks] for marks in (first, second))) == told
 
 
 def test_each_bug_of_the_programs_applies_and_says_its_class() -> None:
