@@ -80,6 +80,7 @@ site: $(SITE)/.ready
 pictures: $(READY) $(REPORTS) $(MESHES)
 	MUJOCO_GL=$${MUJOCO_GL:-osmesa} $(RUN) tools/make_pictures.py
 	MUJOCO_GL=$${MUJOCO_GL:-osmesa} $(RUN) tools/hero_picture.py
+	MUJOCO_GL=$${MUJOCO_GL:-osmesa} $(RUN) tools/example_pictures.py
 	$(RUN) tools/make_report_pictures.py
 
 ## compare the families of operators on the examples (of the largest a tenth of the mutants), and write
