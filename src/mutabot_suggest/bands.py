@@ -9,6 +9,8 @@ from dataclasses import dataclass
 CONFIDENCE = 0.95
 #: digits of a value, down to its tolerance, above which it is no more than what the original happened to read
 DIGITS = 3
+#: where the tests state no tolerance, it is at most this share of the value, or this many times the band's
+_SHARE, _ROOM = 0.1, 10
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,10 +47,14 @@ def readable(band: Band, nearest: float, stated: float = 0.0) -> tuple[float, fl
 
     The tolerance is the one that the tests state already, if it lies between the band's and ``nearest``, the
     least distance of a survivor from the middle; else the largest of 1, 2, 5, 10 … that is at most half of
-    ``nearest``, never under the band's. The value has no more digits than that needs, but a short one stays.
+    ``nearest``, and a tenth of the value or ten times the band's; never under the band's. The value has no
+    more digits than that needs, but a short one stays.
     """
+    most = nearest / 2
+    if band.middle:
+        most = min(most, max(_SHARE * abs(band.middle), _ROOM * band.tolerance))
     tolerance = stated if band.tolerance <= stated < nearest else _round_up(band.tolerance)
-    while tolerance != stated and _round_up(tolerance * 1.5) <= nearest / 2:
+    while tolerance != stated and _round_up(tolerance * 1.5) <= most:
         tolerance = _round_up(tolerance * 1.5)
     digits = -math.floor(math.log10(tolerance) + 1e-9)
     value = band.middle if digits_of(band.middle) < DIGITS else round(band.middle, digits)

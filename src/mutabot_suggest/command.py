@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from mutabot.api.reports import CommandContext, MutantResult, Results, Verdict
+from mutabot.api.reports import CommandContext, MutantResult, Results, UsageError, Verdict
 
 from .output import data_of_suggestions, keep, print_suggestions
 from .results import NothingToSuggestError
@@ -42,7 +42,7 @@ def suggest(
     from .suggest import suggest as find_checks  # noqa: PLC0415  # it loads much
 
     results = context.results()
-    chosen = _chosen(results, only or (), skip or ())
+    chosen = _survivors_of(results, _selected(context, results, only or (), skip or ()))
     request = context.request_again(results, jobs)
     with context.progress() as progress:
         found = find_checks(request, chosen, progress, seeds=seeds)
@@ -50,8 +50,23 @@ def suggest(
     context.print_json(data_of_suggestions(found)) if json else print_suggestions(context, found)
 
 
-def _chosen(results: Results, only: Sequence[str], skip: Sequence[str]) -> list[MutantResult]:
-    """Return the requested survivors. Raises NothingToSuggestError, with the reason, if there is none."""
+def _selected(
+    context: CommandContext, results: Results, only: Sequence[str], skip: Sequence[str]
+) -> list[MutantResult]:
+    """Return the requested mutants of the last campaign. Raises NothingToSuggestError if it has no such."""
+    if not results.mutants:
+        return []
+    try:
+        return results.selected(only, skip)
+    except UsageError:
+        context.results(earlier=True).selected(only, skip)  # raises for what no campaign has
+        raise NothingToSuggestError(
+            "the last campaign did not run these mutants: run them again, without --only or with it"
+        ) from None
+
+
+def _survivors_of(results: Results, selected: Sequence[MutantResult]) -> list[MutantResult]:
+    """Return the survivors. Raises NothingToSuggestError, with the reason, if there is none."""
     if results.graded and not results.mutants:
         raise NothingToSuggestError("graded mutants have no survivors but thresholds: `mutabot thresholds`")
     if not results.mutants:
@@ -60,12 +75,13 @@ def _chosen(results: Results, only: Sequence[str], skip: Sequence[str]) -> list[
         )
     if not results.done:
         raise NothingToSuggestError("no mutant has been run yet: continue with `mutabot run`")
-    selected = results.selected(only, skip)
     # where no test comes, no check helps
     survivors = [survivor for survivor in results.survivors if survivor.status is not Verdict.NOT_COVERED]
     if not survivors:
         raise NothingToSuggestError("no mutant survived: there is no check to suggest")
     chosen = [result for result in selected if result in survivors]
+    if not chosen and any(result.is_accepted for result in selected):
+        raise NothingToSuggestError("these survivors are accepted: `mutabot accept` lists them")
     if not chosen:
-        raise NothingToSuggestError("none of the mutants that were asked for survived")
+        raise NothingToSuggestError("none of the selected mutants survived")
     return chosen

@@ -19,10 +19,16 @@ def print_suggestions(context: CommandContext, found: Suggestions) -> None:
     killed = {mutant for proven in found.checks for mutant in proven.kills}
     survivors = plural(len(killed) + len(found.unsolved), "survivor")
     context.print(f"{plural(len(found.checks), 'check')} for {len(killed)} of {survivors}")
+    proofs = {tuple(_proof_lines(check)) for check in found.checks}
+    is_shared = len(found.checks) > 1 and len(proofs) == 1
     for number, check in enumerate(found.checks, start=1):
         context.print_section(f"{number}  {check.test}")
-        for line in check_lines(check, found):  # a statement is copied, so that it must not be wrapped
+        for line in check_lines(
+            check, found, with_proof=not is_shared
+        ):  # a statement is copied, so that it must not be wrapped
             context.print(f"  {line}")
+    if is_shared:
+        context.print_section(f"Each of the {len(found.checks)} checks", proofs.pop())
     left = [survivor for survivor in found.unsolved if not survivor.never]
     never = [survivor for survivor in found.unsolved if survivor.never]
     dropped = [
@@ -31,7 +37,7 @@ def print_suggestions(context: CommandContext, found: Suggestions) -> None:
     ]
     sections = {
         f"No check found for {plural(len(left), 'survivor')}": _left(left, found),
-        f"{plural(len(never), 'survivor')} cannot be killed by any check in these tests": _left(never, found),
+        f"No check was searched for {plural(len(never), 'survivor')}": _left(never, found),
         f"{plural(len(dropped), 'check')} dropped, because verification failed": dropped,
     }
     for name, lines in sections.items():
@@ -41,22 +47,28 @@ def print_suggestions(context: CommandContext, found: Suggestions) -> None:
         context.print(f"\n{found.diff.rstrip()}")
 
 
-def check_lines(check: ProvenCheck, found: Suggestions) -> Iterator[str]:
-    """Yield the assertion, what it kills, its tolerance, and its false alarms."""
+def check_lines(check: ProvenCheck, found: Suggestions, *, with_proof: bool = True) -> Iterator[str]:
+    """Yield the assertion, what it kills, its proof unless that is left out, and how to add it by hand."""
     yield from check.statement.splitlines()
     yield f"kills {_kills(check, found)}"
-    seen = f"{plural(check.runs, 'run')} of the original"
-    yield f"{seen} spread {check.spread:.3g}" if check.spread else f"equal in {seen}"
-    yield (
-        f"false alarms: none in {plural(check.fresh, 'new seed')} "
-        f"(so at most {100 * check.unseen:.2g} % of runs, 95 % confidence)"
-    )
+    if with_proof:
+        yield from _proof_lines(check)
     if check.by_hand:
         where = f"where `{check.after}` is made" if check.after else "where it ends"
         lines = check.statement.splitlines()
         imports = [f"  {line}" for line in check.by_hand.splitlines() if line not in lines]
         yield f"another tool makes this test: add the check by hand {where}{', with' if imports else ''}"
         yield from imports
+
+
+def _proof_lines(check: ProvenCheck) -> Iterator[str]:
+    """Yield how far the original spreads, and how often the check failed on it."""
+    seen = f"{plural(check.runs, 'run')} of the original"
+    yield f"{seen} spread {check.spread:.3g}" if check.spread else f"equal in {seen}"
+    yield (
+        f"false alarms: none in {plural(check.fresh, 'new seed')} "
+        f"(so at most {100 * check.unseen:.2g} % of runs, 95 % confidence)"
+    )
 
 
 def _kills(check: ProvenCheck, found: Suggestions) -> str:

@@ -14,8 +14,14 @@ from .readings import Measured, is_reading, reading_of
 from .results import Unsolved
 from .suite import SuiteChecks
 
-NOTHING_DIFFERS = "nothing that was compared differs from the original (indistinguishable)"
-NOTHING_READ = "nothing that its tests can read at their ends differs: a test that looks in between is needed"
+NOTHING_DIFFERS = (
+    "nothing that was compared differs from the original (indistinguishable): "
+    "another [[probe]] may show a difference; if not, accept them"
+)
+NOTHING_READ = "nothing that was read at the ends of its tests differs: a check on the way may notice it"
+NO_PROBE = (
+    "nothing that was read at the ends of its tests differs; a [[probe]] in the vocabulary may show more"
+)
 NOT_REACHED = "no test reaches it: add a test that does"
 #: m, and degrees, below which a way is too near to the original for a monitor
 _NEAR, _TURNED = 0.03, 15.0
@@ -49,7 +55,9 @@ def why_unsolved(
         return Unsolved(mutant, recorded)
     if mutant in refused:
         return Unsolved(mutant, refused[mutant])
-    return Unsolved(mutant, max(_differences(mutant, measured), default=(0.0, NOTHING_READ))[1])
+    is_probed = any(outcome.distance is not None for outcome in survivor.survived)
+    unread = (0.0, NOTHING_READ if is_probed else NO_PROBE)
+    return Unsolved(mutant, max(_differences(mutant, measured), default=unread)[1])
 
 
 def _why_failed(check: CheckProposal, why: str) -> str:

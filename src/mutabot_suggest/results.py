@@ -54,7 +54,7 @@ class Unsolved:
     Attributes:
         mutant: its id.
         reason: why not.
-        never: whether no observation at the ends of these tests could kill it.
+        never: whether no check was searched for, as nothing that was compared differs, or no test reaches it.
     """
 
     mutant: str

@@ -29,7 +29,7 @@ _ATTEMPTS, _FAILURES = 8, 3
 def _separated(chosen: Sequence[MutantResult]) -> tuple[Survivors, list[Unsolved]]:
     """Separate the survivors that may differ from the original, with the rounds in which they do.
 
-    No check in these tests can kill the others.
+    No check is searched for the others: nothing that was compared differs, or no test reaches them.
     """
     to_kill: Survivors = {}
     never: list[Unsolved] = []

@@ -298,6 +298,15 @@ def test_what_cannot_be_accepted_is_refused_and_nothing_is_written(
     assert not (project / FILE).exists()
 
 
+def test_a_mutant_is_not_accepted_twice(
+    project: Path, script: Script, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run_campaign(request_for(project, only=(FIRST,)), Quiet())
+    assert run(project, "accept", FIRST, "--why", "x") == 0
+    assert run(project, "accept", FIRST, "--why", "y") == ExitCode.USAGE
+    assert "was already accepted on " in capsys.readouterr().err
+
+
 def test_a_file_with_a_mistake_is_not_added_to(
     project: Path, script: Script, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -479,6 +479,16 @@ def test_show_of_an_unknown_mutant_names_the_nearest(
     assert samples.SKIP.id in capsys.readouterr().err
 
 
+def test_show_of_a_name_unlike_any_mutant_says_what_names_one(
+    fake: Campaign, capsys: pytest.CaptureFixture[str]
+) -> None:
+    main(["run"])
+    assert main(["show", "xyz"]) == 2
+    error = capsys.readouterr().err
+    assert "there is no mutant 'xyz'; give numbers 1 to " in error
+    assert error.count("mission.py") == 1
+
+
 @pytest.mark.parametrize("encoding", ["ascii", "latin-1", "utf-8"])
 def test_results_can_be_piped_in_any_encoding(fake: Campaign, encoding: str) -> None:
     main(["run"])

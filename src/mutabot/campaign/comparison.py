@@ -324,7 +324,8 @@ def _first_difference(
             ("read", before.read, after.read),
         ):
             if _values_distance(was, is_now, known) > tolerance:
-                return f"call {index}, {_place_text(after.key)}: {verb} {_change(was, is_now)}"
+                change = _change_of_values(was, is_now, known, tolerance)
+                return f"call {index}, {_place_text(after.key)}: {verb} {change}"
     more = len(mutant.events) - len(original.events)
     if more == 0 or original.truncated or mutant.truncated:
         return None
@@ -578,9 +579,24 @@ def _first_part(before: Any, after: Any, tolerance: float) -> tuple[str, Any, An
     return "", before, after
 
 
-def _change(before: Any, after: Any) -> str:
-    """Return ``after instead of before``, with the difference of numbers."""
+def _change_of_values(before: Any, after: Any, angles: Mapping[str, Quantity], tolerance: float) -> str:
+    """Return ``after instead of before`` for those quantities of a call that differ."""
+    if not isinstance(before, Mapping) or not isinstance(after, Mapping):
+        return _change(before, after)
+    parts = []
+    for name in dict.fromkeys((*after, *before)):
+        pair = before.get(name), after.get(name)
+        if _values_distance({name: pair[0]}, {name: pair[1]}, angles) > tolerance:
+            parts.append(f"{name} {_change(*pair, quantity=angles.get(name))}")
+    return ", ".join(parts)
+
+
+def _change(before: Any, after: Any, quantity: Quantity | None = None) -> str:
+    """Return ``after instead of before``, with the difference of numbers, angles and orientations."""
     text = " instead of ".join(distinct_texts(after, before, value_text, 4))
+    angle = _angle_between(quantity, before, after)
+    if angle is not None and quantity is not None:
+        return f"{text} (turned by {value_text(angle, 3)} {quantity.unit or 'rad'})"
     if is_number(before) and is_number(after):
         return f"{text} (off by {value_text(abs(float(after) - float(before)), 3)})"
     return text

@@ -80,9 +80,8 @@ def _refuse_others(chosen: Sequence[MutantResult]) -> None:
     for result in chosen:
         name = f"mutant {result.mutant.number}"
         if result.is_accepted:
-            wrong.append(
-                f"{name} is {acceptance_text(result)} ({result.acceptance and result.acceptance.source})"
-            )
+            source = result.acceptance and result.acceptance.source
+            wrong.append(f"{name} was already {acceptance_text(result)} ({source})")
         elif result.mutant.has_sizes:
             wrong.append(f"{name} is a magnitude of a graded fault, which is in no score: nothing to accept")
         elif not result.is_survivor:

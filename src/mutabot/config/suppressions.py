@@ -24,7 +24,7 @@ from .table import Table
 FILE = "mutabot-accepted.toml"
 _HEAD = """\
 # Survivors that are accepted ([[accept]]) and mutants that are not run ([[exclude]]), each with a reason.
-# `mutabot accept` adds to this file: docs/accept.md. Commit it.
+# `mutabot accept` adds to this file; commit it.
 """
 #: how texts of TOML write what cannot stand in them
 _ESCAPES = {"\\": "\\\\", '"': '\\"', "\n": "\\n", "\t": "\\t", "\r": "\\r"}

@@ -184,7 +184,8 @@ def _survivors(results: Results, place: PlaceName) -> Iterator[Section]:
         return
     same = sorted(result.mutant.number for result in survivors if result.indistinguishable)
     shown = [result for result in survivors if not result.indistinguishable]
-    order = ", largest deviation from the original first" if len(shown) > 1 else ""
+    is_ranked = len(shown) > 1 and shown[0].deviation > 0.0
+    order = ", largest deviation from the original first" if is_ranked else ""
     if not shown and len(same) <= _FEW:  # else nothing would say which faults these are
         shown, same = survivors, []
     effects = [effect_text(result) for result in shown]

@@ -12,7 +12,15 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from mutabot.errors import SelectionError, UsageError, in_short, plural, unknown_name_text
+from mutabot.errors import (
+    SelectionError,
+    UsageError,
+    in_short,
+    nearest_name,
+    plural,
+    shortened,
+    unknown_name_text,
+)
 from mutabot.frozen import frozen
 from mutabot.journal import records
 from mutabot.journal.files import is_written
@@ -262,9 +270,11 @@ class Results:
             return found[0]
         if found:
             raise SelectionError(_several(name, found))
-        raise SelectionError(
-            unknown_name_text("mutant", name, (candidate.mutant.id for candidate in everything))
-        )
+        ids = [candidate.mutant.id for candidate in everything]
+        if nearest_name(name, ids) is None:  # a list of ids would help nobody
+            known = f"numbers 1 to {everything[-1].mutant.number}, ids, or parts of ids such as {ids[0]!r}"
+            raise SelectionError(f"there is no mutant {shortened(name)!r}; give {known}")
+        raise SelectionError(unknown_name_text("mutant", name, ids))
 
     def selected(self, only: Iterable[str], skip: Iterable[str]) -> list[MutantResult]:
         """Return the ``mutants`` that match ``only`` and not ``skip``. Raises SelectionError."""
@@ -297,11 +307,16 @@ class Results:
 
     @property
     def survivors(self) -> list[MutantResult]:
-        """Mutants that survive in some round, the farthest from the original at any moment first."""
-        found = [result for result in self.mutants if result.is_survivor]
-        return sorted(
-            found, key=lambda result: (-result.deviation, result.indistinguishable, result.mutant.number)
-        )
+        """Mutants that survive in some round, the farthest from the original at any moment first.
+
+        Of those without a deviation, first those with a known difference, last the indistinguishable ones.
+        """
+
+        def rank(result: MutantResult) -> tuple[float, bool, bool, int]:
+            is_known = any(outcome.divergence for outcome in result.survived)
+            return -result.deviation, result.indistinguishable, not is_known, result.mutant.number
+
+        return sorted((result for result in self.mutants if result.is_survivor), key=rank)
 
     @property
     def accepted(self) -> list[MutantResult]:

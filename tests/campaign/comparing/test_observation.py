@@ -75,8 +75,8 @@ def test_without_probes_there_is_no_distance() -> None:
 @pytest.mark.parametrize(
     ("mutant", "line"),
     [
-        ([TraceCall("a", {"x": 1.0}, {"y": 2.5})], "call 1, a: read {y: 2.5} instead of {y: 2}"),
-        ([TraceCall("a", {"x": -1.0}, {"y": 2.0})], "call 1, a: wrote {x: -1} instead of {x: 1}"),
+        ([TraceCall("a", {"x": 1.0}, {"y": 2.5})], "call 1, a: read y 2.5 instead of 2 (off by 0.5)"),
+        ([TraceCall("a", {"x": -1.0}, {"y": 2.0})], "call 1, a: wrote x -1 instead of 1 (off by 2)"),
         ([TraceCall("b")], "call 1: b instead of a"),
         ([], "1 call fewer"),
         ([TraceCall("a", {"x": 1.0}, {"y": 2.0}), TraceCall("c")], "1 call more"),
@@ -86,6 +86,13 @@ def test_the_first_call_that_differs_is_told(mutant: list[TraceCall], line: str)
     found = compare(seen(TraceCall("a", {"x": 1.0}, {"y": 2.0})), seen(*mutant))
     assert not found.indistinguishable
     assert found.divergence == (line,)
+
+
+def test_of_a_call_only_the_values_that_differ_are_reported() -> None:
+    before = TraceCall("a", {"x": 0.5, "grip": "open", "speed": 0.25})
+    after = TraceCall("a", {"x": -0.5, "grip": "closed", "speed": 0.25})
+    (line,) = compare(seen(before), seen(after)).divergence
+    assert line == "call 1, a: wrote x -0.5 instead of 0.5 (off by 1), grip closed instead of open"
 
 
 def test_traces_that_were_cut_off_are_compared_as_far_as_they_go() -> None:
@@ -107,7 +114,7 @@ def test_values_that_differ_late_are_printed_with_as_many_digits_as_it_takes() -
     assert line == "box.x: -0.32744 instead of -0.32741 (off by 3e-05)"
     before, after = ([1.0, 2.00001], [1.0, 2.00002])
     (call,) = compare(seen(TraceCall("a", {"x": before})), seen(TraceCall("a", {"x": after}))).divergence
-    assert call == "call 1, a: wrote {x: (1, 2.00002)} instead of {x: (1, 2.00001)}"
+    assert call == "call 1, a: wrote x (1, 2.00002) instead of (1, 2.00001)"
 
 
 @pytest.mark.parametrize(

@@ -139,6 +139,25 @@ def test_values_in_the_trace_are_compared_by_what_they_mean(
     assert traced(quantity, before, after).indistinguishable is same
 
 
+@pytest.mark.parametrize(
+    ("quantity", "before", "after", "text"),
+    [
+        (turn(Kind.ROTATION, "z", Mode.TO), 179.0, -91.0, "-91 instead of 179 (turned by 90 deg)"),
+        (turn(Kind.ROTATION, "z", Mode.BY), 179.0, -91.0, "-91 instead of 179 (off by 270)"),
+        (
+            turn(Kind.ROTATION_VECTOR, None, None, "rad"),
+            [0.0, 3.14, 0.0],
+            [0.0, -3.14, 0.0],
+            "(0, -3.14, 0) instead of (0, 3.14, 0) (turned by 0.00319 rad)",
+        ),
+    ],
+)
+def test_a_difference_of_angles_in_the_trace_is_described_as_one(
+    quantity: Quantity, before: Any, after: Any, text: str
+) -> None:
+    assert traced(quantity, before, after).divergence == (f"call 1, a: wrote a {text}",)
+
+
 ROBOT = """
     from math import pi
 

@@ -57,6 +57,20 @@ def test_the_clock_and_probes_of_ones_own_go_before_shipped_ones(tmp_path: Path)
     assert [probe.tolerance for probe in found.probes] == [0.5]
 
 
+def test_a_probe_takes_angles_and_orientations_from_the_operation_of_its_callable(tmp_path: Path) -> None:
+    operation = (
+        '[[operation]]\ncall = "arm:Arm.pose"\n'
+        'result."[0:3]" = { kind = "position", axis = "xyz", unit = "m" }\n'
+        'result."[3:6]" = { kind = "rotation_vector", unit = "rad" }\n'
+    )
+    probe = '[[probe]]\ncall = "arm:Arm.pose"\n'
+    own = 'result."[0:3]" = { kind = "euler", order = "xyz", unit = "deg" }\n'
+    for text, names in ((probe, ["[3:6]"]), (probe + own, ["[0:3]"])):
+        (tmp_path / "robot.toml").write_text(operation + text)
+        (found,) = load_vocabulary(["robot.toml"], tmp_path).probes
+        assert [part.name for part in found.result] == names
+
+
 def test_two_files_of_ones_own_still_may_not_disagree(tmp_path: Path) -> None:
     for name, axis in (("a.toml", "x"), ("b.toml", "y")):
         quantity = f'{{ kind = "translation", axis = "{axis}", unit = "m", mode = "by" }}'

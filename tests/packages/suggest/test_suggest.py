@@ -10,6 +10,7 @@ import pytest
 
 from mutabot.cli.app import main
 from mutabot.journal.journal import Journal
+from results import samples
 from suites.corpus import PROJECTS, copied
 
 from .projects import STYLES, TESTS, found_by, make, passes, patched
@@ -81,6 +82,24 @@ def test_the_page_lists_what_is_suggested_for_the_project_with_all_kinds_of_quan
         r"^\| fault_catalogue \| `(.+?)` \|", DOCUMENT.read_text(encoding="utf-8"), re.MULTILINE
     )
     assert {statement.removeprefix("assert ").replace("pytest.", "") for statement in suggested} == {*rows}
+
+
+def test_what_cannot_get_a_check_is_refused_with_the_true_reason(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / ".mutabot").mkdir()
+    decision = {"why": "no matter", "source": "mutabot-accepted.toml:4", "date": "2026-01-31"}
+    accepted = {"mutants": {samples.SKIP.id: decision}, "unmatched": []}
+    path = samples.write_journal(folder / ".mutabot" / "journal.sqlite", accepted=accepted)
+    assert main(["suggest", "--only", samples.SKIP.id]) == 3
+    assert "these survivors are accepted" in capsys.readouterr().err
+    with Journal.prepare(path, meta=samples.meta()) as journal:  # as `mutabot run --only 1` does
+        journal.begin(samples.meta())
+        journal.set_plan([samples.REVERSE], (), sources={})
+        journal.add_outcome(samples.OUTCOMES[0])
+        journal.finish("complete")
+    assert main(["suggest", "--only", samples.NEGATE.id]) == 3
+    assert "the last campaign did not run these mutants" in capsys.readouterr().err
 
 
 def test_there_must_be_something_to_suggest_checks_for(

@@ -180,6 +180,16 @@ def test_that_no_probe_tells_how_the_world_ended_is_said_once(tmp_path: Path) ->
         assert "Where no effect stands" not in report(read_results(journal))
 
 
+def test_survivors_without_a_deviation_are_not_said_to_be_in_its_order(tmp_path: Path) -> None:
+    unknown = Outcome(samples.REVERSE.id, 0, Verdict.SURVIVED)
+    differs = Outcome(samples.SKIP.id, 0, Verdict.SURVIVED, divergence=("1 call fewer",))
+    path = samples.write_journal(tmp_path / "journal.sqlite", outcomes=(unknown, differs))
+    with Journal.open(path) as journal:
+        results = read_results(journal)
+    assert "2 survivors\n" in report(results)
+    assert [result.mutant for result in results.survivors] == [samples.SKIP, samples.REVERSE]
+
+
 def test_what_stands_outside_the_score_is_listed_with_its_reason(results: Results) -> None:
     text = report(results)
     assert "Not counted in the score: 1 error, 1 refused" in text

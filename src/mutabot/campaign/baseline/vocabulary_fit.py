@@ -133,11 +133,17 @@ def _of_probes(baseline: Baseline, vocabulary: Vocabulary) -> Iterator[Problem]:
                 for name in names
                 for value in parts_of(name, quantity, reading_values)
             ]
-            if not values and is_pattern(quantity):
+            if not values and (is_pattern(quantity) or _is_of_operation(quantity, probe, vocabulary)):
                 continue
             wrong = _wrong(quantity, values) if values else "the probe never reads such a part"
             if wrong is not None:
                 yield Problem(probe.source, f"result.{quantity.name}", wrong)
+
+
+def _is_of_operation(quantity: Quantity, probe: Probe, vocabulary: Vocabulary) -> bool:
+    """Return whether a part of a probe is known only from the operation of the same callable."""
+    operation = vocabulary.operation(probe.target)
+    return operation is not None and quantity in operation.result
 
 
 def _wrong(quantity: Quantity, values: Iterable[Any]) -> str | None:

@@ -45,10 +45,19 @@ def load_vocabulary(names: Sequence[str], root: Path, families: Iterable[str] = 
     return Vocabulary(
         operations=tuple(operation for operation, _ in merged.read.values()),
         clock=next((other for other in others if isinstance(other, Clock)), None),
-        probes=tuple(other for other in others if isinstance(other, Probe)),
+        probes=tuple(_with_meaning(other, merged.read) for other in others if isinstance(other, Probe)),
         wait=next((other for other in others if isinstance(other, Wait)), None),
         **{name: tuple(dict.fromkeys(targets)) for name, targets in merged.targets.items()},
     )
+
+
+def _with_meaning(probe: Probe, operations: Mapping[str, Read]) -> Probe:
+    """Return a probe that says nothing of its parts with the angles and orientations of its operation."""
+    operation = operations.get(probe.target)
+    if probe.result or operation is None:
+        return probe
+    turns = (quantity for quantity in operation[0].result if quantity.is_whole or quantity.full_turn)
+    return replace(probe, result=tuple(turns))
 
 
 def shipped_vocabularies() -> tuple[str, ...]:

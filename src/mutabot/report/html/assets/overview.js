@@ -120,7 +120,7 @@
     const survivors = all.filter((one) => one.status !== "not covered"), idle = all.length - survivors.length;
     const more = idle ? h("p", { class: "hint" }, h("a", { href: address(["mutants"], { status: "not covered" }) }, `${count(idle, "mutant")} not covered`), ", since no test reaches the place") : null;
     const [loud, calm] = [false, true].map((is) => survivors.filter((one) => one.indistinguishable === is));
-    const heading = h("h2", { id: "survivors" }, survivors.length ? `${count(survivors.length, "survivor")}${loud.length > 1 ? ", largest deviation from the original first" : ""}` : "Survivors");
+    const heading = h("h2", { id: "survivors" }, survivors.length ? `${count(survivors.length, "survivor")}${loud.length > 1 && loud.some((one) => one.deviation) ? ", largest deviation from the original first" : ""}` : "Survivors");
     if (!survivors.length) {
       const judged = campaign.mutants.some((one) => one.valid && one.status !== "not covered");
       return h("section", null, heading, more, judged
