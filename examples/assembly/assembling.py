@@ -1,78 +1,114 @@
-"""Put a pin into the hole of a block by force, and secure it with a set screw by torque and angle."""
+"""Put a pin into a housing by force, close it with a cover, and tighten four screws by torque and angle."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import NoReturn
 
-from station import Spindle, Station
+from screwdriver import Screwdriver
+from station import Station
 
 from mutabot_cell import Cell, Pose
 
 DOWN = (0, 26, 180, -78, 0, -76, 90)
 """Joint angles, degrees: the gripper looks down, above the table."""
-PIN_X, PIN_Y, HOLE_X, HOLE_Y = 0.50, -0.10, 0.50, 0.10
-"""Where pin and hole should be; base frame, m."""
-CHUTE_X, CHUTE_Y = 0.40, -0.30
-"""Where rejects are dropped, m."""
-HIGH, PIN_Z, HOVER, SEATED_Z = 0.25, 0.16, 0.190, 0.16
-"""Heights of the tool: free of all; to grip the standing pin; with the pin 5 mm above the block; and with the
-pin on the ground of the hole, m."""
-GRIP_FORCE = 120.0
-"""Of the gripper, N: the pin must not slide while it is pushed."""
+PIN, HOLE, TRAY, RACK, CHUTE = (0.50, -0.10), (0.50, 0.10), (0.50, 0.33), (0.56, -0.22), (0.36, -0.30)
+"""Where pin, hole, cover and screwdriver should be, and where rejects are dropped; base frame, m."""
+SCREWS = ((-0.068, -0.018), (0.068, 0.018), (0.068, -0.018), (-0.068, 0.018))
+"""From the hole, m: crosswise, so that the cover is drawn down evenly."""
+HIGH = 0.34
+"""Height of the tool that is free of all, with whatever it holds, m."""
+PIN_Z, HOVER, SEATED_Z, PIN_DROP_Z = 0.16, 0.190, 0.16, 0.17
+"""To grip the standing pin; with it 5 mm above the hole; on the hole's ground; and above the chute, m."""
+COVER_Z, COVER_HOVER, COVER_SEATED_Z, COVER_DROP_Z = 0.140, 0.199, 0.195, 0.13
+"""To grip the cover; with it 4 mm above the rim; on the rim; and above the chute, m."""
+DRIVER_Z, NOSE_HOVER, NOSE_Z = 0.215, 0.313, 0.308
+"""To grip the screwdriver; with its nose 5 mm above the cover; and on the cover, m."""
+PIN_GRIP, COVER_GRIP, DRIVER_GRIP = 120.0, 80.0, 200.0
+"""Of the gripper, N: what it holds must neither slide nor turn."""
+COVER_MASS, DRIVER_MASS, DRIVER_CENTRE = 0.2, 0.5, 0.045
+"""Of cover and screwdriver, kg; the latter's centre of mass beyond the tool, m."""
 FEEL_FORCE, FEEL_SPEED, FEEL_DEPTH = 4.0, 0.02, 0.008
-"""With so many N and m/s the pin feels for the hole; so deep, 3 mm below the block's top, it is in it, m."""
+"""With so many N and m/s the pin feels for the hole; so deep, 3 mm below the hole's edge, it is in it, m."""
 STEP, RINGS = 0.0006, 3
 """Of the search: between places, less than the hole's clearance, m; and how many rings around the first."""
-PUSH_FORCE, PUSH_TIME, PUSH_SPEED = 15.0, 6.0, 0.01
+PUSH_FORCE, PUSH_TIME, PUSH_SPEED = 15.0, 5.0, 0.01
 """To the ground, N, s, m/s."""
 SEATED_WITHIN = 0.0015
-"""Of the height of a pin that is in, m."""
-SCREW_SPEED, SCREW_SLOW = 12.0, 1.5
-"""Of the spindle while the screw runs freely, and for its last turn, rad/s."""
-SLOW_FROM, LEAST_ANGLE, MOST_ANGLE = 26.0, 26.5, 31.0
+"""Of the height of a pin, a cover or a nose that is where it should be, m."""
+PRESS_FORCE, PRESS_TIME = 20.0, 10.0
+"""Of the nose on the cover, N, more than the bit presses; s, longer than any screw takes."""
+FAST, SLOW = 15.0, 1.5
+"""Of the screw while it runs freely, and for its last turn, rad/s."""
+SLOW_FROM, LEAST_ANGLE, MOST_ANGLE = 23.0, 24.0, 28.0
 """The last turn begins here; a good screw is tight between these angles, rad."""
 TIGHT = 1.6
 """Torque of a screw that holds, Nm."""
+CLAMP_TIME = 1.0
+"""Within which the clamp must have closed, s."""
 
 
-@dataclass(frozen=True)
+class RejectError(Exception):
+    """The assembly cannot be finished; says why."""
+
+
+@dataclass
 class Report:
-    """What came of it. At the end the spindle stands, the gripper is empty and the robot at home.
+    """What came of it. At the end the gripper is empty and the robot at home.
 
     Attributes:
-        result: "good", "no block", "no pin", "not inserted", "screw crossed" or "screw stripped".
+        result: "good", or why not: "no block", "not clamped", "no pin", "not inserted", "no cover",
+            "cover not seated", "no screwdriver", "screw crossed", "screw stripped", "screwdriver not back".
         tries: how often the pin felt for the hole.
-        angle: by which the screw was turned, rad.
+        angles: by which the screws were turned, in the order of `SCREWS`, rad.
     """
 
-    result: str
+    result: str = "good"
     tries: int = 0
-    angle: float = 0.0
+    angles: list[float] = field(default_factory=list)
 
 
 def run(station: Station) -> Report:
-    """Assemble one block. A reject switches the lamp on."""
-    cell = station.cell
+    """Assemble one housing. A reject switches the lamp on."""
+    report = Report()
     station.lamp.off()
+    try:
+        clamp(station)
+        station.cell.arm.move_joints(DOWN)
+        assemble(station, report)
+    except RejectError as reject:
+        report.result = str(reject)
+        station.lamp.on()
+    station.cell.arm.home()
+    station.clamp.open()
+    return report
+
+
+def assemble(station: Station, report: Report) -> None:
+    """Put the pin, the cover and the screws in their places."""
+    cell = station.cell
+    fetch(cell, PIN, PIN_Z, PIN_GRIP, "no pin")
+    x, y = insert(cell, report)
+    fetch(cell, TRAY, COVER_Z, COVER_GRIP, "no cover")
+    close(cell, x, y)
+    take_screwdriver(station)
+    for across, along in SCREWS:
+        fault = tighten(cell, station.driver, report, x + across, y + along)
+        if fault:
+            break
+    put_back(station)
+    if fault:
+        raise RejectError(fault)
+
+
+def clamp(station: Station) -> None:
+    """Clamp the housing."""
     if not station.inputs.has_block():
-        return Report("no block")
-    cell.arm.move_joints(DOWN)
-    if not fetch(cell):
-        cell.arm.home()
-        return Report("no pin")
-    tries, is_in = insert(cell)
-    if not is_in:
-        drop(cell)
-        station.lamp.on()
-        cell.arm.home()
-        return Report("not inserted", tries)
-    result, angle = tighten(cell, station.spindle)
-    if result != "good":
-        station.lamp.on()
-    cell.gripper.command(0, wait=True)
-    cell.arm.move_by(z=HIGH - SEATED_Z)
-    cell.arm.home()
-    return Report(result, tries, angle)
+        raise RejectError("no block")
+    station.clamp.close()
+    station.cell.wait(CLAMP_TIME)
+    if not station.clamp.is_closed():
+        raise RejectError("not clamped")
 
 
 def down(x: float, y: float, z: float) -> Pose:
@@ -80,38 +116,63 @@ def down(x: float, y: float, z: float) -> Pose:
     return Pose(x, y, z, 180.0, 0.0, 90.0)
 
 
-def fetch(cell: Cell) -> bool:
-    """Take the pin out of the feeder; returns whether there was one."""
-    cell.gripper.set_force(GRIP_FORCE)
+def fetch(cell: Cell, place: tuple[float, float], z: float, force: float, otherwise: str) -> None:
+    """Take what stands at a place."""
+    cell.gripper.set_force(force)
     cell.gripper.command(0, wait=True)
-    cell.arm.move_to(down(PIN_X, PIN_Y, HIGH))
-    cell.arm.move_to(down(PIN_X, PIN_Y, PIN_Z))
+    cell.arm.move_to(down(*place, HIGH))
+    cell.arm.move_to(down(*place, z))
     cell.gripper.command(1, wait=True)
     found = cell.gripper.holding()
     if not found:
         cell.gripper.command(0, wait=True)
-    cell.arm.move_to(down(PIN_X, PIN_Y, HIGH))
-    return found
+    cell.arm.move_to(down(*place, HIGH))
+    if not found:
+        raise RejectError(otherwise)
 
 
-def insert(cell: Cell) -> tuple[int, bool]:
-    """Search for the hole and push the pin to its ground.
+def release(cell: Cell) -> None:
+    """Let go, and rise."""
+    cell.gripper.command(0, wait=True)
+    cell.arm.set_payload(0.0)
+    cell.arm.move_by(z=HIGH - cell.arm.commanded_pose().z)
 
-    Returns:
-        How often the pin felt for the hole, and whether it is in.
-    """
-    arm = cell.arm
-    arm.move_to(down(HOLE_X, HOLE_Y, HIGH))
-    arm.move_to(down(HOLE_X, HOLE_Y, HOVER))
+
+def drop(cell: Cell, z: float, why: str) -> NoReturn:
+    """Drop what the gripper holds into the chute."""
+    cell.arm.move_by(z=HIGH - cell.arm.commanded_pose().z)
+    cell.arm.move_to(down(*CHUTE, HIGH))
+    cell.arm.move_to(down(*CHUTE, z))
+    release(cell)
+    raise RejectError(why)
+
+
+def feel(cell: Cell, x: float, y: float, z: float) -> None:
+    """Go to where forces are read anew, free of all."""
+    cell.arm.move_to(down(x, y, HIGH))
+    cell.arm.move_to(down(x, y, z))
     cell.wait(0.3)
     cell.force_sensor.zero()
-    for tries, (x, y) in enumerate(search(), 1):
-        arm.move_to(down(HOLE_X + x, HOLE_Y + y, HOVER))
+
+
+def insert(cell: Cell, report: Report) -> tuple[float, float]:
+    """Search for the hole, push the pin to its ground and let it go.
+
+    Returns:
+        Where the hole is, base frame, m.
+    """
+    arm = cell.arm
+    feel(cell, *HOLE, HOVER)
+    for report.tries, (x, y) in enumerate(search(), 1):
+        arm.move_to(down(HOLE[0] + x, HOLE[1] + y, HOVER))
         if not arm.move_until_contact(z=-FEEL_DEPTH, force=FEEL_FORCE, speed=FEEL_SPEED):
             arm.push(x=0.0, y=0.0, z=-PUSH_FORCE, seconds=PUSH_TIME, travel=0.05, speed=PUSH_SPEED)
-            return tries, abs(cell.sensors.tool_pose().z - SEATED_Z) < SEATED_WITHIN
-    arm.move_to(down(HOLE_X, HOLE_Y, HIGH))
-    return tries, False
+            pose = cell.sensors.tool_pose()
+            if abs(pose.z - SEATED_Z) > SEATED_WITHIN:
+                break
+            release(cell)
+            return pose.x, pose.y
+    drop(cell, PIN_DROP_Z, "not inserted")
 
 
 def search() -> list[tuple[float, float]]:
@@ -121,27 +182,53 @@ def search() -> list[tuple[float, float]]:
     return sorted(places, key=lambda place: place[0] ** 2 + place[1] ** 2)
 
 
-def tighten(cell: Cell, spindle: Spindle) -> tuple[str, float]:
-    """Drive the screw: to a torque, within a range of angles.
+def close(cell: Cell, x: float, y: float) -> None:
+    """Put the cover on the rim, and let it go if it rests there."""
+    cell.arm.set_payload(COVER_MASS)
+    feel(cell, x, y, COVER_HOVER)
+    cell.arm.move_until_contact(z=-0.01, force=FEEL_FORCE, speed=FEEL_SPEED)
+    if abs(cell.sensors.tool_pose().z - COVER_SEATED_Z) > SEATED_WITHIN:
+        drop(cell, COVER_DROP_Z, "cover not seated")
+    release(cell)
+
+
+def take_screwdriver(station: Station) -> None:
+    """Take the screwdriver out of its rack."""
+    if not station.inputs.has_driver():
+        raise RejectError("no screwdriver")
+    fetch(station.cell, RACK, DRIVER_Z, DRIVER_GRIP, "no screwdriver")
+    station.cell.arm.set_payload(DRIVER_MASS, (0.0, 0.0, DRIVER_CENTRE))
+
+
+def put_back(station: Station) -> None:
+    """Put the screwdriver into its rack."""
+    cell = station.cell
+    cell.arm.move_to(down(*RACK, HIGH))
+    cell.arm.move_to(down(*RACK, DRIVER_Z))
+    release(cell)
+    if not station.inputs.has_driver():
+        raise RejectError("screwdriver not back")
+
+
+def tighten(cell: Cell, driver: Screwdriver, report: Report, x: float, y: float) -> str:
+    """Drive a screw: to a torque, within a range of angles, while the nose is pressed on the cover.
 
     Returns:
-        "good", "screw crossed" or "screw stripped", and the angle, rad.
+        What is wrong with it; nothing if it is tight.
     """
-    spindle.start(SCREW_SPEED)
-    while spindle.torque() < TIGHT and spindle.angle() < SLOW_FROM:
+    feel(cell, x, y, NOSE_HOVER)
+    cell.arm.move_until_contact(z=-0.01, force=FEEL_FORCE, speed=FEEL_SPEED)
+    press = cell.arm.start_push(x=0.0, y=0.0, z=-PRESS_FORCE, seconds=PRESS_TIME)
+    driver.start(FAST)
+    while driver.torque() < TIGHT and driver.angle() < SLOW_FROM:
         cell.wait(0.01)
-    spindle.start(SCREW_SLOW)
-    while spindle.torque() < TIGHT and spindle.angle() < MOST_ANGLE:
+    driver.start(SLOW)
+    while driver.torque() < TIGHT and driver.angle() < MOST_ANGLE:
         cell.wait(0.01)
-    spindle.stop()
-    angle = spindle.angle()
-    if angle < LEAST_ANGLE:
-        return "screw crossed", angle
-    return ("screw stripped" if angle >= MOST_ANGLE else "good"), angle
-
-
-def drop(cell: Cell) -> None:
-    """Drop the pin into the chute."""
-    cell.arm.move_to(down(HOLE_X, HOLE_Y, HIGH))
-    cell.arm.move_to(down(CHUTE_X, CHUTE_Y, HIGH))
-    cell.gripper.command(0, wait=True)
+    driver.stop()
+    press.stop()
+    report.angles.append(driver.angle())
+    cell.arm.move_to(down(x, y, HIGH))
+    if driver.angle() < LEAST_ANGLE:
+        return "screw crossed"
+    return "screw stripped" if driver.angle() >= MOST_ANGLE else ""

@@ -332,7 +332,7 @@ class Arm:
         start, rotation = steps.tool()
         self.kinematics.follow(self._setpoint, Line(start, rotation, shift, np.zeros(3)))
         motion = UntilContact(steps, shift, speed, force, self._measured_force, TICK)
-        self._carry_out(motion)
+        self._begin(motion).wait()
         return motion.touched
 
     def push(
@@ -361,6 +361,19 @@ class Arm:
             PathLost: a limit was met on the way; the arm has braked to rest.
             ProtectiveStop: something resisted too hard.
         """
+        self.start_push(x=x, y=y, z=z, seconds=seconds, travel=travel, speed=speed).wait()
+
+    def start_push(
+        self,
+        *,
+        x: float | None = None,
+        y: float | None = None,
+        z: float | None = None,
+        seconds: float,
+        travel: float = 0.02,
+        speed: float = 0.02,
+    ) -> Move:
+        """Start the same motion as `push`, and return at once; to brake it ends the push."""
         forces = (x, y, z)
         if forces == (None, None, None):
             raise BadArgument("Expected a force along x, y or z but got none")
@@ -368,7 +381,7 @@ class Arm:
         _check_positive("seconds", seconds)
         _check_positive("travel", travel)
         steps = self._compliant_steps(speed)
-        self._carry_out(Push(steps, forces, speed, travel, seconds, self._measured_force, TICK))
+        return self._begin(Push(steps, forces, speed, travel, seconds, self._measured_force, TICK))
 
     def _compliant_steps(self, speed: float) -> JointSteps:
         """Return the joints' steps, for a motion that the force sensor controls."""
@@ -380,9 +393,9 @@ class Arm:
         self._steps = JointSteps(self.kinematics, self._model, self._setpoint, STEPS_PER_TICK, PHYSICS_STEP)
         return self._steps
 
-    def _carry_out(self, motion: OnlineMotion) -> None:
+    def _begin(self, motion: OnlineMotion) -> Move:
         self._online, self._move = motion, Move(self)
-        self._move.wait()
+        return self._move
 
     def _measured_force(self) -> Array:
         """Return the force on the tool by the zeroed sensor: base frame, N, shape (3,)."""
@@ -452,6 +465,8 @@ class Arm:
         """Begin to brake a motion; see `Move.brake`."""
         if self._tracking is not None:
             self._tracking.stop_move()
+        elif isinstance(self._online, Push):
+            self._online.stop()
         elif self._move is move and self._streamed:
             self._load(braked(self._motion, self._streamed, PHYSICS_STEP, self._model.limits))
         elif self._move is move:  # nothing of it has been carried out

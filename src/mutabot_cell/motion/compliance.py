@@ -124,6 +124,10 @@ class Push:
         self._speed, self._travel, self._feel = speed, travel, feel
         self._left = round(seconds / period)
 
+    def stop(self) -> None:
+        """Bring the tool to rest from the coming tick on."""
+        self._left = 0
+
     def tick(self) -> Motion | None:
         """Return the setpoints of the coming tick; see `OnlineMotion`."""
         self._left -= 1

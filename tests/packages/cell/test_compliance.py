@@ -129,6 +129,34 @@ def test_a_push_ends_when_the_tool_has_gone_its_travel() -> None:
     assert cell.time - start < 2.0
 
 
+def test_a_push_that_does_not_block_is_the_one_that_does() -> None:
+    blocking, other = over_conveyor(), over_conveyor()
+    blocking.arm.push(z=-10.0, seconds=2.0, travel=0.1, speed=0.05)
+    move = other.arm.start_push(z=-10.0, seconds=2.0, travel=0.1, speed=0.05)
+    assert not move.done
+    move.wait()
+    assert move.done
+    assert blocking.truth.world() == other.truth.world()
+
+
+def test_a_push_that_is_stopped_brakes_and_the_arm_is_free_for_another_motion() -> None:
+    cell = over_conveyor()
+    move = cell.arm.start_push(z=-200.0, seconds=5.0, travel=0.1, speed=0.05)
+    cell.wait(0.2)
+    assert cell.truth.tool_speed() > 0.04
+    with pytest.raises(MotionRefused, match="under way"):
+        cell.arm.move_by(z=0.01)
+    start = cell.time
+    move.stop()
+    assert move.done
+    assert cell.time - start < 0.05 / ACCELERATION + 0.5
+    resting = cell.truth.tool_position()
+    cell.wait(0.5)
+    now = cell.truth.tool_position()
+    assert math.dist((now.x, now.y, now.z), (resting.x, resting.y, resting.z)) < 5e-4
+    cell.arm.move_by(z=0.01)
+
+
 def test_along_an_axis_with_0_newton_the_tool_gives_way_and_along_the_others_it_stays() -> None:
     cell = over_conveyor()
     gripper = cell.simulation.model.body("gripper").id

@@ -1,4 +1,4 @@
-"""What a careful suite asks: is the pin in the hole, is the screw tight, are faults noticed?"""
+"""What a careful suite asks: are pin and cover in their places, are the screws tight, are faults noticed?"""
 
 from __future__ import annotations
 
@@ -6,26 +6,23 @@ from collections.abc import Callable
 
 import assembling
 import pytest
-from station import TABLE_TOP, Station
+from station import RIM, TABLE_TOP, Station
 
-DEEP = 0.003
-"""A pin is in if its lower end is so near to the ground of the hole, m."""
+NEAR = 0.003
+"""Pin and cover are in their places if they are so near, m."""
 LEAST_TORQUE = 1.4
-"""That the screw must have taken, Nm."""
+"""That each screw must have taken, Nm."""
 
 
-def test_the_pin_is_in_and_the_screw_is_tight(station_with: Callable[..., Station]) -> None:
-    station = station_with()
-    assert assembling.run(station).result == "good"
-    assert station.cell.truth.box_position("pin").z < TABLE_TOP + DEEP
-    assert station.spindle.tightest > LEAST_TORQUE
-    assert not station.lamp.is_on
-
-
-def test_a_block_that_lies_off_gets_its_pin(station_with: Callable[..., Station]) -> None:
+def test_pin_and_cover_are_in_and_the_screws_are_tight(station_with: Callable[..., Station]) -> None:
     station = station_with(off=(0.001, -0.001))
-    assert assembling.run(station).result == "good"
-    assert station.cell.truth.box_position("pin").z < TABLE_TOP + DEEP
+    report = assembling.run(station)
+    assert report.result == "good"
+    assert len(report.angles) == 4
+    assert station.cell.truth.box_position("pin").z < TABLE_TOP + NEAR
+    assert station.cell.truth.box_position("cover").z < TABLE_TOP + RIM + NEAR
+    assert min(screw.tightest for screw in station.driver.screws) > LEAST_TORQUE
+    assert not station.lamp.is_on
 
 
 @pytest.mark.parametrize(("screw", "result"), [("crossed", "screw crossed"), ("stripped", "screw stripped")])
@@ -35,5 +32,8 @@ def test_a_bad_screw_is_reported(station_with: Callable[..., Station], screw: st
     assert station.lamp.is_on
 
 
-def test_a_missing_block_is_reported(station_with: Callable[..., Station]) -> None:
-    assert assembling.run(station_with(block=False)).result == "no block"
+@pytest.mark.parametrize(
+    ("missing", "result"), [("block", "no block"), ("cover", "no cover"), ("driver", "no screwdriver")]
+)
+def test_what_is_missing_is_reported(station_with: Callable[..., Station], missing: str, result: str) -> None:
+    assert assembling.run(station_with(**{missing: False})).result == result

@@ -8,7 +8,7 @@ import assembling
 from station import Station
 
 
-def test_a_block_is_reported_good(station_with: Callable[..., Station]) -> None:
+def test_a_housing_is_reported_good(station_with: Callable[..., Station]) -> None:
     assert assembling.run(station_with()).result == "good"
 
 
