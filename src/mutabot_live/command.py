@@ -16,7 +16,7 @@ from typing import Annotated, Any, Self
 import typer
 
 from mutabot.api.processes import Request
-from mutabot.api.reports import CampaignRun, CommandContext, Progress, ReportPages
+from mutabot.api.reports import CampaignRun, CommandContext, LiveReport, Progress
 
 from .pages import Pages
 from .server import LiveFeed, Server
@@ -138,7 +138,7 @@ class _FeedProgress:
         """Count one more step."""
         if self.progress is not None:
             self.progress.advance(line)
-        self._line = ReportPages.legible(line or "")
+        self._line = LiveReport.legible(line or "")
         self._done += 1
         self.steps += 1
         self.tell()
@@ -152,11 +152,11 @@ class _FeedProgress:
         """Show a note to the user."""
         if self.progress is not None:
             self.progress.note(text)
-        self._feed.note(ReportPages.legible(text))
+        self._feed.note(LiveReport.legible(text))
 
     def end(self, how: str) -> None:
         """Note that the campaign has ended."""
-        self.ended = ReportPages.legible(how)
+        self.ended = LiveReport.legible(how)
         self.steps += 1
         self.pages.look_at_once()
         self.tell()

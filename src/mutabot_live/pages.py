@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 
-from mutabot.api.reports import ReportPages
+from mutabot.api.reports import LiveReport
 
 #: seconds between two looks into the journal, at least; and how many times as long as one takes
 _LEAST, _TIMES = 1.0, 20.0
@@ -46,7 +46,7 @@ class Pages:
     """
 
     def __init__(self, journal: Path, name: str, version: Callable[[], int]) -> None:
-        self._report, self._version = ReportPages(journal, name), version
+        self._report, self._version = LiveReport(journal, name), version
         self._assets = dict(_assets())
         self._lock = threading.Lock()
         self._read = 0
@@ -91,7 +91,7 @@ def _script(data: bytes) -> Page:
 
 
 def _assets() -> Iterator[tuple[str, Page]]:
-    found = ReportPages.assets()
+    found = LiveReport.assets()
     own = files("mutabot_live").joinpath("assets").iterdir()
     for name, data in (*found.items(), *((entry.name, entry.read_bytes()) for entry in own)):
         kind = _KINDS.get(Path(name).suffix)

@@ -73,7 +73,7 @@ def film(
     Raises UsageError if the test does not judge the mutant, as the program is now.
     """
     mutant, baseline = campaign.current(result.mutant), campaign.baseline
-    judges = baseline.tests_judging(round, mutant)
+    judges = baseline.tests_from_first_reach(round, mutant)
     if test not in judges:
         listed = ", ".join(judges[:3]) or "no test does"
         raise UsageError(f"{test} does not judge the mutant in round {round + 1}; these do: {listed}")

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from html import escape
 from typing import Any
 
-from mutabot.api.reports import RecordedPaths, ReportPages, Results
+from mutabot.api.reports import LiveReport, RecordedPaths, Results
 
 from .ladders import WorldEnd, WorldLadder, combined_ladders
 
@@ -136,4 +136,4 @@ def _name(ladder: WorldLadder) -> str:
 
 
 def _text(text: str) -> str:
-    return escape(ReportPages.legible(text))
+    return escape(LiveReport.legible(text))

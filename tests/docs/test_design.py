@@ -85,7 +85,7 @@ CONFIGURED = """
 REPORT, PLAN = "runtime.test_hooks.ForkedRun._report", "journal.journal.Journal.set_plan"
 #: travel -> the engine of its campaign, and what is called only by the processes that go it, in their order
 TRAVELS = {
-    "A call through a mutant": ("replay", ["runtime.interception.active_mutant.ActiveMutant.apply"]),
+    "A call through a mutant": ("replay", ["runtime.interception.active_mutant.MutatedSite.apply"]),
     "A fork": ("fork", [REPORT, "runtime.isolation.fork_parent.ForkParent._take_token"]),
     "An outcome on its way to the screen": ("fork", [REPORT, PLAN]),
     "From a vocabulary's line to a mutant": ("fork", [PLAN]),

@@ -268,5 +268,5 @@ def test_moments_are_for_operators_that_have_some(has_moments: bool, tmp_path: P
     reasons = {omission["reason"] for omission in found["left_out"]}
     unknown = {"how often a test reaches it is not known, so that no moment can be drawn"}
     assert reasons == (unknown if has_moments else set())
-    is_told = "mutants of world act wherever they are reached: moments are those of calls" in done.stderr
+    is_told = "mutants of world ignore it: only mutants of calls have moments" in done.stderr
     assert is_told is not has_moments

@@ -23,7 +23,7 @@ from mutabot.model.events import SiteSeen
 from mutabot.model.job import Job
 from mutabot.model.mutant import Place
 from mutabot.model.operation import Form
-from mutabot.runtime.interception.active_mutant import ActiveMutant
+from mutabot.runtime.interception.active_mutant import MutatedSite
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.session import Session
 from mutabot.runtime.targets.target import Messages, MiddlewareControls, Where
@@ -229,7 +229,7 @@ class ClientStage:
         *,
         coming: Any = (),
         oracle_nodes: tuple[str, ...] = (),
-    ) -> tuple[Any, Client, ActiveMutant]:
+    ) -> tuple[Any, Client, MutatedSite]:
         """Run a program as the original to find its only site, then as a mutant there.
 
         Returns what it returns or raises, the client library, and the mutant at work.
@@ -250,7 +250,7 @@ class ClientStage:
         *,
         coming: Any = (),
         oracle_nodes: tuple[str, ...] = (),
-    ) -> tuple[Any, Client, ActiveMutant]:
+    ) -> tuple[Any, Client, MutatedSite]:
         """The same for a program that has run as the original."""
         seen = [line for line in self.pipe.lines if isinstance(line, SiteSeen)][-1]
         site = Site(seen.span, "text", 1, Role.PROGRAM)

@@ -23,7 +23,7 @@ from mutabot.model.activation import Activation
 from mutabot.model.events import Event, SiteSeen
 from mutabot.model.job import Job
 from mutabot.model.mutant import Place
-from mutabot.runtime.interception.active_mutant import ActiveMutant
+from mutabot.runtime.interception.active_mutant import MutatedSite
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.program_text import compiling
 from mutabot.runtime.session import Session
@@ -135,7 +135,7 @@ class Stage:
         index: int | str = 0,
         idle: Any = None,
         variant: str = "",
-    ) -> tuple[Any, ActiveMutant]:
+    ) -> tuple[Any, MutatedSite]:
         """Run the program once as the original to find sites, then as a mutant at the site ``index``.
 
         ``index`` counts the sites in the order in which the run came to them, or is the operation of a site:
@@ -169,7 +169,7 @@ def forget(step: Any) -> None:
 
 def take_away(session: Session) -> None:
     """Let nothing of a session act any more: only tests have several in one process."""
-    session.passing.meter = None
+    session.dispatcher.meter = None
     sites: Any = session.call_sites
     sites.stands, sites.hands = (lambda site, found, receiver, frame: found), None
     for step in (sites, session.text, session.returns):

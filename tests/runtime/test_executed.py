@@ -162,9 +162,9 @@ def test_tests_from_the_first_on_that_reads_the_program_may_have_its_text(
     names = [test.rpartition("::")[2] for test in baseline.readers(0, "mission.py")]
     assert names == ["test_reads_the_program", "test_left_again"]
     assert not baseline.is_read("robot.py")
-    (note,) = (line for line in told.lines if "text of mission.py" in line)
+    (note,) = (line for line in told.lines if "may read mission.py as text" in line)
     assert "from tests/test_mission.py::test_reads_the_program on" in note
-    assert note.endswith(": what they do with it has no mutants of calls")
+    assert note.endswith(": no mutants of calls are made of what they do with it")
 
 
 def test_of_tests_that_start_processes_nothing_is_known(executed: dict[str, set[str]]) -> None:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from mutabot.errors import UsageError as UsageError
     from mutabot.evidence.paths import RecordedPaths as RecordedPaths
     from mutabot.model.outcome import Verdict as Verdict
-    from mutabot.report.html.pages import ReportPages as ReportPages
+    from mutabot.report.html.pages import LiveReport as LiveReport
     from mutabot.results.results import MutantResult as MutantResult
     from mutabot.results.results import Results as Results
 
@@ -25,7 +25,7 @@ _HOMES = {
     "mutabot.errors": ("MutabotError", "UsageError"),
     "mutabot.evidence.paths": ("RecordedPaths",),
     "mutabot.model.outcome": ("Verdict",),
-    "mutabot.report.html.pages": ("ReportPages",),
+    "mutabot.report.html.pages": ("LiveReport",),
     "mutabot.results.results": ("MutantResult", "Results"),
 }
 __getattr__ = lazily(__name__, _HOMES)

@@ -28,8 +28,8 @@ MutantRun = tuple[Mutant, int]
 RunId = tuple[str, int]
 #: seconds by the clock on the wall that any test gets at least: the mutant may wait for what comes at last
 WAITING = 60.0
-#: seconds of processor time that any test gets beside a multiple of the baseline's; and what so many calls of
-#: operations take to be looked at as no poll loop makes if its end is near
+#: seconds of processor time that any test gets beside a multiple of the baseline's; and for mutabot's
+#: own work on the calls of a program that polls
 SPARE, SPARE_FOR_CALLS = 2.0, 8.0
 #: seconds of simulated time likewise
 SPARE_SIMULATED = 10.0

@@ -107,7 +107,7 @@ def _affordable(
     rounds: set[int] = set()
     for number, outcome in enumerate(left):
         is_fresh, suite = outcome.engine == REPLAY, baseline.suite(outcome.round)
-        tests = suite if is_fresh else baseline.tests_judging(outcome.round, mutants[outcome.mutant])
+        tests = suite if is_fresh else baseline.tests_from_first_reach(outcome.round, mutants[outcome.mutant])
         seconds -= baseline.seconds(outcome.round, tests) + (baseline.startup if is_fresh else 0.0)
         if not is_fresh and outcome.round not in rounds:  # the original runs beside them
             seconds -= baseline.seconds(outcome.round, suite)

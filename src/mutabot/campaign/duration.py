@@ -56,7 +56,9 @@ def duration_of(campaign: Campaign, mutants: Sequence[Mutant]) -> Duration:
             if request.forks:
                 seconds += _FORK + _SHARE * _wall(campaign, round, baseline.tests_reaching(round, mutant))
             else:
-                seconds += baseline.startup + _wall(campaign, round, baseline.tests_judging(round, mutant))
+                seconds += baseline.startup + _wall(
+                    campaign, round, baseline.tests_from_first_reach(round, mutant)
+                )
         seconds += _SUITES * (baseline.startup + _wall(campaign, round, baseline.suite(round)))
     is_alone = any(baseline.is_exclusive(round) for round in range(request.rounds))
     jobs = 1 if is_alone else request.jobs

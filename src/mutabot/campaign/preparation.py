@@ -155,7 +155,7 @@ def _ignored(request: Request, plan: Plan) -> Iterator[Remark]:
     without = {rule.name for rule in rules_of(request.families) if not rule.has_moments}
     others = sorted({mutant.family for mutant in mutants if mutant.operator in without})
     if request.moments != (None,) and others:
-        text = f"mutants of {' and '.join(others)} act wherever they are reached: moments are those of calls"
+        text = f"mutants of {' and '.join(others)} ignore it: only mutants of calls have moments"
         yield Remark(configuration.file or "configuration", "when", text)
     firsts = [ladder[0] for ladder in split_ladders(mutants)[1].values()]
     kinds = {

@@ -168,14 +168,14 @@ def without_tests(baseline: Baseline, mutant: Mutant, round: int) -> Outcome:
     return Outcome(mutant.id, round, Verdict.NOT_COVERED, message=_NOT_REACHED, executed={})
 
 
-def judged(campaign: Campaign, run: Run) -> Outcome:
+def judge_safely(campaign: Campaign, run: Run) -> Outcome:
     """Return the outcome of a run; its recordings are kept as far as they differ from the original's.
 
     What goes wrong while it is judged is an error of this mutant, and not the end of the campaign. An outcome
     with ``beside`` was ended by a limit of wall clock on a busy machine: it is to be run once more alone.
     """
     try:
-        outcome = _judged(campaign, run)
+        outcome = _with_recordings(campaign, run)
     except Exception as error:
         return not_judged(run.mutant, run.round, error, run.engine)
     beside = f"{in_words(outcome)}; {run.hindered}" if run.hindered is not None else None
@@ -192,7 +192,7 @@ def not_judged(mutant: Mutant, round: int, error: Exception, engine: str) -> Out
     return Outcome(mutant.id, round, Verdict.ERROR, message=message, engine=engine)
 
 
-def _judged(campaign: Campaign, run: Run) -> Outcome:
+def _with_recordings(campaign: Campaign, run: Run) -> Outcome:
     outcome = judge(campaign, run)
     if campaign.evidence is None or outcome.verdict not in _RECORDED:
         return outcome

@@ -340,7 +340,7 @@ class Journal(JournalReader):
     # Writing
 
     def _put(self, table: str, *values: Any) -> None:
-        """Return a statement that adds a row, or replaces one of the same name where names are unique."""
+        """Insert a row, or replace the one with the same key."""
         self._write(f"INSERT OR REPLACE INTO {table} VALUES ({', '.join('?' * len(values))})", *values)
 
     def _write(self, statement: str, *values: Any) -> None:

@@ -1,1 +1,1 @@
-"""Languages of robot programs: one file each, ``front_end.py`` is the contract."""
+"""Languages of robot programs: Python, and the contract of those that packages bring (``front_end.py``)."""

@@ -126,7 +126,7 @@ class Call:
             the vocabulary names no such reading, and Unchanged if that has told nothing yet.
         idle: what the operation answers while the robot does nothing; None unless the operator has declared
             that it asks (``Need.IDLE``).
-        payload: what the door needs to perform the call; operators never look inside.
+        payload: what the adapter needs to perform the call; operators never look inside.
         away: why the operator left it as it is; empty if it does not say so.
         call_faults: what befalls it, with seconds where it takes some.
         cannot: why something cannot befall it here; empty if it can.

@@ -20,7 +20,7 @@ from typing import Any, TypeVar, Union, get_args, get_origin, get_type_hints
 
 T = TypeVar("T")
 Decoder = Callable[[Any], Any]
-#: what needs no look at what it is
+#: scalar types of JSON, which are passed on unchanged
 _PLAIN = frozenset({str, int, float, bool, type(None)})
 
 

@@ -251,7 +251,7 @@ class Mutant:
         variant: which of several mutants of the same operator here; empty if there is only one.
         description: one line that an engineer recognises.
         idle: for operators that ask, what the operation answers while the robot does nothing: a plain value,
-            or the data of ``idle.Idle``.
+            or the data of ``model.job.Idle``.
         magnitude: how big its fault is, in ``unit``; None for a fault without a size.
         unit: the unit of the magnitude; None where it has none.
         has_sizes: whether the same fault is planted in several magnitudes, of which a threshold is sought.

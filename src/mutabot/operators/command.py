@@ -95,7 +95,7 @@ class FatalFault(BaseException):
 
 
 class Identity(CommandOperator):
-    """Control: proceeds unchanged, so it must survive."""
+    """Control: proceeds unchanged, so its verdict must be *no effect*."""
 
     name = "identity"
     family = CONTROL

@@ -1,1 +1,1 @@
-"""Reports: one file per format, which only reads the journal."""
+"""Reports on results: terminal, pages, and one file for each other format."""

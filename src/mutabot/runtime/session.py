@@ -39,7 +39,7 @@ if TYPE_CHECKING:  # processes below the tests fork for nobody
     from mutabot.model.job import Job
     from mutabot.model.quantity import Value
     from mutabot.runtime.event_file import EventWriter
-    from mutabot.runtime.interception.active_mutant import ActiveMutant
+    from mutabot.runtime.interception.active_mutant import MutatedSite
     from mutabot.runtime.isolation.files import PrivateFiles
     from mutabot.runtime.isolation.fork_parent import ForkParent
     from mutabot.runtime.program_text.returns import Returns
@@ -57,7 +57,7 @@ class Session:
         recorder: traces; always kept, since survivors are compared with the original.
         callables, messages: what stands around the vocabulary's targets; no messages where none is asked for.
         targets: those that there are of the two.
-        passing: the way of the program's calls.
+        dispatcher: the way of the program's calls.
         inspection: what is wrong with the vocabulary.
         is_fork: whether this process was forked to be its mutant.
         text: the program text, if it is instrumented.
@@ -91,9 +91,9 @@ class Session:
         self.callables = Callables(self.inspection.target_is_wrong)
         self.messages: Messages | None = None
         self.targets: list[Callables | Messages] = [self.callables]
-        self.passing = Dispatcher(locator, self.recorder, self.instances, self.along, self._raised)
-        self.passing.oracle_nodes = job.oracle_nodes
-        self.passing.on_end = self.inspection.note if job.inspect else None
+        self.dispatcher = Dispatcher(locator, self.recorder, self.instances, self.along, self._raised)
+        self.dispatcher.oracle_nodes = job.oracle_nodes
+        self.dispatcher.on_end = self.inspection.note if job.inspect else None
         self.is_fork = False
         self.text: SessionText | None = None
         self.returns: Returns | None = None
@@ -133,7 +133,7 @@ class Session:
         self._find_answer_readers()
         if self.job.record or self.job.serving is not None:
             # what the program does while it is imported counts for every test that comes after
-            self.passing.meter = Meter()
+            self.dispatcher.meter = Meter()
             is_original = self.job.mutant is None
             self.recorder.answers = Answers(handles_of(vocabulary)) if is_original else None
         if self.job.mutant is not None:
@@ -166,7 +166,7 @@ class Session:
         self.call_targets = CallTargets(called, self.callables, self.locator, self._sees_itself)
         self._report_replacements()
         names = {adapter.operation.last_name for adapter in called}
-        handing = PassedCallables(self.call_targets, self.passing.given)
+        handing = PassedCallables(self.call_targets, self.dispatcher.given)
         self.call_sites = CallSites(names, self.locator.role, self.call_targets, self._sees_itself, handing)
         self.call_sites.install()
 
@@ -200,7 +200,7 @@ class Session:
     def _on_message(self, name: str, message: Any) -> None:
         if self.mutant is not None:
             self.mutant.heard(name, message)
-        self.passing.refused.heard(name, message)
+        self.dispatcher.refused.heard(name, message)
         for adapter in self._telling:
             adapter.observe_message(name, message)
 
@@ -215,19 +215,19 @@ class Session:
         if self.guards is not None:
             adapter.guard = OperationGuard(self.guards, Adapter(operation, readings, is_wrong, *parts))
         self._adapters.append(adapter)
-        adapter.handler = self.passing.handler(adapter)
+        adapter.handler = self.dispatcher.handler(adapter)
         self._sees_itself.add(adapter.handler)
         return adapter.handler
 
     @property
-    def mutant(self) -> ActiveMutant | None:
+    def mutant(self) -> MutatedSite | None:
         """The active mutant of calls; None for the original, and for other mutants."""
-        return self.passing.mutant
+        return self.dispatcher.mutant
 
     @property
     def meter(self) -> Meter | None:
         """What the running test has used; None between tests."""
-        return self.passing.meter
+        return self.dispatcher.meter
 
     @property
     def evidence(self) -> Evidence:
@@ -254,7 +254,7 @@ class Session:
         activation = self.fault.activation
         # a mutant of calls meets its own by itself
         is_asked = activation is None or activation.reference != CALL_FAULT
-        self.passing.on_reach = self.reached.call if is_asked and self.reached.asks_calls else None
+        self.dispatcher.on_reach = self.reached.call if is_asked and self.reached.asks_calls else None
 
     def _reach(self, keys: list[Key], number: int | None) -> None:
         """Note keys that the running test reaches, at a call of this number among those of its site."""
@@ -268,7 +268,7 @@ class Session:
             self.fault.reach(key)
 
     def grow(self, parent: ForkParent) -> None:
-        """Run the original from now on, and fork a process for each of the parent's mutants."""
+        """Become a fork parent: run the original, and fork where a mutant of the parent first differs."""
         self.fork_parent = parent
         self._watch_text()
         self._watch(parent.keys)
@@ -297,7 +297,7 @@ class Session:
         self.job, self.pipe = job, pipe
         self.inspection.is_asked = job.inspect
         self._find_answer_readers()
-        self.passing.on_end = self.inspection.note if job.inspect else None
+        self.dispatcher.on_end = self.inspection.note if job.inspect else None
         self._report_replacements()
         if self.text is not None:
             self.text.pipe = pipe
@@ -312,17 +312,17 @@ class Session:
                 self.pipe.send(Called(*call))
         self.test = test
         self.call_targets.note_modules(self.call_sites.loaded)
-        self.passing.meter = Meter(self.job.simulated.get(test), self.job.spare)
+        self.dispatcher.meter = Meter(self.job.simulated.get(test), self.job.spare)
         is_baseline = self.job.record and self.job.mutant is None and self.job.forking is None
         self.recorder.answers = Answers(handles_of(self.job.vocabulary)) if is_baseline else None
         self.recorder.start()
         self.recorder.clock = recorder.now if self.job.evidence else None
         self.instances.start(fixtures)
-        self.passing.calls.clear()
+        self.dispatcher.calls.clear()
         self.noted.clear()
-        self.passing.on_live = self._note if is_baseline else None
-        self.passing.refused.on_refused = partial(self._note, is_refused=True) if is_baseline else None
-        self.passing.refused.start(self.job.refused.get(test, ()))
+        self.dispatcher.on_live = self._note if is_baseline else None
+        self.dispatcher.refused.on_refused = partial(self._note, is_refused=True) if is_baseline else None
+        self.dispatcher.refused.start(self.job.refused.get(test, ()))
         self.along.start(self.job.moments.get(test, 0))
         if self.returns is not None:
             self.returns.start()
@@ -340,7 +340,7 @@ class Session:
 
     def change_file(self, path: str, content: bytes) -> None:
         """Change a file of the project for this process; see ``FaultContext.change_file``."""
-        self.passing.refused.changed[path] = content
+        self.dispatcher.refused.changed[path] = content
         if self.files is not None:  # else this process is below one that has changed it
             self.files.change(path, content)
 
@@ -377,7 +377,7 @@ class Session:
 
     def end_test(self) -> None:
         """End the test, after its fixtures."""
-        self.passing.meter = None
+        self.dispatcher.meter = None
         if self.text is not None:
             if self.fork_parent is not None:
                 self.fork_parent.report_undiverged(self.text.alternatives.hits)
@@ -395,12 +395,12 @@ class Session:
         return reading
 
     def _read_probes(self, *, along: bool = False) -> Reading:
-        meter, self.passing.meter = self.meter, None  # probes are no operations of the program's
+        meter, self.dispatcher.meter = self.meter, None  # probes are no operations of the program's
         try:
             with Untracked(self.returns):
                 return self._along() if along else take(self.job.vocabulary.probes, self.instances)
         finally:
-            self.passing.meter = meter
+            self.dispatcher.meter = meter
 
     def _along(self) -> Reading:
         """Read the probes along the way, in program files as the original.
@@ -452,7 +452,7 @@ class Session:
 
     def _raised(self, error: BaseException, made: SiteCall) -> None:
         names = self.refusals_of(made.call.operation)
-        refused = self.passing.refused
+        refused = self.dispatcher.refused
         if not is_refusal(error, names):
             return
         if refused.on_refused is not None:
@@ -498,7 +498,7 @@ class Session:
         self.pipe.send(Acted(self.test))
 
     def _simulated(self) -> float | None:
-        meter = self.passing.meter
+        meter = self.dispatcher.meter
         return meter.simulated if meter is not None else None
 
     def in_mutated_call(self, began: bool) -> None:

@@ -105,7 +105,7 @@ def binomial_at_most(count: int, of: int, share: float) -> float:
 _NOTHING_THERE = frozenset({Verdict.NO_EFFECT, Verdict.INVALID})
 
 
-class Above(StrEnum):
+class NextLarger(StrEnum):
     """The kind of result above the largest magnitude that was missed."""
 
     NOTICED = "noticed"
@@ -130,7 +130,7 @@ class LadderRound:
     number: int
     outcomes: Mapping[float, Outcome]
     bracket: Bracket
-    above: Above
+    above: NextLarger
 
     @classmethod
     def of(cls, number: int, sizes: Sequence[float], outcomes: Mapping[float, Outcome]) -> LadderRound:
@@ -153,7 +153,7 @@ class LadderRound:
         if not self.bracket.is_known:
             verdicts = {outcome.verdict for outcome in self.outcomes.values()}
             return next((text for end, text in _WORDS.items() if end in verdicts), "says nothing")
-        if self.above is Above.OPEN:
+        if self.above is NextLarger.OPEN:
             return "is not judged to the end of the ladder"
         return ""
 
@@ -171,17 +171,17 @@ class LadderRound:
         return (outcome.by or By.EXCEPTION).value if outcome.verdict is Verdict.KILLED else "timeout"
 
 
-def _above(bracket: Bracket, sizes: Sequence[float], outcomes: Mapping[float, Outcome]) -> Above:
+def _above(bracket: Bracket, sizes: Sequence[float], outcomes: Mapping[float, Outcome]) -> NextLarger:
     if bracket.high is not None:
-        return Above.NOTICED
+        return NextLarger.NOTICED
     above = [size for size in sizes if bracket.low is None or size > bracket.low]
     if not above:
-        return Above.LARGEST
+        return NextLarger.LARGEST
     if bracket.refused is not None:
-        return Above.REFUSED
+        return NextLarger.REFUSED
     # the next one tells: what changes nothing there is beyond what the robot takes
     ends = {outcomes[size].verdict for size in above if size in outcomes}
-    return Above.NO_EFFECT if above[0] in outcomes and ends <= _NOTHING_THERE else Above.OPEN
+    return NextLarger.NO_EFFECT if above[0] in outcomes and ends <= _NOTHING_THERE else NextLarger.OPEN
 
 
 #: why nothing is known of a round, the worst first

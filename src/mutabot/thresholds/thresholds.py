@@ -16,7 +16,7 @@ from mutabot.model import Outcome, Verdict
 from mutabot.model.outcome import numbers_text
 from mutabot.thresholds.brackets import MagnitudeResult, seen
 from mutabot.thresholds.demands import Demand, is_at_least, is_same
-from mutabot.thresholds.ladders import Above, Ladder, LadderRound, ladders_of, looseness
+from mutabot.thresholds.ladders import Ladder, LadderRound, NextLarger, ladders_of, looseness
 
 if TYPE_CHECKING:
     from .ladders import GradedResults
@@ -95,9 +95,9 @@ def _never(ladder: Ladder, ladder_round: LadderRound) -> str:
         return "no test reaches it"
     missed = f"not noticed up to {_text(ladder, low)}" if low is not None else ""
     above = ""
-    if ladder_round.above is Above.REFUSED and ladder_round.bracket.refused is not None:
+    if ladder_round.above is NextLarger.REFUSED and ladder_round.bracket.refused is not None:
         above = f"refused from {_text(ladder, ladder_round.bracket.refused)}"
-    elif ladder_round.above is Above.NO_EFFECT:
+    elif ladder_round.above is NextLarger.NO_EFFECT:
         above = "without effect above"
     return ", ".join(part for part in (missed, above) if part)
 
@@ -178,9 +178,11 @@ def _in_all_rounds(ladder: Ladder) -> str:
         return unreached
     if math.isfinite(ladder.all_from):
         return every
-    if Above.NOTICED in above:
+    if NextLarger.NOTICED in above:
         return some
-    return accepted if Above.REFUSED in above else effective if Above.NO_EFFECT in above else largest
+    return (
+        accepted if NextLarger.REFUSED in above else effective if NextLarger.NO_EFFECT in above else largest
+    )
 
 
 def thresholds_of(results: GradedResults) -> Thresholds:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pickle
 
 from mutabot.campaign.baseline.baseline import observation
-from mutabot.campaign.engines.forks import _ForkOutcome
+from mutabot.campaign.engines.forks import _RunInForks
 from mutabot.evidence.recording import Recording, to_text
 from mutabot.model.events import TestEnd
 from mutabot.model.mutant import Mutant, Place, Role, Site, Span
@@ -22,7 +22,7 @@ def ended() -> TestEnd:
 def test_what_waits_takes_less_than_a_third_of_itself() -> None:
     end = ended()
     seen = observation(end, {0: Place.of(MOVE)})
-    run = _ForkOutcome(MOVE, 0, (end.test,))
+    run = _RunInForks(MOVE, 0, (end.test,))
     run.hold(end, seen)
     assert not run.held
     assert sum(map(len, run.packed)) < len(pickle.dumps((end, seen))) / 3
@@ -33,7 +33,7 @@ def test_what_waits_takes_less_than_a_third_of_itself() -> None:
 def test_short_tests_are_packed_together_and_take_less_than_a_fifth() -> None:
     names = [f"tests/test_mission.py::test_{number}" for number in range(1010)]
     ends = [TestEnd(name, "passed", hits=1, recording=to_text(Recording())) for name in names]
-    run = _ForkOutcome(MOVE, 0, tuple(end.test for end in ends))
+    run = _RunInForks(MOVE, 0, tuple(end.test for end in ends))
     for end in ends:
         run.hold(end, observation(end, {}))
     assert len(run.packed) * 50 + len(run.held) == len(ends)
@@ -46,7 +46,7 @@ def test_short_tests_are_packed_together_and_take_less_than_a_fifth() -> None:
 
 def test_a_failed_test_has_nothing_to_compare() -> None:
     end = TestEnd("tests/test_mission.py::test_mission", "failed")
-    run = _ForkOutcome(MOVE, 0, (end.test,))
+    run = _RunInForks(MOVE, 0, (end.test,))
     run.hold(end, None)
     run.unpack()
     assert (run.own, run.observations) == ({end.test: end}, {})

@@ -70,14 +70,14 @@ def test_a_report_of_a_worker_that_cannot_be_used_is_an_error(
 def test_a_report_of_a_fork_that_cannot_be_used_is_an_error(
     project: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    ended = forks._ForkRound._fork_ended
+    ended = forks._ForkRound._test_of_fork_ended
 
     def broken(self: Any, line: Any) -> Any:
         if line.mutant == CHOSEN:
             raise RuntimeError("broken")
         return ended(self, line)
 
-    monkeypatch.setattr(forks._ForkRound, "_fork_ended", broken)
+    monkeypatch.setattr(forks._ForkRound, "_test_of_fork_ended", broken)
     found = run(project, engine="fork")
     assert [mutant for mutant, outcome in found.items() if outcome.verdict is Verdict.ERROR] == [CHOSEN]
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.runtime.interception.active_mutant import ActiveMutant
+from mutabot.runtime.interception.active_mutant import MutatedSite
 from tests.runtime.stage import Make
 
 pytestmark = pytest.mark.needs("catalogue")
@@ -85,7 +85,7 @@ def done(make_stage: Make, lines: str, operator: str, quantity: str | None = Non
     )
     stage = make_stage(ROBOT, f"{text}\n    return list(robot.LOG)\n", VOCABULARY)
     found, activation = stage.mutated(operator, quantity, **more)
-    assert isinstance(activation, ActiveMutant)
+    assert isinstance(activation, MutatedSite)
     return found, activation.evidence
 
 

@@ -235,7 +235,7 @@ def test_no_mutant_keeps_what_a_call_was_given(
 
 def become(session: Session, mutant: Mutant, *, is_fork: bool) -> None:
     """Begin a test as a mutant, or become one in it, as a fork does."""
-    session.passing.mutant, session.is_fork = None, False
+    session.dispatcher.mutant, session.is_fork = None, False
     session.fault, session.test = FaultRunner(session, lambda mutant: Random(1)), ""
     if not is_fork:
         session.fault.take_on(mutant, Activation.of_call(Place.of(mutant)))

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from mutabot.model.events import Problem
-from mutabot.runtime.interception.active_mutant import ActiveMutant
+from mutabot.runtime.interception.active_mutant import MutatedSite
 from tests.runtime.stage import Make, Stage
 
 ROBOT = """
@@ -254,7 +254,7 @@ def test_a_value_that_the_mode_does_not_mention_is_a_problem(make_stage: Make) -
     stage.run(stage.session())
     (problem,) = problems(stage)
     assert problem.key == "mode"
-    assert problem.text == "relative is perhaps, for which mode says nothing; it knows true, false"
+    assert problem.text == "relative is perhaps, which `mode` does not list; it lists true, false"
 
 
 def test_a_text_command_may_have_a_mode_that_another_argument_decides(make_stage: Make) -> None:
@@ -263,7 +263,7 @@ def test_a_text_command_may_have_a_mode_that_another_argument_decides(make_stage
     stage = make_stage(
         ROBOT, program("robot.write('x/1', False)"), vocabulary("write", "node", patterns=patterns)
     )
-    found: tuple[Any, ActiveMutant] = stage.mutated("reverse", "n")
+    found: tuple[Any, MutatedSite] = stage.mutated("reverse", "n")
     assert found[0] == [("x/-1", False, 1.0)]
     assert found[1].mutant.pattern == "x/{n:g} [value=false]"
     assert found[1].mutant.pattern_name == "x/{n} [value=false]"

@@ -126,7 +126,7 @@ def _extent(span: Span) -> Extent:
 class Baseline(Original):
     """What the baseline knows about the original.
 
-    Outside of this room it is changed by its methods alone: each stands for something that was learned.
+    Other packages change it by its methods alone: each stands for something that was learned.
 
     Attributes, beside those that all providers of faults know:
         reaching: (round, place) to the tests that reach it, fastest first.
@@ -191,7 +191,7 @@ class Baseline(Original):
         """Return the tests that reach a mutant, quickest first."""
         return self.reaching.get((round, Place.of(mutant)), ())
 
-    def tests_judging(self, round: int, mutant: Mutant) -> tuple[str, ...]:
+    def tests_from_first_reach(self, round: int, mutant: Mutant) -> tuple[str, ...]:
         """Return the tests that can notice a mutant, in their order: all from the first on that reaches it.
 
         Of a fault of which nothing is left after a test, those that reach it.

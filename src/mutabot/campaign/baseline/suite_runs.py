@@ -323,13 +323,13 @@ def _note_read_texts(baseline: Baseline, request: Request, progress: Progress) -
     read = [file for file in files if baseline.is_read(file)]
     reasons = ["each of its mutants changes the file, in a process of its own"] if baseline.texts else []
     if not {*request.families}.isdisjoint(OF_CALLS):
-        reasons.append("what they do with it has no mutants of calls")
+        reasons.append("no mutants of calls are made of what they do with it")
     if read and reasons:
         rounds = range(len(baseline.tests))
         first = next(
             tests[0] for tests in (baseline.readers(seed_round, read[0]) for seed_round in rounds) if tests
         )
-        progress.note(f"tests from {first} on may have the text of {in_short(read, 2)}: {'; '.join(reasons)}")
+        progress.note(f"tests from {first} on may read {in_short(read, 2)} as text: {'; '.join(reasons)}")
 
 
 def _refuse(result: Result, arguments: Sequence[str]) -> None:

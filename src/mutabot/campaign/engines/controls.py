@@ -1,7 +1,7 @@
 """Controls: mutants whose verdict is known, run to check that verdicts can be trusted.
 
-The identity changes nothing, so it must survive. The fatal mutant raises, so it must die, or make the suite
-wait for ever: turning a mutant on changes something.
+The identity changes nothing, so it must have no effect. The fatal mutant raises, so it must be killed, or
+make the suite wait for ever: turning a mutant on changes something.
 
 A control of replay that ends wrongly is tried again in a process that shares nothing. One that ends wrongly
 there too stops the campaign: its verdicts could not be believed. What a fork shows is overruled by nothing:
@@ -256,7 +256,7 @@ class ForkTrust:
         if not self._awaited:
             return False
         baseline = self._campaign.baseline
-        is_decided_there = outcome.test in baseline.tests_judging(outcome.round, mutant)[:1]
+        is_decided_there = outcome.test in baseline.tests_from_first_reach(outcome.round, mutant)[:1]
         return not outcome.verdict.is_killed or baseline.is_early(mutant) or not is_decided_there
 
     def believes(self, outcome: Outcome) -> bool:

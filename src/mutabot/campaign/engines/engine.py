@@ -97,7 +97,7 @@ def _counts(campaign: Campaign, mutant: Mutant, outcome: Outcome) -> bool:
         return True
     baseline, round = campaign.baseline, outcome.round
     reaching = set(baseline.tests_reaching(round, mutant))
-    first = takewhile(reaching.__contains__, baseline.tests_judging(round, mutant))
+    first = takewhile(reaching.__contains__, baseline.tests_from_first_reach(round, mutant))
     return outcome.verdict is Verdict.REFUSED and outcome.test in list(first)
 
 

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 from mutabot.campaign.baseline.baseline import observation
 from mutabot.campaign.campaign import Campaign, MutantRun
-from mutabot.campaign.verdict import Death, Run, judged, not_judged, not_run, without_tests
+from mutabot.campaign.verdict import Death, Run, judge_safely, not_judged, not_run, without_tests
 from mutabot.config.options import FORK
 from mutabot.errors import MutabotError
 from mutabot.execution.interruption import Interruption
@@ -35,14 +35,14 @@ if TYPE_CHECKING:
 
 #: seconds without any word from a fork parent, beyond what its tests and forks may take
 _PATIENCE = 60.0
-#: mutants under which a part costs more than it spreads, and parts for each place: they are not equally long
+#: fewest mutants of a part, since each part runs the suite once more; and most parts for each place
 _LEAST, _PARTS = 10, 16
-#: fewer do where the forks of a part would take less than so many times its own tests; but not fewer than
+#: a part with fewer mutants pays if its forks take so many times as long as its own tests; and fewest then
 _WORTH, _FEWEST = 4, 2
 #: seconds that a fork takes at least
 _FORK = 0.01
 _UNLIKE = "it ends differently in a fork that changes nothing"
-_MISSED = "not all processes that it started from a fork ran as the mutant"
+_MISSED = "a process that it started from a fork did not run the mutant"
 #: the level at which zlib costs least
 _QUICKLY = 1
 #: short tests of a fork that are packed together, since they are much alike; long ones weigh more
@@ -135,7 +135,7 @@ def cut(parents: list[_ForkRound], places: int) -> list[_ForkRound]:
 
 
 @dataclass(slots=True)
-class _ForkOutcome(Run):
+class _RunInForks(Run):
     """The outcome of one mutant, as far as it is known.
 
     Attributes:
@@ -182,7 +182,7 @@ class _ForkRound:
     def __init__(self, campaign: Campaign, left: Unhandled, round: int) -> None:
         self._campaign, self._left, self._round = campaign, left, round
         self._baseline, self._sources = self._campaign.baseline, self._campaign.sources
-        self._open: dict[str, _ForkOutcome] = {}
+        self._open: dict[str, _RunInForks] = {}
         self._tests = self._baseline.suite(round)
         self._numbers = {test: number for number, test in enumerate(self._tests)}
         self._own_ends: list[events.TestEnd] = []
@@ -195,7 +195,7 @@ class _ForkRound:
 
     def add(self, mutant: Mutant) -> None:
         """Add a mutant to fork."""
-        self._open[mutant.id] = _ForkOutcome(mutant, self._round, self._tests, engine=FORK)
+        self._open[mutant.id] = _RunInForks(mutant, self._round, self._tests, engine=FORK)
 
     @property
     def mutants(self) -> tuple[Mutant, ...]:
@@ -303,7 +303,7 @@ class _ForkRound:
     def _take(self, event: events.Event) -> Iterator[Outcome]:
         match event:
             case events.ForkTestEnd() if event.mutant in self._open:
-                yield from self._fork_ended(event)
+                yield from self._test_of_fork_ended(event)
             case events.ForkDied() if event.mutant in self._open:
                 self._open[event.mutant].death = _death_of(event)
                 yield from self._settle(event.mutant)
@@ -350,10 +350,10 @@ class _ForkRound:
             if is_whole and fork.own and fork.forked is None and fork.death is None:
                 fork.exit_code = self._baseline.exits[self._round]
                 fork.shared = sum(simulated) if simulated else None
-                yield from self._judged(fork, len(self._tests))
+                yield from self._outcomes_of(fork, len(self._tests))
         self._leave(list(self._open))
 
-    def _fork_ended(self, event: events.ForkTestEnd) -> Iterator[Outcome]:
+    def _test_of_fork_ended(self, event: events.ForkTestEnd) -> Iterator[Outcome]:
         fork, test = self._open[event.mutant], event.end.test
         if fork.forked is None:
             fork.forked = -1 if event.is_early else self._numbers.get(test, -1)
@@ -399,11 +399,11 @@ class _ForkRound:
             if forked >= 0 and self._tests[forked] in self._unlike:
                 self._leave([mutant])
             else:
-                yield from self._judged(fork, max(0, forked))
+                yield from self._outcomes_of(fork, max(0, forked))
         else:
             self._waiting.setdefault(last, set()).add(mutant)
 
-    def _judged(self, run: _ForkOutcome, shared: int) -> Iterator[Outcome]:
+    def _outcomes_of(self, run: _RunInForks, shared: int) -> Iterator[Outcome]:
         """Return the outcome of a mutant whose parent ran ``shared`` tests before the fork.
 
         It is left to replay if a process that a test started did not get it.
@@ -423,7 +423,7 @@ class _ForkRound:
             text = not_run({*self._tests} - run.left_out - {*run.gone}, run.ends, run.exit_code)
             run.death = Death(text) if text is not None else run.death
         del self._open[run.mutant.id]
-        yield judged(self._campaign, run)
+        yield judge_safely(self._campaign, run)
 
 
 def _death_of(event: events.ForkDied) -> Death:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from mutabot.campaign.verdict import judged, not_judged, run_of, without_tests
+from mutabot.campaign.verdict import judge_safely, not_judged, run_of, without_tests
 from mutabot.config.options import REPLAY
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ def _run(
     for result in campaign.executor.run(tasks()):
         mutant, round = result.task.key
         try:
-            yield mutant, judged(campaign, run_of(result, campaign.sources))
+            yield mutant, judge_safely(campaign, run_of(result, campaign.sources))
         except Exception as error:
             yield mutant, not_judged(mutant, round, error, REPLAY)
     for mutant, round in uncovered:

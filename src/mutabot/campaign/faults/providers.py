@@ -70,7 +70,7 @@ TRIED = 200
 
 
 class CallFaults(FaultProvider):
-    """Operators on calls, which act where a call is intercepted (``mutabot/runtime/calls``)."""
+    """Operators on calls, which act where a call is intercepted (``mutabot/runtime/interception``)."""
 
     name = CALLS
     families: ClassVar[tuple[str, ...]] = (ROBOT, GRADED, CATALOGUE)
@@ -84,7 +84,7 @@ class CallFaults(FaultProvider):
         return [rule for rule in load_all() if rule.family != MIDDLEWARE]
 
     def plan(self, project: Project, original: Original) -> Planned:
-        """Return the mutants of its operators at all places that the tests reach."""
+        """Return the mutants of its operators at places that tests reach, and at calls that none reaches."""
         operators = [rule for rule in self.rules() if project.asks_for(rule)]
         found = list(_at_places(original, project.vocabulary, operators, self.name))
         found += _not_covered(original, project.vocabulary, operators, self.name)

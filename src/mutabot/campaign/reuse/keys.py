@@ -101,12 +101,12 @@ class SourceTree:
 #: a place as outcomes name it: ``file:line``, or ``file:line:column-line:column``
 _PLACE = re.compile(r"(?<![\w./$-])([\w./$-]+\.\w+):(\d+)(?::(\d+)-(\d+):(\d+))?")
 
-#: of two files: most places that are moved lie in the same ones
+#: cached for two versions of a file: most places that moved lie in the same ones
 _moves = lru_cache(8)(File.moves_to)
 
 
 @frozen
-class Was:
+class PastDependencies:
     """The dependencies of an outcome when it was found, or at a revision.
 
     Attributes:
@@ -198,7 +198,7 @@ class Dependencies:
         key: str,
         parts: Callable[[str], Parts | None],
         tree: Callable[[str], SourceTree],
-    ) -> Was:
+    ) -> PastDependencies:
         """Return what an outcome with this key depended on.
 
         Args:
@@ -209,7 +209,7 @@ class Dependencies:
         found_in = self.tree if files == self._tree else tree(files)
         units = parts(executed)
         lines = {k: v for k, v in (units or {}).items() if k == ALL_FILES or k in found_in.digests}
-        return Was(
+        return PastDependencies(
             self.common if common == self._common else parts(common),
             parts(place),
             own,
@@ -271,7 +271,7 @@ class Dependencies:
         does = planted.does if planted is not None else None
         return _digest([mutant.provider, Idle.of(mutant.idle).in_round(round), mutant.pattern, does])
 
-    def why(self, was: Was, mutant: Mutant, round: int, *, is_known: bool = True) -> list[str]:
+    def why(self, was: PastDependencies, mutant: Mutant, round: int, *, is_known: bool = True) -> list[str]:
         """Return why an outcome with these dependencies may differ now; empty if it cannot.
 
         ``is_known``: whether anything is known of the mutant now; not if its family is not asked for.
@@ -288,7 +288,7 @@ class Dependencies:
             found = ["the calls return something else" if mutant.operation else "it does something else"]
         return found
 
-    def renewed(self, key: str, was: Was, mutant: Mutant, round: int) -> str:
+    def renewed(self, key: str, was: PastDependencies, mutant: Mutant, round: int) -> str:
         """Return the current key of an outcome that still holds, with the current lines of its units."""
         place = self.place(mutant, round, *self.asked(was))
         executed: dict[str, tuple[int, ...]] = dict.fromkeys(was.notes, ())
@@ -300,7 +300,7 @@ class Dependencies:
         stored = self.stored(None if is_all else executed)
         return " ".join((self._common, self._stored(place), key.split()[2], self._tree, stored))
 
-    def asked(self, was: Was) -> tuple[bool, str]:
+    def asked(self, was: PastDependencies) -> tuple[bool, str]:
         """Return whether an outcome depended on the whole suite, and the last test that it depended on."""
         place = was.place or {}
         return _SUITE in place, place.get(_UNTIL, "")
@@ -326,7 +326,7 @@ class Dependencies:
             self._made[key] = of, made()
         return self._made[key][1]
 
-    def _differing_units(self, was: Was, mutant: Mutant, round: int) -> list[str]:
+    def _differing_units(self, was: PastDependencies, mutant: Mutant, round: int) -> list[str]:
         is_all = was.executed is None or ALL_FILES in was.executed
         whole, until = self.asked(was)
         tests = self.tests(mutant, round, whole=whole, until=until)
@@ -458,7 +458,7 @@ def _lines(text: str) -> tuple[int, ...]:
         return (WHOLE,)
 
 
-def _names(was: Was) -> dict[str, set[str] | None]:
+def _names(was: PastDependencies) -> dict[str, set[str] | None]:
     """Return the names of the executed units by file; None for a file that counts as a whole."""
     files = {name: (was.found_in.file(name), lines) for name, lines in (was.executed or {}).items()}
     return {name: None if file is None else file.names_at(lines) for name, (file, lines) in files.items()}

@@ -14,7 +14,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mutabot.campaign.reuse.keys import Dependencies, SourceTree, Was, tool_table
+from mutabot.campaign.reuse.keys import Dependencies, PastDependencies, SourceTree, tool_table
 from mutabot.errors import JournalError, UsageError, in_short
 from mutabot.frozen import frozen
 from mutabot.journal.files import find_journal, refuse_tracked
@@ -393,7 +393,7 @@ def altered_since(
             (source.was(source.kept[pair].key) for source in found.sources if pair in source.kept), None
         )
         whole, until = now.asked(known) if known is not None else (False, "")
-        was = Was(
+        was = PastDependencies(
             then.common,
             then.place(mutant, round, whole, until),
             # what another provider makes its mutants from is not known to have been the same at the revision

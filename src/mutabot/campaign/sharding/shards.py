@@ -109,7 +109,7 @@ def _cost_of(mutants: list[Mutant], baseline: Baseline) -> float:
 
 def _cost(mutant: Mutant, baseline: Baseline) -> float:
     rounds = range(len(baseline.tests))
-    tests = [(round, test) for round in rounds for test in baseline.tests_judging(round, mutant)]
+    tests = [(round, test) for round in rounds for test in baseline.tests_from_first_reach(round, mutant)]
     costs = [cost(baseline.ends[key]) for key in tests]
     return _START * len(rounds) + sum(simulated + _OPERATION * count for simulated, count in costs)
 

@@ -1,1 +1,1 @@
-"""Reports in formats of other tools: one file each, with a function ``make``."""
+"""Formats of reports: one file each, with a function ``make``."""

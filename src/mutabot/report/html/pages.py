@@ -19,7 +19,7 @@ from .folder import Recorded, campaign_data, mutant_page, script, sources_data
 _ROOM = 4_000_000
 
 
-class ReportPages:
+class LiveReport:
     """The files of a report, as ``write_folder`` writes them, of a campaign that may still run.
 
     Args:

@@ -180,7 +180,7 @@ def _same(value: Any, wanted: Any) -> bool:
 
 
 @dataclass
-class ActiveMutant:
+class MutatedSite:
     """An active mutant of calls.
 
     Attributes:
@@ -458,7 +458,7 @@ class _MutatedCall:
         is_live: whether that is the robot's own memory.
     """
 
-    mutant: ActiveMutant
+    mutant: MutatedSite
     adapter: Adapter
     made: SiteCall
     passage: CallRecord

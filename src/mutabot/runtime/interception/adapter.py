@@ -326,7 +326,7 @@ class Adapter:
             known = tuple(dict.fromkeys(case.value for case in cases if case.argument == argument))
             found = _names(invocation, argument)
             if not set(found) & set(known):
-                text = f"{argument} is {found[-1]}, for which mode says nothing; it knows {', '.join(known)}"
+                text = f"{argument} is {found[-1]}, which `mode` does not list; it lists {', '.join(known)}"
                 self._report_problem("mode", text)
 
     def _report_problem(self, key: str, text: str) -> None:

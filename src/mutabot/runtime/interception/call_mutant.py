@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from mutabot.runtime.active_fault import ActiveFault
 from mutabot.runtime.evidence import Evidence
-from mutabot.runtime.interception.active_mutant import ActiveMutant
+from mutabot.runtime.interception.active_mutant import MutatedSite
 
 if TYPE_CHECKING:
     from random import Random
@@ -25,15 +25,15 @@ class CallMutant(ActiveFault):
         super().__init__(mutant, data, context)
         self._is_early = not context.test
         operation = context.job.vocabulary.operation(mutant.operation)
-        self._active: ActiveMutant | None = None
+        self._active: MutatedSite | None = None
         if operation is not None:
             operation = operation.by_numbers() if mutant.by_number else operation
             context_facts = (context.acted_in_call, context.in_mutated_call, lambda: context.seconds)
-            self._active = ActiveMutant(mutant, operation, context.refusals_of(operation), *context_facts)
+            self._active = MutatedSite(mutant, operation, context.refusals_of(operation), *context_facts)
 
     def prepare_process(self) -> None:
         """Activate the mutant: calls while the program is imported count for all tests."""
-        self.context.passing.mutant = self._active
+        self.context.dispatcher.mutant = self._active
         if self._is_early:
             self._start()
 
@@ -48,7 +48,7 @@ class CallMutant(ActiveFault):
         if self._active is None:
             return
         context, mutant = self.context, self.mutant
-        usual = context.passing.refused.at(mutant.site.span, mutant.operation, mutant.pattern)
+        usual = context.dispatcher.refused.at(mutant.site.span, mutant.operation, mutant.pattern)
         seed, moment = context.seed_of(mutant), context.moment_of(mutant)
         self._active.start(seed, context.round, context.test, moment, usual)
 

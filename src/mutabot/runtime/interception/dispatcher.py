@@ -27,7 +27,7 @@ from mutabot.model.operation import Form
 from mutabot.model.quantity import Value
 from mutabot.operators.middleware import Carried, run
 from mutabot.runtime.evidence import Meter
-from mutabot.runtime.interception.active_mutant import ActiveMutant, RefusedCalls
+from mutabot.runtime.interception.active_mutant import MutatedSite, RefusedCalls
 from mutabot.runtime.interception.adapter import Adapter, Caller, Invocation, SiteCall, is_mock
 from mutabot.runtime.interception.frames import ModuleCache, border, borders, without_ours
 from mutabot.runtime.interception.live import is_live
@@ -108,7 +108,7 @@ class Dispatcher:
     turn: Callable[[], None] | None = None
     meter: Meter | None = None
     on_reach: Callable[[Key, int], None] | None = None
-    mutant: ActiveMutant | None = None
+    mutant: MutatedSite | None = None
     oracle_nodes: tuple[str, ...] = ()
     on_live: Callable[[SiteCall], None] | None = None
     refused: RefusedCalls = field(default_factory=RefusedCalls)

@@ -46,7 +46,7 @@ _TOKEN = b"t"
 
 _NODES = "its nodes would meet those of other mutants"
 _INTERRUPTED = "the campaign was interrupted"
-#: seconds between two looks whether it is, while this process waits
+#: seconds between two checks for that, while this process waits
 _LOOKS = 0.5
 
 

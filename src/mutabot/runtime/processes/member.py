@@ -196,8 +196,8 @@ class Member:
             if session.evidence.said != before:
                 self.poll()
 
-        session.recorder.on_hit, session.passing.turn = hit, self.turn
-        session.passing.on_end = lambda call, read: self.poll()
+        session.recorder.on_hit, session.dispatcher.turn = hit, self.turn
+        session.dispatcher.on_end = lambda call, read: self.poll()
         session.on_noted = self.file.send
         messages = session.messages
         if messages is None:
