@@ -72,6 +72,13 @@ def dispensing(new_cell: Callable[..., Cell], line: Line) -> Callable[[], object
     return lambda: program.run(built)
 
 
+def assembly(new_cell: Callable[..., Cell], _line: Line) -> Callable[[], object]:
+    """A housing that gets a pin, a cover and four screws."""
+    station, program = _modules("station", "assembling")
+    built = station.build(new_cell, SEED)
+    return lambda: program.run(built)
+
+
 def handover(new_cell: Callable[..., Cell], _line: Line) -> Callable[[], object]:
     """Two bars."""
     station, program = _modules("station", "line")
@@ -80,6 +87,7 @@ def handover(new_cell: Callable[..., Cell], _line: Line) -> Callable[[], object]
 
 
 SCENES = {
+    "assembly": Scene(assembly, 35.0, View(135.0, -24.0, 1.05, (0.42, 0.0, 1.03))),
     "bin_picking": Scene(bin_picking, 9.0, View(165.0, -33.0, 1.6, (0.33, 0.0, 1.02))),
     "dispensing": Scene(dispensing, 14.0, View(150.0, -30.0, 1.15, (0.40, 0.0, 1.02))),
     "handover": Scene(handover, 6.6, View(100.0, -14.0, 2.3, (0.65, 0.0, 1.05))),
