@@ -90,7 +90,7 @@ def assemble(station: Station, report: Report) -> None:
     fetch(cell, PIN, PIN_Z, PIN_GRIP, "no pin")
     x, y = insert(cell, report)
     fetch(cell, TRAY, COVER_Z, COVER_GRIP, "no cover")
-    close(cell, x, y)
+    cover(cell, x, y)
     take_screwdriver(station)
     for across, along in SCREWS:
         fault = tighten(cell, station.driver, report, x + across, y + along)
@@ -182,7 +182,7 @@ def search() -> list[tuple[float, float]]:
     return sorted(places, key=lambda place: place[0] ** 2 + place[1] ** 2)
 
 
-def close(cell: Cell, x: float, y: float) -> None:
+def cover(cell: Cell, x: float, y: float) -> None:
     """Put the cover on the rim, and let it go if it rests there."""
     cell.arm.set_payload(COVER_MASS)
     feel(cell, x, y, COVER_HOVER)
