@@ -14,7 +14,15 @@ class ProgramError(RuntimeError):
 
 
 class UnreachableError(ValueError):
-    """A pose is out of reach; the statement that goes there makes a ``ProgramError`` of it."""
+    """No joint angles bring the tool to a pose; the statement that asks for them ends by a ``ProgramError``.
+
+    Attributes:
+        is_limit: whether there would be some, beyond the joints' limits.
+    """
+
+    def __init__(self, text: str, *, is_limit: bool) -> None:
+        super().__init__(text)
+        self.is_limit = is_limit
 
 
 class UnsupportedError(LanguageError):

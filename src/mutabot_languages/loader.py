@@ -79,9 +79,9 @@ class RobotProgram:
 
         Raises:
             LanguageError: a file cannot be read.
-            ProgramError: the program stops with an error, such as a pose out of reach.
+            ProgramError: the program stops with an error, such as a division by zero.
             UnsupportedError: it uses something that is not carried out.
-            mutabot_cell.CellError: the cell stops it, such as by a protective stop.
+            mutabot_cell.CellError: the cell stops it, by a motion that it refuses or by a protective stop.
         """
         station = Station(cell, self.cell_map, inputs or {})
         units = [unit for file in self.files for unit in [self._unit(file)]]

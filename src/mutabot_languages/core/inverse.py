@@ -13,7 +13,9 @@ _DAMPING = 1e-4
 _LONGEST = 0.3
 
 
-def joint_target(kinematics: Any, model: Any, target: Frame, near: list[float]) -> list[float] | None:
+def joint_target(
+    kinematics: Any, model: Any, target: Frame, near: list[float], *, is_limited: bool = True
+) -> list[float] | None:
     """Joint angles, degrees, that bring the cell's tool point to ``target``; None if none are found.
 
     Args:
@@ -21,11 +23,13 @@ def joint_target(kinematics: Any, model: Any, target: Frame, near: list[float]) 
         model: of the robot: its home position and the ranges of its joints.
         target: robot base frame.
         near: joint angles, degrees: what is nearest to them is preferred.
+        is_limited: whether the joints have to stay in their ranges.
     """
     import numpy as np  # noqa: PLC0415  # comes with the cell
 
     start = np.radians(np.array(near, dtype=float))
     home = np.array(model.home, dtype=float)
+    limits = np.array(model.ranges).T if is_limited else (-np.inf, np.inf)
     wanted = _matrix(np, target)
     position = np.array(target.position)
     turn = _azimuth(np, kinematics, start, position)
@@ -38,7 +42,7 @@ def joint_target(kinematics: Any, model: Any, target: Frame, near: list[float]) 
     seeds.append(home)
     found: list[tuple[float, Any]] = []
     for seed in seeds:
-        solution = _solve(np, kinematics, model, position, wanted, seed)
+        solution = _solve(np, kinematics, limits, position, wanted, seed)
         if solution is not None:
             solution = _wrapped(np, model, solution, start)
             distance = float(np.abs(solution - start).max())
@@ -50,10 +54,8 @@ def joint_target(kinematics: Any, model: Any, target: Frame, near: list[float]) 
     return [float(angle) for angle in np.degrees(min(found, key=lambda reached: reached[0])[1])]
 
 
-def _solve(np: Any, kinematics: Any, model: Any, position: Any, wanted: Any, seed: Any) -> Any:
+def _solve(np: Any, kinematics: Any, limits: Any, position: Any, wanted: Any, seed: Any) -> Any:
     joints = seed.copy()
-    low = np.array([lower for lower, _ in model.ranges])
-    high = np.array([upper for _, upper in model.ranges])
     for _ in range(_ROUNDS):
         at, rotation = kinematics.tool(joints)
         error = np.concatenate((position - at, _turn(np, wanted @ rotation.T)))
@@ -66,7 +68,7 @@ def _solve(np: Any, kinematics: Any, model: Any, position: Any, wanted: Any, see
         longest = float(np.abs(step).max())
         if longest > _LONGEST:
             step *= _LONGEST / longest
-        joints = np.clip(joints + step, low, high)
+        joints = np.clip(joints + step, *limits)
     return None
 
 

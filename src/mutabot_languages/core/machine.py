@@ -225,6 +225,9 @@ class Evaluation:
     def _name(self, node: ProgramNode, scope: RoutineScope) -> Any:
         found = self.find(node.name, scope)
         if found is not None:
+            if found.value is None:
+                text = f"{node.name} has no value: {scope.routine} was called without it, or nothing set it"
+                raise self.error(node, scope, text)
             return found.value
         if node.name in self.machine.undeclared:
             why = self.machine.undeclared[node.name]
@@ -344,6 +347,8 @@ class Evaluation:
             return leave.value
         finally:
             self.depth -= 1
+        if isinstance(routine.node.value, dict) and routine.node.value["type"]:
+            raise self.error(node, scope, f"{routine.node.name} ended without RETURN, and has no value")
         for target, name in back:
             yield from self.store(target, inner.names[name].value, scope)
         return None

@@ -76,12 +76,8 @@ class StatementParser:
     def __init__(self, source: SourceText) -> None:
         self.source = source
         tokens = scan(source.text, self.lexis)
-        self.kinds, self.words, self.starts, self.ends = (
-            tokens.kinds,
-            tokens.words,
-            tokens.starts,
-            tokens.ends,
-        )
+        self.kinds, self.words = tokens.kinds, tokens.words
+        self.starts, self.ends = tokens.starts, tokens.ends
         self.at = 0
         self.depth = 0
         self.within = ""

@@ -141,12 +141,15 @@ class Station:
         """
         arm = self.cell.arm
         start = [math.degrees(angle) for angle in arm.setpoint] if near is None else near
-        found = joint_target(arm.kinematics, self.model, self.to_cell(target), start)
+        pose = self.to_cell(target)
+        found = joint_target(arm.kinematics, self.model, pose, start)
         if found is None:
             x, y, z = target.position
+            is_limit = joint_target(arm.kinematics, self.model, pose, start, is_limited=False) is not None
             raise UnreachableError(
-                f"unreachable: no joint angles bring the tool to ({x:.4f}, {y:.4f}, {z:.4f}) m "
-                "as it is turned"
+                f"unreachable: no joint angles {'within the limits ' if is_limit else ''}bring the tool to "
+                f"({x:.4f}, {y:.4f}, {z:.4f}) m as it is turned",
+                is_limit=is_limit,
             )
         return found
 
@@ -162,6 +165,17 @@ class Station:
     def joint_move(self, angles: list[float], part: float) -> tuple[str, tuple[Any, ...], float]:
         """A motion of all joints to angles in degrees, at a part of their speed."""
         return "move_joints", (tuple(self._all_joints(angles)),), _part(part)
+
+    def joint_move_to(self, target: Frame, part: float) -> tuple[str, tuple[Any, ...], float]:
+        """A motion of all joints to a pose, at a part of their speed.
+
+        Where no joint angles reach it, a straight one, whose refusal the cell words: a refusal is a call's.
+        """
+        try:
+            return self.joint_move(self.inverse(target), part)
+        except UnreachableError as error:
+            self.note(f"{error}: the cell was asked for a straight motion")
+            return self.line(target, part * float(self.model.tool_limits.speed))
 
     def _all_joints(self, angles: list[float]) -> list[float]:
         """Angles of all joints, degrees: the arm may have more than the program's robot, and these stay."""

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from mutabot_languages.errors import LanguageError, ProgramError, UnreachableError
+from mutabot_languages.errors import LanguageError, ProgramError
 
 from .machine import Evaluation
 from .scope import ControlFlow, Routine, RoutineScope, Steps, Variable
@@ -58,9 +58,7 @@ class ProgramTask(Evaluation):
         except (TypeError, ValueError, ZeroDivisionError, OverflowError) as error:
             if isinstance(error, self.station.errors):
                 raise
-            is_far = isinstance(error, UnreachableError)
-            what = in_short(node, scope.unit.source.text) if is_far else type(error).__name__
-            raise self.error(node, scope, f"{what}: {error}") from error
+            raise self.error(node, scope, f"{in_short(node, scope.unit.source.text)}: {error}") from error
         except (AttributeError, LookupError) as error:
             if isinstance(error, self.station.errors):
                 raise

@@ -18,14 +18,11 @@ _NULL = dict.fromkeys(_CARTESIAN, 0.0)
 #: system variables that can be set without an effect in the cell
 INERT = name_set(
     """$bwdstart $advance $torqmon $torqmon_def $torqmon_com $torqmon_com_def $h_pos $ori_type $circ_type
-    $pro_mode
-    $ov_pro $ipo_mode $load $load_a1 $load_a2 $load_a3 $acc $acc_axis $acc_extax $vel_extax $jerk
-    $gear_jerk $apo
-    $red_vel $timer_stop $timer $timer_flag $cycflag $flag $act_tool $act_base $act_base_c $act_tool_c
-    $ipo_mode_c
-    $stopnoapro $loop_msg $loop_cont $pal_mode $coll_enable $coll_alarm $brake_sig $base_kin $msg_t $rev_num
-    $data_integrity $no_kcp_msg $singul_dist $ori_jerk $ecodata $spl_tech $spl_ori_joint_auto $acc_ma $vel_ma
-    $asys $distance_mode $seninit"""
+    $pro_mode $ov_pro $ipo_mode $load $load_a1 $load_a2 $load_a3 $acc $acc_axis $acc_extax $vel_extax $jerk
+    $gear_jerk $apo $red_vel $timer_stop $timer $timer_flag $cycflag $flag $act_tool $act_base $act_base_c
+    $act_tool_c $ipo_mode_c $stopnoapro $loop_msg $loop_cont $pal_mode $coll_enable $coll_alarm $brake_sig
+    $base_kin $msg_t $rev_num $data_integrity $no_kcp_msg $singul_dist $ori_jerk $ecodata $spl_tech
+    $spl_ori_joint_auto $acc_ma $vel_ma $asys $distance_mode $seninit"""
 )
 
 

@@ -14,6 +14,7 @@ from mutabot_languages.core.scope import ControlFlow, RoutineScope, Steps, Struc
 from mutabot_languages.core.station import ProgramPlace
 from mutabot_languages.core.task import OF_DEGREES, ProgramTask, of_values
 from mutabot_languages.core.tree import ProgramNode
+from mutabot_languages.errors import UnreachableError
 
 from .dialect import KrlMachine, frame_of, of_axes, of_frame, set_frame
 
@@ -21,12 +22,13 @@ from .dialect import KrlMachine, frame_of, of_axes, of_frame, set_frame
 IGNORED = name_set(
     """continue a10 a10_ini a20 a50 h70 h50 userspot bas_tq msgnotify msgquit msgloop msgdialog set_kr_msg
     set_kr_dlg clear_kr_msg varstate ir_stopm user_grp usergrp a_10 a_20 spottech grp err_raise cwrite
-    cast_to set_torque_limits reset_torque_limits delete_backward_buffer lk_ping
-    use_cm_pro_values err_clear setbreakpoint sync_cmd on_error_proceed programsync lock unlock
-    tech_motion kcp_ippno chkgrp interrupt_off interrupt_on bwini sb_ini vw cwrite_text kuka_notify p00
-    act_drive_bus"""
+    cast_to set_torque_limits reset_torque_limits delete_backward_buffer lk_ping use_cm_pro_values
+    err_clear setbreakpoint sync_cmd on_error_proceed programsync lock unlock tech_motion kcp_ippno chkgrp
+    interrupt_off interrupt_on bwini sb_ini vw cwrite_text kuka_notify p00 act_drive_bus"""
 )
 
+#: what INVERSE says where no axes reach a position: anything but 0 is an error
+_NO_AXES = 3
 _AXES = ("a1", "a2", "a3", "a4", "a5", "a6", "e1")
 
 
@@ -49,6 +51,8 @@ def _is_axes(value: Any) -> bool:
 
 def _complete(task: ProgramTask, value: Any, site: ProgramPlace) -> Frame:
     """The frame of a target; components that it does not name stay as they are."""
+    if not isinstance(value, dict):
+        raise TypeError(f"expected a position {{X …}} or axes {{A1 …}}, found {value!r}")
     base = machine_of(task).base
     named = {name: part for name, part in value.items() if name in tuple("xyzabc")}
     if len(named) < 6:  # else nothing is read
@@ -77,7 +81,7 @@ def _move(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
             for point in targets
         ]  # fmt: skip
         if kind == "ptp":
-            yield from task.move(node, scope, station.joint_move(station.inverse(frames[0]), machine.pace[1]))
+            yield from task.move(node, scope, station.joint_move_to(frames[0], machine.pace[1]))
         elif kind == "circ" and len(frames) > 1:
             for motion in station.arc(station.commanded(site), frames[0], frames[1], machine.pace[0]):
                 yield from task.move(node, scope, motion)
@@ -227,13 +231,25 @@ def _number_frame(task: ProgramTask, name: str, number: int) -> None:
 def _forward(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
     values, _ = yield from task.arguments(node, scope)
     at = machine_of(task).base.inverse() * task.station.forward(_angles(task, values[0]))
+    if len(values) > 1:
+        yield from task.store(node.parts[1], 0, scope)
     return of_frame(at, "e6pos")
 
 
 def _inverse(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    """INVERSE: axes for a position, the nearest to others; its last argument says whether there are any."""
     values, _ = yield from task.arguments(node, scope)
-    frame = machine_of(task).base * frame_of(values[0])
-    return of_axes(task.station.inverse(frame))
+    start = _angles(task, values[1]) if len(values) > 1 and _is_axes(values[1]) else None
+    try:
+        found = task.station.inverse(machine_of(task).base * frame_of(values[0]), start)
+    except UnreachableError:
+        if len(values) < 3:
+            raise
+        yield from task.store(node.parts[2], _NO_AXES, scope)
+        return of_axes(_angles(task, {}))
+    if len(values) > 2:
+        yield from task.store(node.parts[2], 0, scope)
+    return of_axes(found)
 
 
 def _inverse_position(value: Any) -> Structure:

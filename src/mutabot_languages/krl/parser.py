@@ -11,19 +11,18 @@ from mutabot_languages.core.tokens import Lexis
 from mutabot_languages.core.tree import ProgramNode
 
 MOTIONS = name_set(
-    """ptp lin circ ptp_rel lin_rel circ_rel sptp slin scirc spl sptp_rel slin_rel scirc_rel spl_rel
-    async_ptp asyptp"""
+    """ptp lin circ ptp_rel lin_rel circ_rel sptp slin scirc spl sptp_rel slin_rel scirc_rel spl_rel async_ptp
+    asyptp"""
 )
 TYPES = name_set("int real bool char frame pos e6pos axis e6axis e3pos e3axis signal channel load")
 #: instructions that are a word and nothing else
 _BARE = name_set("brake resume on_error_proceed")
 _ENDS = {"def": "end", "deffct": "endfct", "defdat": "enddat"}
 RESERVED = name_set(
-    """def deffct defdat end endfct enddat if then else endif for to step endfor while endwhile repeat
-    until loop
-    endloop switch case default endswitch goto return exit halt wait decl global struc enum signal ext extfct
-    import interrupt trigger when with do continue and or not exor b_and b_or b_exor b_not spline endspline
-    const public"""
+    """def deffct defdat end endfct enddat if then else endif for to step endfor while endwhile repeat until
+    loop endloop switch case default endswitch goto return exit halt wait decl global struc enum signal ext
+    extfct import interrupt trigger when with do continue and or not exor b_and b_or b_exor b_not spline
+    endspline const public"""
 )
 
 

@@ -58,21 +58,10 @@ class KrlRewriter(Rewriter):
         return found
 
     @cached_property
-    def _types(self) -> dict[str, str]:
-        """The types of all variables of the program, by name."""
-        found: dict[str, str] = {}
-        for parsed in (*(other.parsed for other in self.program.others), self.program.parsed):
-            for node in parsed.tree.walk():
-                if node.kind == "declare":
-                    found[node.name] = node.value["type"]
-        return found
-
-    @cached_property
     def _signals(self) -> dict[str, str]:
         """What signals stand for, such as ``$in``, by name."""
-        parsed = (*(other.parsed for other in self.program.others), self.program.parsed)
-        nodes = (node for file in parsed for node in file.tree.walk() if node.kind == "signal")
-        return {node.name: self._base_name(node.parts[0]) for node in nodes}
+        signals = (node for node in self.all_nodes() if node.kind == "signal")
+        return {node.name: self._base_name(node.parts[0]) for node in signals}
 
     def _meant(self, node: ProgramNode) -> str:
         """The system variable that a node is of, or that its signal stands for."""
@@ -237,14 +226,15 @@ class KrlRewriter(Rewriter):
     def _literal(self, target: ProgramNode, axis: int, metres: float) -> tuple[Edit, ...] | None:
         number = self._pair(target, "xyz"[axis])
         value = signed_number(number) if number is not None else None
-        return (
-            None if number is None or value is None else self.put(number, named_number(value + metres * 1000))
-        )
+        if number is None or value is None:
+            return None
+        return self.put(number, named_number(value + metres * 1000))
 
     def _is_axes(self, target: ProgramNode) -> bool:
         if target.kind == "aggregate":
             return any(part.name == "a1" for part in target.parts)
-        return self._types.get(target.name, "") in ("e6axis", "axis") or target.name.startswith("$axis")
+        type = self.declared_types.get(target.name, "")
+        return type in ("e6axis", "axis") or target.name.startswith("$axis")
 
     def _is_position(self, target: ProgramNode) -> bool:
         if target.kind == "aggregate":
@@ -252,7 +242,7 @@ class KrlRewriter(Rewriter):
         if target.kind == "binary":
             return target.name == ":"
         return target.kind in ("name", "index") and (
-            self._types.get(self._base_name(target)) in _POSITIONS or target.name == "$pos_act"
+            self.declared_types.get(self._base_name(target)) in _POSITIONS or target.name == "$pos_act"
         )
 
     def shifted(self, target: ProgramNode, axis: int, metres: float) -> tuple[Edit, ...] | None:

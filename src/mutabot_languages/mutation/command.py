@@ -47,7 +47,7 @@ def export(context: CommandContext, request: Request, folder: _Folder, words: _W
     index: dict[str, str] = {}
     for number, plan in enumerate(_chosen(request, words), start=1):
         place = folder / str(number)
-        for program in [plan.program, *plan.others]:
+        for program in [plan.program, *plan.program.others]:
             target = place / program.file
             target.parent.mkdir(parents=True, exist_ok=True)
             is_changed = program is plan.program

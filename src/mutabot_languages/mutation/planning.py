@@ -21,15 +21,13 @@ class PlannedText:
     """A mutant of a file.
 
     Attributes:
-        program: the file.
-        others: the other files of the program.
+        program: the file, which knows the others of the program.
         site: where it is.
         difference: what it changes.
         description: one line that an engineer recognises.
     """
 
     program: ProgramFile
-    others: tuple[ProgramFile, ...]
     site: Site
     difference: TextChange
     description: str
@@ -69,7 +67,7 @@ def mutants_of(program: ProgramFile, sizes: Sizes | None = None) -> Iterator[Pla
         seen.add(key)
         site = _site(program, change.node, occurrences)
         note = f" ({change.note})" if change.note else ""
-        yield PlannedText(program, tuple(program.others), site, change, f"{program.shown(change)}{note}")
+        yield PlannedText(program, site, change, f"{program.shown(change)}{note}")
 
 
 def planned_texts(root: Path, files: list[str]) -> Iterator[PlannedText]:

@@ -91,14 +91,9 @@ class LanguageFaults(FaultProvider):
 
     def _planned(self, rule: Rule, text: PlannedText, *, is_early: bool) -> PlannedMutant:
         difference = text.difference
-        variant = variant_of(difference)
+        size, variant = difference.magnitude, variant_of(difference)
         made = self.mutant(
-            rule,
-            text.site,
-            text.description,
-            variant=variant,
-            magnitude=difference.magnitude,
-            unit=difference.unit,
+            rule, text.site, text.description, variant=variant, magnitude=size, unit=difference.unit
         )
         if difference.magnitude is not None:
             made = replace(made, direction=difference.variant)

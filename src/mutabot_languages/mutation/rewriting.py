@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar
 
 from mutabot_languages.core.tree import ProgramNode
@@ -60,6 +61,16 @@ class Rewriter:
                 continue
             yield from self.of_node(node, parents)
             yield from self.conventional(node, parents)
+
+    def all_nodes(self) -> Iterator[ProgramNode]:
+        """The nodes of all files of the program, this one's last."""
+        for file in (*self.program.others, self.program):
+            yield from file.parsed.tree.walk()
+
+    @cached_property
+    def declared_types(self) -> dict[str, str]:
+        """The types of all data that the program declares, by name."""
+        return {node.name: node.value["type"] for node in self.all_nodes() if node.kind == "declare"}
 
     def _nodes(self) -> Iterator[tuple[ProgramNode, tuple[ProgramNode, ...]]]:
         waiting: list[tuple[ProgramNode, tuple[ProgramNode, ...]]] = [(self.program.parsed.tree, ())]
@@ -186,12 +197,8 @@ class Rewriter:
         ):
             for other in others:
                 if other != node.name and not self._is_text(node):
-                    yield TextChange(
-                        operator,
-                        node,
-                        (Edit(left.end + start, left.end + start + len(node.name), other),),
-                        other,
-                    )
+                    edit = Edit(left.end + start, left.end + start + len(node.name), other)
+                    yield TextChange(operator, node, (edit,), other)
 
     def _is_text(self, node: ProgramNode) -> bool:
         return any(part.kind == "text" for part in node.walk())

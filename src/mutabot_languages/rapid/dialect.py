@@ -8,7 +8,6 @@ from collections.abc import Callable, Mapping
 from typing import Any, ClassVar
 
 from mutabot_languages.core.machine import OF_NUMBERS, Dialect, Evaluation, Machine
-from mutabot_languages.core.names import name_set
 from mutabot_languages.core.scope import (
     ControlFlow,
     ProgramRaised,
@@ -26,11 +25,6 @@ from .types import STRUCTURES, Components, RapidArray, initial, shaped
 
 _SPEED, _ZONE = re.compile(r"v(\d+)"), re.compile(r"z(\d+)")
 _POSE0 = [[0, 0, 0], [1, 0, 0, 0]]
-_ERRORS = name_set(
-    """err_wait_maxtime err_divzero err_overflow err_argvalerr err_norununit err_signal_op err_refunkprc
-    err_nosuchsignal err_ao_lim err_notarr err_illdim err_calc_neg err_ik err_robt_limit err_pathdist
-    err_pathstop"""
-)
 
 
 class RapidDialect(Dialect):
@@ -214,9 +208,7 @@ def predefined(name: str, structures: Mapping[str, Components]) -> Any:
     if name in _DATA:
         type, value = _DATA[name]
         return shaped(value, type, structures) if type else value
-    if name in _ERRORS:
-        return name
-    return None
+    return name if name.startswith("err_") else None  # an error number
 
 
 _DATA: dict[str, tuple[str, Any]] = {

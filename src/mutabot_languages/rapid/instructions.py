@@ -14,21 +14,22 @@ from mutabot_languages.core.scope import ControlFlow, ProgramRaised, RoutineScop
 from mutabot_languages.core.station import matrix_frame
 from mutabot_languages.core.task import OF_DEGREES, ProgramTask, of_values
 from mutabot_languages.core.tree import ProgramNode
+from mutabot_languages.errors import UnreachableError
 
 from .interrupts import INTERRUPTS, arguments_of, trigger_watch
 from .types import STRUCTURES, frame_of, put_frame, shaped
 
 #: what has no effect in the cell, and is noted
 IGNORED = name_set(
-    """stop confl confj singarea accset velset pathaccllim pathacclim gripload tpwrite errwrite tperase
-    tpshow skipwarn syncmoveon syncmoveoff waitsynctask syncmoveundo actunit deactunit actevent
-    evtset motionsup speedrefresh worldacclim pathresol softact softdeact corrclear load unload save
-    startload waitload cancelload erasemodule logtext spystart spystop setsysdata resetretrycount
-    resetpppdata bookerrno motionprocessmodeset circpathmode tuneservo tunereset eoffson eoffsoff
-    eoffsset opennocompress setallhdpos breakpoint break uimsgbox uimsgwrite saferuncheck wzdisable
-    wzenable jointlimitset sysstopaction manloadidproc paridposvalid tpreadnum accsetmax
-    cyclestartedreset enabletaskauto gripsetload cpoff cpon speedlim speedlimit robotwarning
-    wait_sync reconnect process_stop errlog writestrbin tplogmessage systemstopaction"""
+    """stop confl confj singarea accset velset pathaccllim pathacclim gripload tpwrite errwrite tperase tpshow
+    skipwarn syncmoveon syncmoveoff waitsynctask syncmoveundo actunit deactunit actevent evtset motionsup
+    speedrefresh worldacclim pathresol softact softdeact corrclear load unload save startload waitload
+    cancelload erasemodule logtext spystart spystop setsysdata resetretrycount resetpppdata bookerrno
+    motionprocessmodeset circpathmode tuneservo tunereset eoffson eoffsoff eoffsset opennocompress
+    setallhdpos breakpoint break uimsgbox uimsgwrite saferuncheck wzdisable wzenable jointlimitset
+    sysstopaction manloadidproc paridposvalid tpreadnum accsetmax cyclestartedreset enabletaskauto
+    gripsetload cpoff cpon speedlim speedlimit robotwarning wait_sync reconnect process_stop errlog
+    writestrbin tplogmessage systemstopaction"""
 )
 _TIMEOUT = "err_wait_maxtime"
 
@@ -50,8 +51,8 @@ def _base(task: ProgramTask, named: dict[str, Any]) -> Frame:
 
 def _target(task: ProgramTask, value: Any, type: str) -> Any:
     found = shaped(value, type, structures(task))
-    if not isinstance(found, dict):
-        raise TypeError(f"expected {type}, found {value!r}")
+    if not isinstance(found, Structure) or found.type != type:
+        raise TypeError(f"expected {type}, found {getattr(found, 'type', '') or repr(value)}")
     return found
 
 
@@ -92,7 +93,7 @@ def _move(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
             for motion in station.arc(start, middle, frame, pace):
                 yield from task.move(node, scope, motion, look)
         elif name.startswith(("movej", "triggj")):
-            yield from task.move(node, scope, station.joint_move(station.inverse(frame), part), look)
+            yield from task.move(node, scope, station.joint_move_to(frame, part), look)
         else:
             yield from task.move(node, scope, station.line(frame, pace), look)
         if look is not None:
@@ -293,7 +294,17 @@ def _calc_joints(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> S
     task.station.tool = frame_of(_target(task, values[1], "tooldata")["tframe"])
     base = _base(task, named)
     frame = base * frame_of(_target(task, values[0], "robtarget"))
-    return _joint_target(task, task.station.inverse(frame))
+    number: Any = 0
+    try:
+        angles = task.station.inverse(frame)
+    except UnreachableError as error:
+        number = "err_roblimit" if error.is_limit else "err_outside_reach"
+        if "errornumber" not in named:
+            raise ProgramRaised(number, str(error)) from error
+        angles = task.station.angles(task.site(node, scope))
+    if "errornumber" in named:
+        yield from task.store(arguments_of(node)[1]["errornumber"].parts[0], number, scope)
+    return _joint_target(task, angles)
 
 
 def _calc_target(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:

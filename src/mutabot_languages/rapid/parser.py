@@ -18,8 +18,8 @@ _MODES = name_set("var pers inout")
 #: words that no expression and no instruction begins with
 RESERVED = name_set(
     """alias and backward case connect const default div do else elseif endfor endfunc endif endmodule endproc
-    endrecord endtest endtrap endwhile error exit for from func goto if inout local mod module
-    not or pers proc raise record retry return task test then to trap trynext undo var while with xor step"""
+    endrecord endtest endtrap endwhile error exit for from func goto if inout local mod module not or pers
+    proc raise record retry return task test then to trap trynext undo var while with xor step"""
 )
 
 

@@ -25,8 +25,7 @@ _SPEEDS = (
 )  # fmt: skip
 _OF_ROBOT = name_set(
     """set reset setdo setgo setao pulsedo invertdo waittime waitdi waitdo waitgi waitgo waitai waitao
-    waituntil
-    pdispset pdispoff"""
+    waituntil pdispset pdispoff"""
 )
 _WAITS = name_set("waitdi waitdo waitgi waitgo waitai waitao waituntil")
 _OPPOSITE = {"set": "Reset", "reset": "Set"}
@@ -47,15 +46,8 @@ class RapidRewriter(Rewriter):
 
     @cached_property
     def _types(self) -> dict[str, str]:
-        """The types of all data of the program, by name."""
-        found: dict[str, str] = {}
-        for parsed in (*(other.parsed for other in self.program.others), self.program.parsed):
-            for node in parsed.tree.walk():
-                if node.kind == "declare":
-                    found[node.name] = node.value["type"]
-                elif node.kind == "parameter":
-                    found.setdefault(node.name, node.value["type"])
-        return found
+        parameters = (node for node in self.all_nodes() if node.kind == "parameter")
+        return {node.name: node.value["type"] for node in parameters} | self.declared_types
 
     def is_of_robot(self, node: ProgramNode) -> bool:
         """Motions, outputs, waits and displacements."""

@@ -13,7 +13,7 @@ from mutabot_languages.core.scope import ControlFlow, RoutineScope, Steps, Struc
 from mutabot_languages.core.station import ProgramPlace, Station
 from mutabot_languages.core.task import ProgramTask, of_values
 from mutabot_languages.core.tree import ProgramNode
-from mutabot_languages.errors import ProgramError
+from mutabot_languages.errors import UnreachableError
 
 
 class UrPose(list[float]):
@@ -44,8 +44,8 @@ IGNORED = name_set(
     set_runstate_tool_digital_output_to_value set_runstate_gp_boolean_output_to_value
     set_input_actions_to_default set_tool_digital_output_mode set_tool_output_mode
     set_standard_digital_input_action set_configurable_digital_input_action set_gp_boolean_input_action
-    set_tool_digital_input_action set_safety_mode_transition_hardness step_count_reset
-    set_payload_inertia enter_critical exit_critical set_conveyor_tick_count set_runstate_outputs
+    set_tool_digital_input_action set_safety_mode_transition_hardness step_count_reset set_payload_inertia
+    enter_critical exit_critical set_conveyor_tick_count set_runstate_outputs
     set_standard_analog_output_domain set_euromap_runstate_dependent_choice set_baselight_off
     position_deviation_warning zero_ftsensor request_boolean_from_primary_client protective_stop_reset
     conveyor_pulse_decode set_digital_input_action write_to_log reset_revolution_counter
@@ -95,11 +95,9 @@ class UrDialect(Dialect):
 
     def assigned(self, variable: Any, value: Any) -> Any:
         """Lists are copied."""
-        return (
-            type(value)(self.assigned(variable, element) for element in value)
-            if isinstance(value, list)
-            else value
-        )
+        if not isinstance(value, list):
+            return value
+        return type(value)(self.assigned(variable, element) for element in value)
 
 
 def _elementwise(operator: str, left: Any, right: Any) -> Any:
@@ -116,11 +114,9 @@ def _elementwise(operator: str, left: Any, right: Any) -> Any:
 
 def arithmetic(operator: str, left: Any, right: Any) -> Any:
     """A binary operation of numbers. Raises TypeError for anything else."""
-    if isinstance(left, bool) or isinstance(right, bool) or not _are_numbers(left, right):
-        if operator in ("<", ">", "<=", ">=") and _are_numbers(left, right):
-            left, right = float(left), float(right)
-        else:
-            raise TypeError("only numbers can be calculated with")
+    is_compared = operator in ("<", ">", "<=", ">=")
+    if not _are_numbers(left, right) or (bool in (type(left), type(right)) and not is_compared):
+        raise TypeError("only numbers can be calculated with")
     if operator == "%":
         are_whole = isinstance(left, int) and isinstance(right, int)
         return left % right if are_whole else math.fmod(left, right)
@@ -170,12 +166,16 @@ def move_to(
     if node.name == "movej":
         speed = float(given.get("v", 1.05))
         _check(task, node, scope, speed)
+        part = speed / _fastest_joint(station)
         if angles is None:
-            angles = station.inverse(frame_of(target))
-        if seconds > 0:
+            motion = station.joint_move_to(frame_of(target), part)
+        else:
+            motion = station.joint_move(angles, part)
+        if seconds > 0 and motion[0] == "move_joints":
             now = station.call(task.site(node, scope), task.station.cell.arm.commanded_joints)
-            speed = math.radians(max(abs(a - b) for a, b in zip(angles, now, strict=False))) / seconds
-        yield from task.move(node, scope, station.joint_move(angles, speed / _fastest_joint(station)))
+            speed = math.radians(max(abs(a - b) for a, b in zip(*motion[1], now, strict=False))) / seconds
+            motion = station.joint_move([*motion[1][0]], speed / _fastest_joint(station))
+        yield from task.move(node, scope, motion)
         return
     speed = float(given.get("v", 0.25))
     _check(task, node, scope, speed)
@@ -385,7 +385,7 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
 def _has_inverse(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
     try:
         yield from _inverse(task, node, scope)
-    except ProgramError:
+    except UnreachableError:
         return False
     return True
 

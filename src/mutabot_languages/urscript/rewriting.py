@@ -8,26 +8,18 @@ from collections.abc import Iterator
 from functools import cached_property
 from typing import ClassVar
 
+from mutabot_languages.core.names import name_set
 from mutabot_languages.core.tree import ProgramNode
 from mutabot_languages.edits import Edit
 from mutabot_languages.mutation.differences import TextChange
 from mutabot_languages.mutation.rewriting import NO_BLENDING, Rewriter, named_number, signed_number
 
-_MOTIONS = frozenset({"movej", "movel", "movep", "movec"})
-_POSES = frozenset(
-    {
-        "pose_trans",
-        "pose_add",
-        "pose_sub",
-        "pose_inv",
-        "interpolate_pose",
-        "get_actual_tcp_pose",
-        "get_target_tcp_pose",
-    }
+_MOTIONS = name_set("movej movel movep movec")
+_POSES = name_set(
+    "pose_trans pose_add pose_sub pose_inv interpolate_pose get_actual_tcp_pose get_target_tcp_pose"
 )
 _OUTPUT = re.compile(r"set_\w*digital_out")
 _INPUT = re.compile(r"get_\w*digital_in")
-_OWN = frozenset({"rq_", "RTDE", "modbus"})
 
 
 class UrRewriter(Rewriter):
@@ -54,12 +46,8 @@ class UrRewriter(Rewriter):
     @cached_property
     def _values(self) -> dict[str, ProgramNode]:
         """The last value that is assigned to each name."""
-        found: dict[str, ProgramNode] = {}
-        for parsed in (*(other.parsed for other in self.program.others), self.program.parsed):
-            for node in parsed.tree.walk():
-                if node.kind == "assign" and node.parts[0].kind == "name":
-                    found[node.parts[0].name] = node.parts[1]
-        return found
+        assigned = (node.parts for node in self.all_nodes() if node.kind == "assign")
+        return {target.name: value for target, value in assigned if target.kind == "name"}
 
     def is_generated(self, node: ProgramNode, parents: tuple[ProgramNode, ...]) -> bool:
         """Functions of URCaps, and what PolyScope writes before the program."""
@@ -89,7 +77,7 @@ class UrRewriter(Rewriter):
                 yield from self.scaled("scale-wait", node, node.parts[0], (0.1, 10.0))
             elif node.name == "set_tcp" and node.parts and node.parts[0].kind == "pose":
                 yield TextChange("other-tool", node, self.put(node.parts[0], "p[0, 0, 0, 0, 0, 0]"))
-            elif node.name == "pose_trans" and len(node.parts) == 2:
+            elif node.name in ("pose_trans", "pose_add", "pose_sub") and len(node.parts) == 2:
                 yield TextChange("other-frame", node, self.put(node, self.written(node.parts[1])))
                 yield from self._reversed(node, node.parts[1])
         elif node.kind == "assign" and node.parts[1].kind == "pose" and len(node.parts[1].parts) == 6:

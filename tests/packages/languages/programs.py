@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
+
+from mutabot_cell import Cell
+from mutabot_languages import load
 
 URSCRIPT = """def pick():
   over = p[0.5, 0.2, 0.3, 0, 3.1415926, 0]
@@ -65,3 +69,10 @@ def written(folder: Path, language: str) -> Path:
     for name, text in FILES[language].items():
         (folder / name).write_bytes(text.encode("latin-1"))
     return folder / next(iter(FILES[language]))
+
+
+def run(folder: Path, name: str, text: str, **options: Any) -> tuple[Cell, Any]:
+    """Run a program of one file; the cell, and what the run returns."""
+    (folder / name).write_text(text, encoding="latin-1")
+    cell = Cell(seed=1)
+    return cell, load(folder / name).run(cell, **options)

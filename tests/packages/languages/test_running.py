@@ -3,22 +3,17 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from mutabot_cell import Cell, MotionRefused
+from mutabot_cell import Cell
 from mutabot_languages import LanguageError, ProgramError, UnsupportedError, load
 from mutabot_languages.core.frames import Frame
-from tests.packages.languages.programs import FILES, INPUTS, written
-
-
-def run(folder: Path, name: str, text: str, **options: Any) -> tuple[Cell, Any]:
-    (folder / name).write_text(text, encoding="latin-1")
-    cell = Cell(seed=1)
-    return cell, load(folder / name).run(cell, **options)
+from tests.packages.languages.programs import FILES, INPUTS, run, written
 
 
 def test_the_same_task_ends_at_the_same_pose_in_all_languages(tmp_path: Path) -> None:
@@ -138,16 +133,6 @@ def test_what_has_no_effect_is_noted(tmp_path: Path) -> None:
     assert ended.notes == ("textmsg at line 1 has no effect here",)
 
 
-def test_a_pose_out_of_reach_stops_the_program(tmp_path: Path) -> None:
-    far = "far = p[3, 0, 0.3, 0, 3.14, 0]\n"
-    with pytest.raises(ProgramError, match=r"^a.script:2: movej\(far\): unreachable: .* \(in <module>\)$"):
-        run(tmp_path, "a.script", f"{far}movej(far)\n")
-    with pytest.raises(
-        MotionRefused, match=r"^a.script:2: movel\(far\): motion refused: out of reach .* \(in <m"
-    ):
-        run(tmp_path, "a.script", f"{far}movel(far)\n")
-
-
 def test_a_tool_that_no_file_declares_may_be_in_another_file(tmp_path: Path) -> None:
     text = "MODULE M\nPROC main()\nMoveL Offs(CRobT(),0,0,9),v50,fine,tGrip;\nENDPROC\nENDMODULE"
     with pytest.raises(
@@ -162,8 +147,9 @@ def test_a_script_whose_functions_take_arguments_runs_what_stands_beside_them(tm
 
 
 def test_pytest_shows_nothing_of_the_machine_where_a_program_stops(tmp_path: Path) -> None:
+    (tmp_path / "a.script").write_text("def a():\n  b = 1 / 0\nend\n")
     with pytest.raises(ProgramError) as caught:
-        run(tmp_path, "a.script", "def a():\n  b = 1 / 0\nend\n")
+        load(tmp_path / "a.script").run(Cell(seed=1))
     shown = caught.traceback.filter(caught)
     assert {Path(entry.path).name for entry in shown} == {"test_running.py"}
 
@@ -256,3 +242,50 @@ def test_a_whole_target_of_krl_reads_no_pose_and_one_with_parts_does(tmp_path: P
         load(tmp_path / "a.src").run(cell)
         reads.append(count)
     assert reads == [0, 1]
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "message"),
+    [
+        (
+            "a.src",
+            "DEF a(SPEED:IN )\nDECL REAL V\nV=SPEED*2\nEND\n",
+            "a.src:3: speed has no value: a was called without it, or nothing set it (in a)",
+        ),
+        (
+            "a.src",
+            "DEF a( )\nWAIT SEC f( )\nEND\nDEFFCT REAL f( )\nENDFCT\n",
+            "a.src:2: f ended without RETURN, and has no value (in a)",
+        ),
+        (
+            "m.mod",
+            "MODULE M\nPROC main()\nf;\nENDPROC\nPROC f(\\num x)\nWaitTime x;\nENDPROC\nENDMODULE",
+            "m.mod:6: x has no value: f was called without it, or nothing set it (in f)",
+        ),
+        (
+            "m.mod",
+            "MODULE M\nPROC main()\nWaitTime f();\nENDPROC\nFUNC num f()\nENDFUNC\nENDMODULE",
+            "m.mod:3: f ended without RETURN, and has no value (in main)",
+        ),
+        (
+            "a.script",
+            "def f():\n  a = 1\nend\nb = f()\nsleep(b)\n",
+            "a.script:5: b has no value: <module> was called without it, or nothing set it (in <module>)",
+        ),
+        (
+            "a.src",
+            "DEF a( )\nDECL INT I\nPTP I\nEND\n",
+            "a.src:3: PTP I: expected a position {X …} or axes {A1 …}, found 0 (in a)",
+        ),
+        (
+            "m.mod",
+            "MODULE M\nPROC main()\nMoveAbsJ CRobT(),v100,fine,tool0;\nENDPROC\nENDMODULE",
+            "m.mod:3: MoveAbsJ CRobT(),v100,fine,tool0: expected jointtarget, found robtarget (in main)",
+        ),
+    ],
+)
+def test_a_value_that_is_missing_or_of_another_kind_is_named(
+    tmp_path: Path, name: str, text: str, message: str
+) -> None:
+    with pytest.raises(ProgramError, match=f"^{re.escape(message)}$"):
+        run(tmp_path, name, text)

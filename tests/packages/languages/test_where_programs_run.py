@@ -166,12 +166,21 @@ def test_it_does_not_come_that_far(new_cell, mutabot_seed):
 
 @pytest.mark.parametrize("engine", ["fork", pytest.param("replay", marks=pytest.mark.whole)])
 @pytest.mark.parametrize(
-    ("suite", "verdict"), [("", "refused"), pytest.param(CAUGHT, "killed", marks=pytest.mark.whole)]
+    ("motion", "suite", "verdict"),
+    [
+        ("MoveL FAR,v200", "", "refused"),
+        ("MoveJ FAR,v200", "", "refused"),
+        pytest.param("MoveL FAR,v200", CAUGHT, "killed", marks=pytest.mark.whole),
+        # the function that asks for joint angles raises an error of the program: no motion was asked for
+        ("MoveAbsJ CalcJointT(FAR,tool0),v200", "", "killed"),
+    ],
 )
 def test_a_motion_that_the_mutants_text_asks_for_and_the_robot_refuses_is_no_kill(
-    suite: str, verdict: str, engine: str, tmp_path: Path
+    motion: str, suite: str, verdict: str, engine: str, tmp_path: Path
 ) -> None:
-    found = ends(verdicts(tmp_path, suite, engine, '["cell"]', FAR))
+    far = motion.replace("FAR", "Offs(CRobT(),0,0,-9000)")
+    program = FAR.replace("MoveL Offs(CRobT(),0,0,-9000),v200", far)
+    found = ends(verdicts(tmp_path, suite, engine, '["cell"]', program))
     assert found == {
         "count := 3 deleted": verdict,
         "count > 2 → NOT (count > 2)": verdict,
