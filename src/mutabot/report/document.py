@@ -17,7 +17,8 @@ from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity, Span
 from mutabot.model.outcome import Apart, Measurement
 from mutabot.report.mutant_data import SPAN
 from mutabot.report.texts import effect_text, excerpts, state_of, telling
-from mutabot.results.results import Encoder, MutantResult, Results
+from mutabot.results.encoder import Encoder
+from mutabot.results.results import MutantResult, Results
 from mutabot.results.score import Group, RoundScores, Score
 from mutabot.results.statistics import Confirmed, Estimate, false_kills, false_survivors
 from mutabot.thresholds import ladders, thresholds

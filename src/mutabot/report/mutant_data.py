@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from mutabot.model import Span
 from mutabot.report.texts import effect_text, one_line, state_of
-from mutabot.results.results import Encoder
+from mutabot.results.encoder import Encoder
 
 if TYPE_CHECKING:
     from mutabot.results.results import MutantResult, Results

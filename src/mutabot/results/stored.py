@@ -21,7 +21,8 @@ from mutabot.frozen import frozen
 from mutabot.journal.files import find_journal
 from mutabot.journal.recordings import ORIGINAL, Recordings
 from mutabot.model.codec import shallow
-from mutabot.results.results import Encoder, Results
+from mutabot.results.encoder import Encoder
+from mutabot.results.results import Results
 from mutabot.thresholds.thresholds import Thresholds, thresholds_of
 
 if TYPE_CHECKING:
