@@ -18,7 +18,7 @@ from types import ModuleType
 from typing import Any
 
 from mutabot.model import Instrumentation, ProgramText
-from mutabot.model.mutant import RUNTIME
+from mutabot.model.program_text import RUNTIME
 from mutabot.runtime.program_text import compiling
 from mutabot.runtime.program_text.compiling import compile_tree
 from mutabot.runtime.program_text.instrument import SessionText, instrumented

@@ -38,7 +38,7 @@ from mutabot.model.events import (
     Unforked,
 )
 from mutabot.model.job import Job
-from mutabot.model.mutant import Sighting
+from mutabot.model.program_text import Sighting
 from mutabot.model.source_units import Executed, File, is_test_file
 from mutabot.operators.command import Fatal, Identity
 

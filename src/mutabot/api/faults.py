@@ -15,10 +15,10 @@ if TYPE_CHECKING:
     from mutabot.faults import Project as Project
     from mutabot.model.activation import Activation as Activation
     from mutabot.model.call import Unchanged as Unchanged
-    from mutabot.model.mutant import Alternative as Alternative
-    from mutabot.model.mutant import ProgramText as ProgramText
     from mutabot.model.mutant import Site as Site
-    from mutabot.model.mutant import TextPlace as TextPlace
+    from mutabot.model.program_text import Alternative as Alternative
+    from mutabot.model.program_text import ProgramText as ProgramText
+    from mutabot.model.program_text import TextPlace as TextPlace
     from mutabot.operators.command import CommandOperator as CommandOperator
     from mutabot.operators.magnitudes import Magnitudes as Magnitudes
     from mutabot.operators.operator import Context as Context
@@ -35,7 +35,8 @@ _HOMES = {
     "mutabot.faults": ("FaultProvider", "Planned", "PlannedMutant", "Project"),
     "mutabot.model.activation": ("Activation",),
     "mutabot.model.call": ("Unchanged",),
-    "mutabot.model.mutant": ("Alternative", "ProgramText", "Site", "TextPlace"),
+    "mutabot.model.mutant": ("Site",),
+    "mutabot.model.program_text": ("Alternative", "ProgramText", "TextPlace"),
     "mutabot.operators.command": ("CommandOperator",),
     "mutabot.operators.magnitudes": ("Magnitudes",),
     "mutabot.operators.operator": ("Context", "Example", "Need", "Rule", "Subject"),

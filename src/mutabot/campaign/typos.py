@@ -10,7 +10,8 @@ from mutabot.campaign.faults.providers import asked_for, operators_of_packages
 from mutabot.errors import SelectionError
 from mutabot.faults import known_families
 from mutabot.languages.registry import program_files
-from mutabot.model.mutant import Role, line_of, means_numbers
+from mutabot.model.mutant import Role
+from mutabot.model.mutant_pattern import line_of, means_numbers
 from mutabot.model.selection import nothing_fits
 from mutabot.operators import registry
 

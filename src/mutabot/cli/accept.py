@@ -17,7 +17,7 @@ from mutabot.config.suppressions import FILE, add_acceptances, read_suppressions
 from mutabot.errors import SelectionError, UsageError
 from mutabot.journal.files import is_written
 from mutabot.journal.journal import Journal
-from mutabot.model.mutant import means_numbers, numbers_in
+from mutabot.model.mutant_pattern import means_numbers, numbers_in
 from mutabot.report.document import accepting_data
 from mutabot.report.sections import Section, accepted_sections, numbered
 from mutabot.report.terminal.console import make_console, print_section, short_place

@@ -10,7 +10,7 @@ from pydantic import AfterValidator, Field
 
 from mutabot.errors import unknown_name_text
 from mutabot.model import Kind
-from mutabot.model.mutant import means_numbers
+from mutabot.model.mutant_pattern import means_numbers
 from mutabot.model.quantity import MEASURED, measures_of
 from mutabot.model.units import OF_ANY, UNITS, units_of
 from mutabot.thresholds.demands import OFFSET, Demand, parse_amount

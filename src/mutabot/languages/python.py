@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, TypeVar
 if TYPE_CHECKING:
     from mutabot.model.mutant import Extent
 
+
 _Node = TypeVar("_Node", bound=ast.AST)
 _TEXT_LIMIT = 60
 _TEXTS = r"""[rRbBfFuU]{0,2}(?:"{3}[^]*?"{3}|'{3}[^]*?'{3}|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*')"""

@@ -11,23 +11,19 @@ from mutabot.lazy import lazily
 
 if TYPE_CHECKING:
     from mutabot.model.call import Call, CallFault, Middleware, Proceed, Reply, Unchanged
-    from mutabot.model.mutant import (
+    from mutabot.model.mutant import Moment, Mutant, Role, Site, Span
+    from mutabot.model.operation import ANY, Case, Clock, Operation, Pattern, Probe, Vocabulary, Wait
+    from mutabot.model.outcome import By, Check, Compared, Diverged, Kill, LeftOut, Looked, Outcome, Verdict
+    from mutabot.model.path import Path
+    from mutabot.model.program_text import (
         FATAL,
         IDENTITY,
         Alternative,
         Instrumentation,
-        Moment,
-        Mutant,
         ProgramText,
-        Role,
         Sighting,
-        Site,
-        Span,
         TextPlace,
     )
-    from mutabot.model.operation import ANY, Case, Clock, Operation, Pattern, Probe, Vocabulary, Wait
-    from mutabot.model.outcome import By, Check, Compared, Diverged, Kill, LeftOut, Looked, Outcome, Verdict
-    from mutabot.model.path import Path
     from mutabot.model.quantity import Kind, Mode, Quantity
 
 __all__ = [
@@ -41,9 +37,9 @@ _HOMES = {
     "mutabot.model.path": ("Path",),
     "mutabot.model.quantity": ("Kind", "Mode", "Quantity"),
     "mutabot.model.call": ("Call", "Middleware", "CallFault", "Proceed", "Reply", "Unchanged"),
-    "mutabot.model.mutant": (
-        "FATAL", "IDENTITY", "Alternative", "Instrumentation", "Moment", "Mutant", "ProgramText",
-        "Role", "Sighting", "Site", "Span", "TextPlace",
+    "mutabot.model.mutant": ("Moment", "Mutant", "Role", "Site", "Span"),
+    "mutabot.model.program_text": (
+        "FATAL", "IDENTITY", "Alternative", "Instrumentation", "ProgramText", "Sighting", "TextPlace",
     ),
     "mutabot.model.operation": (
         "ANY", "Case", "Clock", "Operation", "Pattern", "Probe", "Vocabulary", "Wait",

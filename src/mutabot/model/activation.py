@@ -10,10 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mutabot.frozen import frozen
-from mutabot.model.mutant import FATAL, IDENTITY, Place, Span
+from mutabot.model.program_text import FATAL, IDENTITY
+
+if TYPE_CHECKING:
+    from mutabot.model.mutant import Place, Span
 
 #: a point at which the process of a mutant first differs from the original's
 Key = tuple[Any, ...]

@@ -13,8 +13,9 @@ from typing import Any
 
 from mutabot.frozen import frozen
 from mutabot.model.codec import from_data, to_data
-from mutabot.model.mutant import Sighting, Span
+from mutabot.model.mutant import Span
 from mutabot.model.outcome import By, Check
+from mutabot.model.program_text import Sighting
 from mutabot.model.source_units import Executed
 
 #: origins of processes below the tests: a program that was started, or a copy of another process

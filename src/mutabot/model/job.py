@@ -19,8 +19,9 @@ from mutabot.model.codec import from_data, is_plain, to_data
 from mutabot.model.deadline import Limit
 from mutabot.model.event_file import FOLDER
 from mutabot.model.files import open_file, read_file
-from mutabot.model.mutant import Instrumentation, Mutant, Site, Span
+from mutabot.model.mutant import Mutant, Site, Span
 from mutabot.model.operation import Vocabulary
+from mutabot.model.program_text import Instrumentation
 
 #: environment variable that names the job file; the plugin sleeps without it
 JOB_VARIABLE = "MUTABOT_JOB"

@@ -1,17 +1,15 @@
-"""Mutants: a fault at a site, when it acts, and alternatives in the program text.
+"""Mutants: a fault at a site, and when it acts.
 
 Without a moment a mutant acts at each call of its site. In a control loop no robot has such a fault: a policy
-that is wrong at 300 of 300 steps is noticed by every test. Alternatives are made where the program text is
-examined, and put in place where the program runs; they cross the process border as plain data.
+that is wrong at 300 of 300 steps is noticed by every test.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import field, replace
 from enum import StrEnum
-from functools import lru_cache
 from typing import Any
 
 from mutabot.errors import shortened
@@ -132,6 +130,10 @@ class Role(StrEnum):
 
     PROGRAM = "program"
     ORACLE = "oracle"
+
+
+#: first line (1-based), first column, last line, last column (0-based, in UTF-8 bytes), as in ``ast``
+Extent = tuple[int, int, int, int]
 
 
 @frozen(refuses=True, order=True)
@@ -328,256 +330,3 @@ class Place:
         span = self.site.span
         columns = f"{span.line}:{span.column}-{span.end_line}:{span.end_column}"
         return f"{span.file}:{columns} {self.operation} {self.pattern or ''}".rstrip()
-
-
-#: numbers with more digits than these are of nothing
-_NUMBERS = re.compile(r"\d{1,9}(-\d{1,9})?(,\d{1,9}(-\d{1,9})?)*")
-_LINE = re.compile(r"(.+):(\d{1,9}(?:-\d{1,9})?)")
-
-
-def fits(pattern: str, mutant: Mutant) -> bool:
-    """Return whether a word of ``--only`` or ``--skip`` matches this mutant."""
-    if means_numbers(pattern):
-        return any(mutant.number in _range(part) for part in pattern.split(","))
-    line = line_of(pattern)
-    if line is not None and any(_is_at(span, *line) for span in mutant.site.spans):
-        return True
-    names = (mutant.operator, mutant.family, mutant.site.role.value)
-    if pattern in names or is_like(pattern, mutant.id):
-        return True
-    return any(_is_in(pattern, span) for span in mutant.site.spans)
-
-
-def _is_in(pattern: str, span: Span) -> bool:
-    """Return whether a word is a line of a span, its file or one of its folders."""
-    lines = (f"{span.file}:{number}" for number in range(span.line, span.end_line + 1))
-    return (
-        is_like(pattern, span.file)
-        or span.file.startswith(pattern.rstrip("/") + "/")
-        or any(is_like(pattern, line) for line in lines)
-    )
-
-
-def means_numbers(pattern: str) -> bool:
-    """Return whether a word consists of mutants' numbers."""
-    return _NUMBERS.fullmatch(pattern) is not None
-
-
-def numbers_in(pattern: str) -> Iterator[int]:
-    """Yield the numbers in ``3,16-20``, in order."""
-    return (number for part in pattern.split(",") for number in _range(part))
-
-
-def line_of(pattern: str) -> tuple[str, range] | None:
-    """Return the file and the lines that a word names; None if it is no ``file:line``."""
-    line = _LINE.fullmatch(pattern)
-    return (line[1], _range(line[2])) if line is not None else None
-
-
-def _range(text: str) -> range:
-    """Return the numbers in ``7`` or ``3-7``."""
-    first, _, last = text.partition("-")
-    return range(int(first), int(last or first) + 1)
-
-
-def _is_at(span: Span, file: str, lines: range) -> bool:
-    """Return whether a span is in these lines of a file, whose first folders may be left out."""
-    is_here = is_like(file, span.file) or span.file.endswith("/" + file.removeprefix("…/"))
-    return is_here and span.line < lines.stop and span.end_line >= lines.start
-
-
-def is_like(pattern: str, text: str) -> bool:
-    """Return whether a text matches a pattern in which only ``*`` and ``?`` are special.
-
-    What stands between stars is looked for once, from left to right: no pattern takes long.
-    """
-    first, *between = pattern.split("*")
-    if not between:
-        return pattern == text or _literal_pattern(pattern).fullmatch(text) is not None
-    last = between.pop()
-    at, end = len(first), len(text) - len(last)
-    if at > end or not _literal_pattern(first).match(text) or not _literal_pattern(last).fullmatch(text, end):
-        return pattern == text
-    for part in filter(None, between):
-        found = _literal_pattern(part).search(text, at, end)
-        if found is None:
-            return pattern == text
-        at = found.end()
-    return True
-
-
-@lru_cache(maxsize=1024)
-def _literal_pattern(part: str) -> re.Pattern[str]:
-    """Return the regular expression for a part of a pattern without stars."""
-    return re.compile("".join("." if sign == "?" else re.escape(sign) for sign in part), re.DOTALL)
-
-
-#: first line (1-based), first column, last line, last column (0-based, in UTF-8 bytes), as in ``ast``
-Extent = tuple[int, int, int, int]
-
-#: the name by which instrumented program text finds its switches; in a template, ``RUNTIME[0]`` is the helper
-RUNTIME = "__mutabot__"
-
-
-#: indexes of the controls: the original goes on as it is; the place raises
-IDENTITY, FATAL = -1, -2
-
-
-#: kinds of values that fit what an alternative needs
-_FITTING: Mapping[str, frozenset[str]] = {
-    "number": frozenset({"number", "integer"}),
-    "integer": frozenset({"integer"}),
-    "truth": frozenset({"truth"}),
-    "bits": frozenset({"integer", "truth", "set", "flag"}),
-}
-
-
-def fits_kinds(need: str, kinds: Iterable[str]) -> bool:
-    """Return whether a value of one of these kinds fits what an alternative needs."""
-    return not _FITTING.get(need, frozenset()).isdisjoint(kinds)
-
-
-@frozen
-class Alternative:
-    """Another expression or statement in the place of the original.
-
-    Attributes:
-        operator: name of the operator that makes it.
-        variant: which of the operator's alternatives here; empty if there is only one.
-        template: Python text of it, in which ``__kept_0__`` … stand for parts of the original that are kept.
-        text: how the place would read in the program text.
-        needs: kind of value that it takes: ``number``, ``integer``, ``truth``, ``bits``; empty for any.
-        family: the family of its operator.
-        raises: whether a statement raises whatever happens, so that the original never follows it.
-
-    Example: ``Alternative("AOR", "sub", "__kept_0__ - __kept_1__", "x - y", needs="number")``.
-    """
-
-    operator: str
-    variant: str
-    template: str
-    text: str
-    needs: str = ""
-    family: str = ""
-    raises: bool = False
-
-    @staticmethod
-    def kept_name(index: int) -> str:
-        """Return the name in a template that is replaced by a part of the original: ``TextPlace.kept``."""
-        return f"__kept_{index}__"
-
-    def fits(self, kinds: Iterable[str]) -> bool:
-        """Return whether it takes a value of one of these kinds, which the original had."""
-        return fits_kinds(self.needs, kinds) if self.needs else True
-
-
-@frozen
-class TextPlace:
-    """An expression or statement of the program text with its alternatives.
-
-    Attributes:
-        number: 1, 2, 3 … over all files of a plan; how the running program names it.
-        span: its exact place.
-        text: how it reads, shortened.
-        occurrence: 1-based number among the places with this text in this function.
-        node: class of its node in ``ast``.
-        statement: whether it is a statement rather than an expression.
-        kept: extents of the parts of the original that templates keep, by their number there.
-        alternatives: what it could read instead.
-        variable: whether it is a variable that another of the same type could stand for.
-        at_import: whether it is evaluated while its module is imported.
-    """
-
-    number: int
-    span: Span
-    text: str
-    occurrence: int
-    node: str
-    statement: bool = False
-    kept: tuple[Extent, ...] = ()
-    alternatives: tuple[Alternative, ...] = ()
-    variable: bool = False
-    at_import: bool = False
-
-    @property
-    def extent(self) -> Extent:
-        """The extent of the place in its file."""
-        span = self.span
-        return (span.line, span.column, span.end_line, span.end_column)
-
-    @property
-    def site(self) -> Site:
-        """The place as a site."""
-        return Site(self.span, self.text, self.occurrence, Role.PROGRAM)
-
-
-@frozen
-class ProgramText:
-    """A program file and its places.
-
-    Attributes:
-        file: path relative to the project's root, with forward slashes.
-        digest: of the file's bytes: other text has other places.
-        places: the places, in the order of the text.
-        declared: names that a function declares ``global`` or ``nonlocal``, by function: they must not be
-            mentioned there before, so they cannot stand for another variable.
-    """
-
-    file: str
-    digest: str
-    places: tuple[TextPlace, ...] = ()
-    declared: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-
-    @classmethod
-    def of(
-        cls, file: str, content: bytes, places: Iterable[TextPlace], declared: Mapping[str, tuple[str, ...]]
-    ) -> ProgramText:
-        """Return the text of a file with this content."""
-        from mutabot.model.source_units import digest  # noqa: PLC0415  # slow, and only planning needs it
-
-        return cls(file, digest(content), tuple(places), declared)
-
-
-@frozen
-class Instrumentation:
-    """What is put into the program while it is imported.
-
-    Attributes:
-        texts: the files and the places in them; fewer places cost less.
-        record: whether to note the kinds of values instead of offering alternatives.
-    """
-
-    texts: tuple[ProgramText, ...]
-    record: bool = False
-
-    def only(self, places: Collection[int]) -> Instrumentation:
-        """Return a copy with these places only, given by number."""
-        texts = (
-            replace(text, places=tuple(place for place in text.places if place.number in places))
-            for text in self.texts
-        )
-        return replace(self, texts=tuple(text for text in texts if text.places))
-
-
-@frozen
-class Sighting:
-    """What the baseline observed at a place.
-
-    Attributes:
-        place: number of the place.
-        hits: evaluations that were looked at; no more than a few per test.
-        kinds: kinds of the values it had, sorted: ``number``, ``integer``, ``truth``, ``text`` … or
-            ``module:Type``; there may be more once each alternative has had one that fits.
-        variables: for a variable: others in scope that had the same type each time, sorted.
-    """
-
-    place: int
-    hits: int
-    kinds: tuple[str, ...] = ()
-    variables: tuple[str, ...] = ()
-
-    def with_others(self, other: Sighting) -> Sighting:
-        """Return the merged observations of two sessions: all kinds, and the variables that both have."""
-        kinds = tuple(sorted({*self.kinds, *other.kinds}))
-        variables = tuple(name for name in self.variables if name in other.variables)
-        return Sighting(self.place, self.hits + other.hits, kinds, variables)

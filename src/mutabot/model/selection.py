@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mutabot.errors import SelectionError, nearest_name
-from mutabot.model.mutant import Mutant, fits, is_like
+from mutabot.model.mutant_pattern import fits, is_like
 
 if TYPE_CHECKING:
+    from mutabot.model.mutant import Mutant
     from mutabot.model.outcome import LeftOut
 
 

@@ -9,10 +9,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import field
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
 from mutabot.frozen import frozen
 
-from .mutant import Mutant, Span, is_like
+from .mutant_pattern import is_like
+
+if TYPE_CHECKING:
+    from .mutant import Mutant, Span
 
 #: returns the lines of a file; none if it is not known
 LinesOf = Callable[[str], Sequence[str]]

@@ -21,7 +21,7 @@ from mutabot.journal import records
 from mutabot.journal.files import is_written
 from mutabot.journal.reader import JournalReader
 from mutabot.model import By, LeftOut, Mutant, Outcome, Quantity, Role, Verdict
-from mutabot.model.mutant import fits
+from mutabot.model.mutant_pattern import fits
 from mutabot.model.selection import select
 from mutabot.model.suppression import Acceptance, Accepted
 from mutabot.results.divergence import change_text, explain, quantity_of, weight_of

@@ -5,12 +5,16 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 from mutabot.errors import shortened
 from mutabot.frozen import frozen
-from mutabot.model.mutant import Mutant, fits, is_like
+from mutabot.model.mutant_pattern import fits, is_like
 from mutabot.model.quantity import Kind
 from mutabot.model.units import UNITS, convert_difference, dimension_of
+
+if TYPE_CHECKING:
+    from mutabot.model.mutant import Mutant
 
 #: the operator that is meant if a demand names none: a value is off by the magnitude
 OFFSET = "offset"

@@ -10,7 +10,7 @@ import pytest
 
 from mutabot.errors import SelectionError
 from mutabot.faults import brought_providers
-from mutabot.model.mutant import is_like
+from mutabot.model.mutant_pattern import is_like
 from mutabot.model.selection import select
 from mutabot.operators import registry
 from tests.results.samples import BY_TO, LEFT_OUT, MUTANTS, NEGATE, NOISE, REVERSE, SKIP

@@ -20,7 +20,7 @@ import pytest
 
 from mutabot.model import Instrumentation
 from mutabot.model.codec import from_data, to_data
-from mutabot.model.mutant import RUNTIME
+from mutabot.model.program_text import RUNTIME
 from mutabot.runtime.program_text import instrument
 from mutabot.runtime.program_text.compiling import compile_tree
 from mutabot.runtime.program_text.instrument import SessionText, instrumented

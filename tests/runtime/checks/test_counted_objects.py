@@ -7,7 +7,8 @@ from collections.abc import Callable
 
 import pytest
 
-from mutabot.model.mutant import Span, TextPlace
+from mutabot.model.mutant import Span
+from mutabot.model.program_text import TextPlace
 from mutabot.runtime.observation.checks import Looks
 from mutabot.runtime.program_text.switches import Sightings
 

@@ -21,7 +21,8 @@ from mutabot.languages.registry import front_end_of
 from mutabot.model.activation import Activation
 from mutabot.model.events import TRACE_LIMIT, Remark, SiteSeen, TestEnd
 from mutabot.model.job import RefusedAt
-from mutabot.model.mutant import Extent, Instrumentation, Mutant, Place, ProgramText, Role, Site, Span
+from mutabot.model.mutant import Extent, Mutant, Place, Role, Site, Span
+from mutabot.model.program_text import Instrumentation, ProgramText
 from mutabot.operators.command import Identity
 from mutabot.original import Original
 

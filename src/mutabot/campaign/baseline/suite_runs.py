@@ -34,7 +34,8 @@ from .baseline import Baseline, Sources, observation, refused_of
 from .untested import add_untested
 
 if TYPE_CHECKING:
-    from mutabot.model.mutant import Place, ProgramText
+    from mutabot.model.mutant import Place
+    from mutabot.model.program_text import ProgramText
 
 #: how the reason begins why such a test is set aside: its seed makes it fail, not chance
 FAILS = "fails on the unmutated program"

@@ -16,6 +16,7 @@ from mutabot.model.source_units import FunctionNode
 if TYPE_CHECKING:
     from mutabot.model.mutant import Extent
 
+
 #: methods of arrays and containers that change them
 _CHANGING = frozenset(
     {

@@ -23,7 +23,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from mutabot.languages.python import extent_of, head_size, placed
 from mutabot.model.events import NotInstrumented, PlacesReached, TextsSeen
-from mutabot.model.mutant import RUNTIME, Alternative, Extent
+from mutabot.model.mutant import Extent
+from mutabot.model.program_text import RUNTIME, Alternative
 from mutabot.model.source_units import digest
 from mutabot.runtime import real_path
 from mutabot.runtime.event_file import EventWriter, Held

@@ -16,7 +16,7 @@ from contextlib import suppress
 from typing import Any, NamedTuple
 
 from mutabot.frozen import frozen
-from mutabot.model.mutant import RUNTIME
+from mutabot.model.program_text import RUNTIME
 
 #: integers of more bits are left to a real evaluation
 _LARGEST = 256

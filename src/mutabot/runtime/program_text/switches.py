@@ -22,8 +22,8 @@ from functools import cache
 from typing import Any, NoReturn
 
 from mutabot.model.data import is_of_numpy
-from mutabot.model.mutant import FATAL, IDENTITY, Sighting, TextPlace, fits_kinds
 from mutabot.model.path import class_name
+from mutabot.model.program_text import FATAL, IDENTITY, Sighting, TextPlace, fits_kinds
 from mutabot.runtime.program_text.prediction import Forms, locals_of
 
 
