@@ -26,6 +26,12 @@ OF_NUMBERS: Mapping[str, Callable[[Any, Any], Any]] = {
     "+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv,
     "<": operator.lt, ">": operator.gt, "<=": operator.le, ">=": operator.ge,
 }  # fmt: skip
+#: what others make of two values of any kind
+OF_VALUES: Mapping[str, Callable[[Any, Any], Any]] = {
+    "==": operator.eq, "!=": operator.ne, "<>": operator.ne, "and": lambda left, right: bool(left and right),
+    "or": lambda left, right: bool(left or right),
+    **dict.fromkeys(("xor", "exor"), lambda left, right: bool(left) != bool(right)),
+}  # fmt: skip
 
 
 class Dialect:

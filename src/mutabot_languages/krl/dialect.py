@@ -8,12 +8,13 @@ from collections.abc import Callable, Mapping
 from typing import Any, ClassVar
 
 from mutabot_languages.core.frames import Frame
-from mutabot_languages.core.machine import OF_NUMBERS, Dialect, Evaluation, Machine
+from mutabot_languages.core.machine import OF_NUMBERS, OF_VALUES, Dialect, Evaluation, Machine
 from mutabot_languages.core.names import name_set
 from mutabot_languages.core.scope import RoutineScope, Steps, Structure, Variable
 from mutabot_languages.core.tree import ProgramNode
 
 _CARTESIAN = ("x", "y", "z", "a", "b", "c")
+_OF_BITS = {"b_and": int.__and__, "b_or": int.__or__, "b_exor": int.__xor__}
 _NULL = dict.fromkeys(_CARTESIAN, 0.0)
 #: system variables that can be set without an effect in the cell
 INERT = name_set(
@@ -61,12 +62,9 @@ class KrlDialect(Dialect):
         name = node.name
         if name in machine.signals:
             found = machine.signals[name]
-            is_input = found.startswith("$in") or found.startswith("$anin")
-            return (
-                task.station.read(task.site(node, scope), found)
-                if is_input
-                else (task.station.outputs.get(found, False))
-            )
+            if found.startswith(("$in", "$anin")):
+                return task.station.read(task.site(node, scope), found)
+            return task.station.outputs.get(found, False)
         if name in ("$pos_act", "$pos_act_mes", "$pos_int"):
             at = machine.base.inverse() * task.station.actual(task.site(node, scope))
             return of_frame(at, "e6pos")
@@ -88,26 +86,11 @@ class KrlDialect(Dialect):
 
     def binary(self, operator: str, left: Any, right: Any) -> Any:
         """The value of a binary operation."""
-        match operator:
-            case ":":
-                return join(left, right)
-            case "==":
-                return left == right
-            case "<>":
-                return left != right
-            case "and":
-                return bool(left) and bool(right)
-            case "or":
-                return bool(left) or bool(right)
-            case "exor":
-                return bool(left) != bool(right)
-            case "b_and":
-                return int(left) & int(right)
-            case "b_or":
-                return int(left) | int(right)
-            case "b_exor":
-                return int(left) ^ int(right)
-        return _calculated(operator, left, right)
+        if operator in OF_VALUES:
+            return OF_VALUES[operator](left, right)
+        if operator in _OF_BITS:
+            return _OF_BITS[operator](int(left), int(right))
+        return join(left, right) if operator == ":" else _calculated(operator, left, right)
 
     def unary(self, operator: str, value: Any) -> Any:
         """The value of a unary operation."""

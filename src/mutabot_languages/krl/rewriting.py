@@ -14,6 +14,7 @@ from mutabot_languages.mutation.differences import TextChange
 from mutabot_languages.mutation.rewriting import (
     NO_BLENDING,
     NO_CONFIGURATION,
+    ORDERS,
     Rewriter,
     named_number,
     signed_number,
@@ -33,14 +34,7 @@ _STALE = "the comment of its inline form is stale now"
 class KrlRewriter(Rewriter):
     """The rewriter of KRL."""
 
-    arithmetic: ClassVar = ("+", "-", "*", "/")
-    relations: ClassVar = {
-        "<": ("<=", ">="), "<=": ("<", ">"), ">": (">=", "<="), ">=": (">", "<"), "==": ("<>",),
-        "<>": ("==",),
-    }  # fmt: skip
-    logic: ClassVar = {"and": "OR", "or": "AND"}
-    negation: ClassVar = "NOT ({})"
-    ignores_case: ClassVar = True
+    relations: ClassVar = {**ORDERS, "==": ("<>",), "<>": ("==",)}
 
     @cached_property
     def _folds(self) -> list[tuple[int, int, str]]:
@@ -119,7 +113,7 @@ class KrlRewriter(Rewriter):
         elif node.name == "wait for":
             yield TextChange("forget-wait", node, self.put(node, "WAIT SEC 0"))
         elif node.name == "pulse" and len(node.parts) == 3:
-            yield from self._opposite("invert-output", node, node.parts[1])
+            yield from self.opposite("invert-output", node, node.parts[1])
 
     def _motion(self, node: ProgramNode) -> Iterator[TextChange]:
         target = node.parts[1] if node.name in ("circ", "scirc") and len(node.parts) > 1 else node.parts[0]
@@ -129,14 +123,9 @@ class KrlRewriter(Rewriter):
             yield from self.moved(node, target)
         written = self.text[node.start : node.start + len(node.name)]
         if node.name in _SWAPS and not self._is_axes(target):
-            edits = [
-                Edit(node.start, node.start + len(written), _SWAPS[node.name]),
-                *(
-                    Edit(option.start, option.end, _APPROXIMATIONS[option.name])
-                    for option in node.parts
-                    if option.kind == "option" and option.name in _APPROXIMATIONS
-                ),
-            ]
+            edits = [Edit(node.start, node.start + len(written), _SWAPS[node.name])]
+            chosen = (part for part in node.parts if part.kind == "option" and part.name in _APPROXIMATIONS)
+            edits += [Edit(option.start, option.end, _APPROXIMATIONS[option.name]) for option in chosen]
             note = _STALE if self._is_in_form(node) else ""
             yield TextChange("swap-motion", node, tuple(edits), note=note)
         for option in node.parts:
@@ -157,7 +146,7 @@ class KrlRewriter(Rewriter):
         target, value = node.parts
         name = self._meant(target)
         if name == "$out":
-            yield from self._opposite("invert-output", node, value)
+            yield from self.opposite("invert-output", node, value)
         elif name == "$vel" and target.kind == "field" and target.name == "cp":
             yield from self.scaled("scale-speed", node, value, (0.1, 2.0))
         elif name in ("$base", "$tool") and target.kind == "name":
@@ -175,18 +164,13 @@ class KrlRewriter(Rewriter):
             other = "-" if value.name == "+" else "+"
             yield TextChange("reverse-offset", node, (Edit(at, at + 1, other),))
 
-    def _opposite(self, operator: str, node: ProgramNode, value: ProgramNode) -> Iterator[TextChange]:
-        text = {"true": "FALSE", "false": "TRUE"}.get(self.written(value).lower())
-        if text is not None:
-            yield TextChange(operator, node, self.put(value, text))
-
     def _input(self, node: ProgramNode, parents: tuple[ProgramNode, ...]) -> Iterator[TextChange]:
         parent = parents[-1]
         if parent.kind == "assign" and parent.parts[0] is node:
             return
         if parent.kind == "binary" and parent.name in ("==", "<>"):
             other = parent.parts[1] if parent.parts[0] is node else parent.parts[0]
-            yield from self._opposite("invert-input", parent, other)
+            yield from self.opposite("invert-input", parent, other)
         else:
             yield TextChange("invert-input", node, self.put(node, f"(NOT {self.written(node)})"))
         number = node.parts[1] if node.kind == "index" else node

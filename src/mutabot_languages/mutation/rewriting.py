@@ -16,6 +16,8 @@ from .differences import ProgramFile, TextChange
 SHIFTS = (1.0, 5.0, 20.0, 50.0)
 TURNS = (2.0, 10.0, 45.0)
 AXES = ("x", "y", "z")
+#: what stands for a comparison by order, in all languages
+ORDERS = {"<": ("<=", ">="), "<=": ("<", ">"), ">": (">=", "<="), ">=": (">", "<")}
 NO_BLENDING = "corners are not rounded here, so that it cannot be observed"
 NO_CONFIGURATION = "the arm takes the nearest configuration here, so that it cannot be observed"
 
@@ -40,15 +42,17 @@ class Rewriter:
         arithmetic, relations, logic: operators that stand for each other.
         negation: how a condition is negated, around ``{}``.
         nothing: what stands for a statement that is missing.
+        opposites: values of signals, in small letters, and their contraries.
         ignores_case: whether operators may be written in capital letters.
     """
 
     arithmetic: ClassVar[tuple[str, ...]] = ("+", "-", "*", "/")
     relations: ClassVar[Mapping[str, tuple[str, ...]]]
-    logic: ClassVar[Mapping[str, str]]
-    negation: ClassVar[str]
+    logic: ClassVar[Mapping[str, str]] = {"and": "OR", "or": "AND"}
+    negation: ClassVar[str] = "NOT ({})"
     nothing: ClassVar[str] = ""
-    ignores_case: ClassVar[bool] = False
+    opposites: ClassVar[Mapping[str, str]] = {"true": "FALSE", "false": "TRUE"}
+    ignores_case: ClassVar[bool] = True
 
     def __init__(self, program: ProgramFile, sizes: Sizes | None = None) -> None:
         self.program, self.text = program, program.text
@@ -145,6 +149,19 @@ class Rewriter:
         """The differences of a motion's target."""
         yield from self.sized("shift-target", node, target, self.shifted, self.sizes.shifts, "mm", 0.001)
         yield from self.sized("turn-target", node, target, self.turned, self.sizes.turns, "deg", 1.0)
+
+    def reversed(self, node: ProgramNode, amounts: Sequence[ProgramNode]) -> Iterator[TextChange]:
+        """Offsets along x, y and z that go the other way."""
+        for axis, amount in zip(AXES, amounts, strict=False):
+            value = signed_number(amount)
+            if value:
+                yield TextChange("reverse-offset", node, self.put(amount, named_number(-value)), axis)
+
+    def opposite(self, operator: str, node: ProgramNode, value: ProgramNode) -> Iterator[TextChange]:
+        """The other value of a signal, if it is written out."""
+        text = self.opposites.get(self.written(value).lower())
+        if text is not None:
+            yield TextChange(operator, node, self.put(value, text))
 
     def scaled(
         self, operator: str, node: ProgramNode, number: ProgramNode, factors: Sequence[float]

@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Mapping
 from typing import Any, ClassVar
 
-from mutabot_languages.core.machine import OF_NUMBERS, Dialect, Evaluation, Machine
+from mutabot_languages.core.machine import OF_NUMBERS, OF_VALUES, Dialect, Evaluation, Machine
 from mutabot_languages.core.scope import (
     ControlFlow,
     ProgramRaised,
@@ -71,17 +71,10 @@ class RapidDialect(Dialect):
 
     def binary(self, operator: str, left: Any, right: Any) -> Any:
         """The value of a binary operation."""
-        match operator:
-            case "=":
-                return _equal(left, right)
-            case "<>":
-                return not _equal(left, right)
-            case "and":
-                return bool(left) and bool(right)
-            case "or":
-                return bool(left) or bool(right)
-            case "xor":
-                return bool(left) != bool(right)
+        if operator in ("=", "<>"):
+            return _equal(left, right) == (operator == "=")
+        if operator in OF_VALUES:
+            return OF_VALUES[operator](left, right)
         if isinstance(left, str) and isinstance(right, str) and operator == "+":
             return left + right
         left, right = _positions(left), _positions(right)
@@ -101,10 +94,6 @@ class RapidDialect(Dialect):
         type = variable.type or getattr(variable.value, "type", "")
         return shaped(value, type, self.structures)
 
-    def truth(self, value: Any) -> bool:
-        """A signal that is 1 is true as well."""
-        return bool(value)
-
     def matches(self, subject: Any, label: Any) -> bool:
         """Whether a case of TEST is meant."""
         return _equal(subject, label)
@@ -119,7 +108,7 @@ class RapidTask(ProgramTask):
 
     def statement(self, node: ProgramNode, scope: RoutineScope) -> Steps:
         """Carry out a statement; an error goes to the handler of its routine."""
-        if node.bodies or (node.kind in ("raise", "retry", "trynext") and self._in_handler(scope)):
+        if node.bodies or (node.kind in ("raise", "retry", "trynext") and scope.retry):
             yield from self._plain(node, scope)
             return
         for _ in range(_RETRIES):
@@ -143,9 +132,6 @@ class RapidTask(ProgramTask):
                 raise ProgramRaised(number, f"the program raises {number}")
             raise ControlFlow(node.kind)
         yield from super().statement(node, scope)
-
-    def _in_handler(self, scope: RoutineScope) -> bool:
-        return bool(scope.retry)
 
     def _handler(self, scope: RoutineScope) -> list[ProgramNode] | None:
         routine = self.machine.running.get(id(scope))
@@ -255,8 +241,6 @@ def _of_positions(operator: str, left: Any, right: Any) -> Any:
 
 def _of_numbers(operator: str, left: Any, right: Any) -> Any:
     if not all(isinstance(operand, (int, float)) for operand in (left, right)):
-        if isinstance(left, str) and isinstance(right, str) and operator in ("<", ">", "<=", ">="):
-            raise TypeError("texts are compared by StrOrder")
         raise TypeError("only numbers can be calculated with")
     if right == 0 and operator in ("/", "div", "mod"):
         raise ProgramRaised("err_divzero", "a division by zero")

@@ -14,6 +14,7 @@ from mutabot_languages.mutation.differences import TextChange
 from mutabot_languages.mutation.rewriting import (
     NO_BLENDING,
     NO_CONFIGURATION,
+    ORDERS,
     Rewriter,
     named_number,
     signed_number,
@@ -36,13 +37,10 @@ _SECONDS = 0.001
 class RapidRewriter(Rewriter):
     """The rewriter of RAPID."""
 
-    arithmetic: ClassVar = ("+", "-", "*", "/")
-    relations: ClassVar = {
-        "<": ("<=", ">="), "<=": ("<", ">"), ">": (">=", "<="), ">=": (">", "<"), "=": ("<>",), "<>": ("=",),
+    relations: ClassVar = {**ORDERS, "=": ("<>",), "<>": ("=",)}
+    opposites: ClassVar = {
+        "0": "1", "1": "0", "high": "low", "low": "high", "true": "FALSE", "false": "TRUE",
     }  # fmt: skip
-    logic: ClassVar = {"and": "OR", "or": "AND"}
-    negation: ClassVar = "NOT ({})"
-    ignores_case: ClassVar = True
 
     @cached_property
     def _types(self) -> dict[str, str]:
@@ -74,18 +72,18 @@ class RapidRewriter(Rewriter):
         if _MOTION.fullmatch(node.name):
             yield from self._motion(node, plain)
         elif node.name == "setdo" and len(plain) == 2:
-            yield from self._opposite("invert-output", node, plain[1])
+            yield from self.opposite("invert-output", node, plain[1])
         elif node.name in _OPPOSITE and plain:
             edits = (Edit(node.start, node.start + len(node.name), _OPPOSITE[node.name]),)
             yield TextChange("invert-output", node, edits)
         elif node.name in ("waitdi", "waitdo") and len(plain) == 2:
-            yield from self._opposite("invert-input", node, plain[1])
+            yield from self.opposite("invert-input", node, plain[1])
         elif node.name == "testdi":
             yield TextChange("invert-input", node, self.put(node, f"(NOT {self.written(node)})"))
         elif node.name == "waittime" and plain:
             yield from self.scaled("scale-wait", node, plain[-1], (0.1, 10.0))
         elif node.name in ("offs", "reltool"):
-            yield from self._reversed(node, plain[1:])
+            yield from self.reversed(node, plain[1:])
             if node.name == "reltool":
                 edits = (Edit(node.start, node.start + len(node.name), "Offs"),)
                 if not any(part.kind == "option" for part in node.parts):
@@ -93,25 +91,13 @@ class RapidRewriter(Rewriter):
         if node.name in _WAITS:
             yield TextChange("forget-wait", node, self.put(node, "WaitTime 0"))
 
-    def _reversed(self, node: ProgramNode, amounts: list[ProgramNode]) -> Iterator[TextChange]:
-        for index, amount in enumerate(amounts):
-            value = signed_number(amount)
-            if value:
-                yield TextChange("reverse-offset", node, self.put(amount, named_number(-value)), "xyz"[index])
-
-    def _opposite(self, operator: str, node: ProgramNode, value: ProgramNode) -> Iterator[TextChange]:
-        texts = {"0": "1", "1": "0", "high": "low", "low": "high", "true": "FALSE", "false": "TRUE"}
-        text = texts.get(self.written(value).lower())
-        if text is not None:
-            yield TextChange(operator, node, self.put(value, text))
-
     def _compared(self, node: ProgramNode) -> Iterator[TextChange]:
         """A signal that is compared with 0 or 1: a name that nobody declares, or DInput."""
         signal, value = node.parts
         is_name = signal.kind == "name" and signal.name not in self._types
         is_function = signal.kind == "call" and signal.name in ("dinput", "doutput")
         if is_name or is_function:
-            yield from self._opposite("invert-input", node, value)
+            yield from self.opposite("invert-input", node, value)
 
     def _motion(self, node: ProgramNode, plain: list[ProgramNode]) -> Iterator[TextChange]:
         is_joint = node.name.startswith("moveabsj")
@@ -129,13 +115,9 @@ class RapidRewriter(Rewriter):
         yield from self._zone(node, zone)
         if len(plain) > first + 3 and self.written(plain[first + 3]).lower() != "tool0":
             yield TextChange("other-tool", node, self.put(plain[first + 3], "tool0"))
-        given = (
-            part
-            for part in node.parts
-            if part.kind == "option" and part.name == "wobj" and part.value is None
-        )
-        for option in given:
-            if option.parts and self.written(option.parts[0]).lower() != "wobj0":
+        for option in (part for part in node.parts if part.kind == "option" and part.name == "wobj"):
+            is_named = option.value is None and option.parts
+            if is_named and self.written(option.parts[0]).lower() != "wobj0":
                 yield TextChange("other-frame", node, self.put(option.parts[0], "wobj0"))
 
     def _speed(self, node: ProgramNode, speed: ProgramNode) -> Iterator[TextChange]:

@@ -15,6 +15,7 @@ from mutabot_languages.core.tree import ProgramNode
 from mutabot_languages.registry import language_for
 
 from . import texts
+from .missing import missing_data
 from .signals import cell_map_text, signals_of
 from .trial import ARMS, LONGEST, ProgramTrial, is_out_of_reach, tried
 
@@ -39,21 +40,27 @@ def project(root: Path, files: Sequence[Path]) -> tuple[dict[str, str], list[str
     own = {file: parse.tree for file, parse in parsed.items() if language_for(file.name) is language}
     loaded = _needed(main, language, own)
     belonging = list(dict.fromkeys([*loaded, *(path for file in loaded for path in language.beside(file))]))
-    signals = signals_of([parsed.get(path) or _read(path) for path in belonging], language.name)
+    texts_of_files = [parsed.get(path) or _read(path) for path in belonging]
+    signals, missing = signals_of(texts_of_files, language.name), missing_data(texts_of_files, language.name)
     names = [path.relative_to(root).as_posix() for path in belonging]
+    given = [path.relative_to(root).as_posix() for path in loaded]
     beside = main.parent / "cell_map.toml"
     is_mapped = beside.exists()
     cell_map = beside.read_text(encoding="utf-8") if is_mapped else cell_map_text(main.name, signals)
-    made = {"mutabot.toml": texts.CONFIGURATION.format(program=json.dumps(names, ensure_ascii=False))}
+    made, lines = dict[str, str](), list[str]()
+    if missing is not None:
+        name = (main.parent / missing[0]).relative_to(root).as_posix()
+        made[name] = missing[1]
+        names, given = [*names, name], [*given, name]
+        lines = [f"drafted in {name}, as no file declares it: {', '.join(missing[2])}: put in what is right"]
+    made["mutabot.toml"] = texts.CONFIGURATION.format(program=json.dumps(names, ensure_ascii=False))
     if not is_mapped:
         made[beside.relative_to(root).as_posix()] = cell_map
-    lines = [f"program: {', '.join(names)} ({language.name})"]
+    lines = [f"program: {', '.join(names)} ({language.name})", *lines]
     if not any(root.glob("tests/**/test_*.py")):
-        found = tried(loaded, cell_map)
+        found = tried(loaded, cell_map, missing)
         stem = re.sub(r"\W", "_", main.stem.lower())
-        made[f"tests/test_{stem}.py"] = _test_text(
-            [path.relative_to(root).as_posix() for path in loaded], found
-        )
+        made[f"tests/test_{stem}.py"] = _test_text(given, found)
         lines += _told(found, main.name)
     left = [file.relative_to(root).as_posix() for file in files if file not in belonging]
     if left:

@@ -58,3 +58,27 @@ CHECK_BOX = """\
     box = cell.truth.box_position()
     assert (box.x, box.y, box.z) == pytest.approx(BOX, abs=WITHIN)
 """
+
+RAPID_MODULE = """MODULE MissingData
+  ! No file of the program declares these, so that they are as on a robot without tools: put in what is right.
+{}
+ENDMODULE
+"""
+
+RAPID_DATA = {
+    "tooldata": "  PERS tooldata {}:=[TRUE,[[0,0,0],[1,0,0,0]],[1,[0,0,1],[1,0,0,0],0,0,0]];",
+    "wobjdata": '  PERS wobjdata {}:=[FALSE,TRUE,"",[[0,0,0],[1,0,0,0]],[[0,0,0],[1,0,0,0]]];',
+}
+
+KRL_CONFIG = """DEFDAT $CONFIG PUBLIC
+; No file of the program declares these. They are as on a new controller: put in what is right.
+{}
+ENDDAT
+"""
+
+KRL_DATA = {
+    "xhome": "DECL E6AXIS XHOME={A1 0,A2 -90,A3 90,A4 0,A5 0,A6 0}",
+    "fhome": "DECL FDAT FHOME={TOOL_NO 0,BASE_NO 0,IPO_FRAME #BASE}",
+    "pdefault": "DECL PDAT PDEFAULT={VEL 100,ACC 100,APO_DIST 100}",
+    "ldefault": "DECL LDAT LDEFAULT={VEL 2,ACC 100,APO_DIST 100}",
+}

@@ -54,9 +54,21 @@ class ProgramTrial:
         return self.seconds > LONGEST
 
 
-def tried(files: Sequence[Path], cell_map: str) -> ProgramTrial:
-    """Run a program on the first arm that it runs on; where it runs on none, what the first one showed."""
+def tried(
+    files: Sequence[Path], cell_map: str, missing: tuple[str, str, list[str]] | None = None
+) -> ProgramTrial:
+    """Run a program on the first arm that it runs on; where it runs on none, what the first one showed.
+
+    Args:
+        files: of the program.
+        cell_map: the text of its cell map.
+        missing: the name and the text of one more file, which does not exist yet, if there is one.
+    """
     with tempfile.TemporaryDirectory() as folder:
+        if missing is not None:
+            draft = Path(folder, missing[0])
+            draft.write_text(missing[1], encoding="utf-8")
+            files = [*files, draft]
         signals = Path(folder, "cell_map.toml")
         signals.write_text(cell_map, encoding="utf-8")
         first: ProgramTrial | None = None

@@ -7,7 +7,7 @@ from collections.abc import Callable, Generator, Mapping
 from typing import Any, ClassVar
 
 from mutabot_languages.core.frames import Frame
-from mutabot_languages.core.machine import OF_NUMBERS, Dialect, Evaluation
+from mutabot_languages.core.machine import OF_NUMBERS, OF_VALUES, Dialect, Evaluation
 from mutabot_languages.core.names import name_set
 from mutabot_languages.core.scope import ControlFlow, RoutineScope, Steps, Structure
 from mutabot_languages.core.station import ProgramPlace, Station
@@ -67,21 +67,12 @@ class UrDialect(Dialect):
 
     def binary(self, operator: str, left: Any, right: Any) -> Any:
         """The value of a binary operation."""
-        match operator:
-            case "==":
-                return left == right
-            case "!=":
-                return left != right
-            case "and":
-                return bool(left) and bool(right)
-            case "or":
-                return bool(left) or bool(right)
-            case "xor":
-                return bool(left) != bool(right)
-            case "+" | "-" | "*" | "/" if isinstance(left, list) or isinstance(right, list):
-                return _elementwise(operator, left, right)
-            case "+" if isinstance(left, str) or isinstance(right, str):
-                return text_of(left) + text_of(right)
+        if operator in OF_VALUES:
+            return OF_VALUES[operator](left, right)
+        if operator in "+-*/" and (isinstance(left, list) or isinstance(right, list)):
+            return _elementwise(operator, left, right)
+        if operator == "+" and (isinstance(left, str) or isinstance(right, str)):
+            return text_of(left) + text_of(right)
         return arithmetic(operator, left, right)
 
     def literal(self, task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
@@ -363,7 +354,18 @@ _SIGNALS = {
     "gp_boolean": "gp_boolean",
 }  # fmt: skip
 
+
+def _has_inverse(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
+    try:
+        yield from _inverse(task, node, scope)
+    except UnreachableError:
+        return False
+    return True
+
+
 FUNCTIONS: dict[str, Callable[..., Any]] = {
+    "get_inverse_kin_has_solution": _has_inverse,
+    "set_flag": _signal(Station.write, "flag"), "get_flag": _signal(_last, "flag"),
     "movej": _move, "movel": _move, "movep": _move, "movec": _movec, "sleep": _sleep, "sync": _sync,
     "set_tcp": _set_tcp, "get_inverse_kin": _inverse, "get_forward_kin": _forward, "run": _run, "kill": _kill,
     "join": _join, "halt": _halt, "struct": _struct, "get_actual_tcp_pose": _pose_now,
@@ -380,16 +382,3 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
     **{f"set_{name}_out": _signal(Station.write, f"{signal}_out") for name, signal in _SIGNALS.items()},
     **{f"get_{name}_out": _signal(_last, f"{signal}_out") for name, signal in _SIGNALS.items()},
 }  # fmt: skip
-
-
-def _has_inverse(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
-    try:
-        yield from _inverse(task, node, scope)
-    except UnreachableError:
-        return False
-    return True
-
-
-FUNCTIONS["get_inverse_kin_has_solution"] = _has_inverse
-FUNCTIONS["set_flag"] = _signal(Station.write, "flag")
-FUNCTIONS["get_flag"] = _signal(_last, "flag")

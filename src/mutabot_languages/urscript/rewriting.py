@@ -12,7 +12,13 @@ from mutabot_languages.core.names import name_set
 from mutabot_languages.core.tree import ProgramNode
 from mutabot_languages.edits import Edit
 from mutabot_languages.mutation.differences import TextChange
-from mutabot_languages.mutation.rewriting import NO_BLENDING, Rewriter, named_number, signed_number
+from mutabot_languages.mutation.rewriting import (
+    NO_BLENDING,
+    ORDERS,
+    Rewriter,
+    named_number,
+    signed_number,
+)
 
 _MOTIONS = name_set("movej movel movep movec")
 _POSES = name_set(
@@ -25,23 +31,17 @@ _INPUT = re.compile(r"get_\w*digital_in")
 class UrRewriter(Rewriter):
     """The rewriter of URScript."""
 
-    relations: ClassVar = {
-        "<": ("<=", ">="), "<=": ("<", ">"), ">": (">=", "<="), ">=": (">", "<"), "==": ("!=",),
-        "!=": ("==",),
-    }  # fmt: skip
+    relations: ClassVar = {**ORDERS, "==": ("!=",), "!=": ("==",)}
     logic: ClassVar = {"and": "or", "or": "and"}
     negation: ClassVar = "not ({})"
     nothing: ClassVar = "pass"
+    ignores_case: ClassVar = False
 
     @cached_property
     def _first_label(self) -> int:
         """Where a program that PolyScope has written begins to be its user's."""
-        starts = [
-            node.start
-            for node in self.program.parsed.tree.walk()
-            if node.kind == "empty" and node.name == "label"
-        ]
-        return min(starts, default=-1)
+        nodes = self.program.parsed.tree.walk()
+        return min((node.start for node in nodes if (node.kind, node.name) == ("empty", "label")), default=-1)
 
     @cached_property
     def _values(self) -> dict[str, ProgramNode]:
@@ -78,8 +78,10 @@ class UrRewriter(Rewriter):
             elif node.name == "set_tcp" and node.parts and node.parts[0].kind == "pose":
                 yield TextChange("other-tool", node, self.put(node.parts[0], "p[0, 0, 0, 0, 0, 0]"))
             elif node.name in ("pose_trans", "pose_add", "pose_sub") and len(node.parts) == 2:
-                yield TextChange("other-frame", node, self.put(node, self.written(node.parts[1])))
-                yield from self._reversed(node, node.parts[1])
+                shift = node.parts[1]
+                if node.name == "pose_trans":
+                    yield TextChange("other-frame", node, self.put(node, self.written(shift)))
+                yield from self.reversed(node, shift.parts if shift.kind == "pose" else ())
         elif node.kind == "assign" and node.parts[1].kind == "pose" and len(node.parts[1].parts) == 6:
             point = node.parts[1]
             yield from self.sized("shift-point", node, point, self._literal, self.sizes.shifts, "mm", 0.001)
@@ -121,12 +123,6 @@ class UrRewriter(Rewriter):
             Edit(node.parts[0].start, node.parts[-1].end, ", ".join(kept)),
         )
         yield TextChange("swap-motion", node, edits)
-
-    def _reversed(self, node: ProgramNode, pose: ProgramNode) -> Iterator[TextChange]:
-        for axis, amount in enumerate(pose.parts[:3] if pose.kind == "pose" else ()):
-            value = signed_number(amount)
-            if value:
-                yield TextChange("reverse-offset", node, self.put(amount, named_number(-value)), "xyz"[axis])
 
     def _output(self, node: ProgramNode) -> Iterator[TextChange]:
         value = node.parts[1]

@@ -105,6 +105,17 @@ def test_another_input_is_one_that_the_program_reads(
     assert described([*planned_texts(tmp_path, [name])], "other-input") == changes
 
 
+@pytest.mark.parametrize("function", ["pose_trans", "pose_add", "pose_sub"])
+def test_an_offset_of_a_script_goes_the_other_way_and_only_a_frame_is_lost(
+    function: str, tmp_path: Path
+) -> None:
+    (tmp_path / "a.script").write_text(f"movel({function}(here, p[0, 0, 0.1, 0, 0, 0]))\n")
+    found = [*planned_texts(tmp_path, ["a.script"])]
+    (turned,) = described(found, "reverse-offset")
+    assert f"{function}(here, p[0, 0, -0.1, 0, 0, 0])" in turned
+    assert len(described(found, "other-frame")) == (1 if function == "pose_trans" else 0)
+
+
 def test_what_inline_forms_and_the_ini_fold_write_has_none(tmp_path: Path) -> None:
     assert not [
         planned_text for planned_text in planned(tmp_path, "krl") if "bas" in planned_text.description.lower()

@@ -33,7 +33,7 @@ ENDMODULE
 def begun(
     folder: Path, monkeypatch: pytest.MonkeyPatch, found: ProgramTrial
 ) -> tuple[dict[str, str], list[str]]:
-    monkeypatch.setattr(starting, "tried", lambda files, cell_map: found)
+    monkeypatch.setattr(starting, "tried", lambda files, cell_map, missing: found)
     made = started(folder, other_files(folder, []))
     assert made is not None
     return made
@@ -177,3 +177,57 @@ def test_a_program_that_was_started_is_loaded_with_its_cell_map(tmp_path: Path) 
     written(tmp_path, "rapid")
     (tmp_path / "cell_map.toml").write_text('[out."grip"]\ngripper = [0, 1]\n')
     assert load(tmp_path / "pick.mod").cell_map.outputs == {"grip": {"gripper": [0, 1]}}
+
+
+LACKING = """MODULE A
+  PROC main()
+    VAR robtarget pUp;
+    pUp:=Offs(CRobT(\\Tool:=tCalibrated \\WObj:=wobj0),0,0,20);
+    MoveL pUp,v200,fine,tGrip\\WObj:=wTable;
+    MoveC pUp,pUp,v200,fine,tGrip;
+    MoveLDO pUp,v200,fine,tOther,doGrip,1;
+  ENDPROC
+  PROC other(PERS tooldata tGiven)
+    MoveJ CRobT(),v200,fine,tGiven;
+  ENDPROC
+ENDMODULE
+"""
+
+
+def test_tools_and_work_objects_that_no_file_declares_are_drafted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "a.mod").write_text(LACKING)
+    files, lines = begun(tmp_path, monkeypatch, ProgramTrial("gen3", 1.0, (0, 0, 0), (0, 0, 0)))
+    draft = files["MissingData.mod"]
+    assert [line.split()[1:3] for line in draft.splitlines()[2:-1]] == [
+        ["tooldata", "tcalibrated:=[TRUE,[[0,0,0],[1,0,0,0]],[1,[0,0,1],[1,0,0,0],0,0,0]];"],
+        ["tooldata", "tgrip:=[TRUE,[[0,0,0],[1,0,0,0]],[1,[0,0,1],[1,0,0,0],0,0,0]];"],
+        ["wobjdata", 'wtable:=[FALSE,TRUE,"",[[0,0,0],[1,0,0,0]],[[0,0,0],[1,0,0,0]]];'],
+        ["tooldata", "tother:=[TRUE,[[0,0,0],[1,0,0,0]],[1,[0,0,1],[1,0,0,0],0,0,0]];"],
+    ]
+    assert tomllib.loads(files["mutabot.toml"])["program"] == ["a.mod", "MissingData.mod"]
+    assert 'load(ROOT / "a.mod", ROOT / "MissingData.mod")' in files["tests/test_a.py"]
+    assert lines[1].startswith("drafted in MissingData.mod, as no file declares it: tcalibrated, tgrip, ")
+
+
+def test_a_program_runs_with_what_was_drafted_for_it(tmp_path: Path) -> None:
+    (tmp_path / "a.mod").write_text(LACKING.replace("MoveC", "! MoveC"))
+    made = started(tmp_path, other_files(tmp_path, []))
+    assert made is not None
+    assert "a.mod ends after" in made[1][2]
+
+
+@pytest.mark.parametrize(
+    ("config", "drafted"),
+    [("", ["PDEFAULT=", "XHOME="]), ("DEFDAT $CONFIG\nDECL E6AXIS XHOME={A1 0}\nENDDAT\n", None)],
+)
+def test_what_each_controller_of_krl_declares_is_drafted_unless_its_file_is_there(
+    config: str, drafted: list[str] | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "a.src").write_text("DEF a( )\nPDAT_ACT=PDEFAULT\nPTP XHOME\nEND\n")
+    if config:
+        (tmp_path / "$config.dat").write_text(config)
+    files, _ = begun(tmp_path, monkeypatch, ProgramTrial("gen3", 1.0, (0, 0, 0), (0, 0, 0)))
+    text = files.get("$config.dat")
+    assert (text and [line.split()[2].partition("{")[0] for line in text.splitlines()[2:-1]]) == drafted
