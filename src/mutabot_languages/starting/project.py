@@ -17,7 +17,7 @@ from mutabot_languages.registry import language_for
 from . import texts
 from .missing import missing_data
 from .signals import cell_map_text, signals_of
-from .trial import ARMS, LONGEST, ProgramTrial, is_out_of_reach, tried
+from .trial import ARMS, LONGEST, ProgramTrial, is_of_the_arm, tried
 
 #: files that are left out and named
 _MOST_LEFT = 6
@@ -144,8 +144,8 @@ def _told(found: ProgramTrial, name: str) -> list[str]:
     if found.problem:
         why = found.problem.partition(": ")[2] or found.problem  # without the name of the exception
         lacking = "say in cell_map.toml, in the test or in the program what is lacking (docs/languages.md)"
-        if is_out_of_reach(found.problem):
-            lacking = f"none of the arms {', '.join(ARMS)} reaches it: docs/languages.md says what to do"
+        if is_of_the_arm(found.problem):
+            lacking = f"none of the arms {', '.join(ARMS)} carries it out: docs/languages.md says what to do"
         return [f"{name} does not run to its end on the cell: {why}", lacking]
     ends = (
         f"runs without an end, tested for {LONGEST:g} s"

@@ -77,15 +77,15 @@ def tried(
             if not found.problem:
                 return found
             first = first or found
-            if not is_out_of_reach(found.problem):
+            if not is_of_the_arm(found.problem):
                 break
     assert first is not None
     return first
 
 
-def is_out_of_reach(problem: str) -> bool:
+def is_of_the_arm(problem: str) -> bool:
     """Whether another arm may carry out what stopped the program."""
-    return "unreachable" in problem or "MotionRefused" in problem
+    return any(name in problem for name in ("unreachable", "MotionRefused", "ProtectiveStop"))
 
 
 def _run(arm: str, arguments: list[Any]) -> ProgramTrial:

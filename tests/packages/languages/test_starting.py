@@ -146,6 +146,10 @@ def test_why_a_program_does_not_run_is_said(tmp_path: Path, monkeypatch: pytest.
             "MotionRefused: a.script:1: movel(p): motion refused: out of reach",
             "none of the arms gen3, ur5e, ",
         ),
+        (
+            "ProtectiveStop: a.script:1: movel(p): protective stop at t=1 s: it touched the conveyor",
+            "none of the arms gen3, ur5e, ",
+        ),
         ("UnsupportedError: unsupported: socket_open at line 1", "say in cell_map.toml, in the test or in "),
     ],
 )
