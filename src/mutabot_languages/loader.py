@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 from .core.language import MODULE, RobotLanguage
+from .core.machine import Machine
 from .core.schedule import TaskSchedule
-from .core.scope import ProgramUnit
+from .core.scope import ProgramUnit, Steps
 from .core.signals import CellMap
 from .core.station import Station
 from .core.text import decode
@@ -66,6 +67,7 @@ class RobotProgram:
         until: Callable[[], bool] | None = None,
         limit: float = 600.0,
         seed: int = 0,
+        tasks: Sequence[RobotProgram] = (),
     ) -> ProgramRun:
         """Run it from the beginning to its end.
 
@@ -76,6 +78,8 @@ class RobotProgram:
             until: ends the run, between two statements, as soon as it holds: for programs without an end.
             limit: simulated seconds, s, after which it is an error that the program still runs.
             seed: of the order in which tasks take turns.
+            tasks: programs of the other tasks of a RAPID controller. They take turns with this one, share its
+                signals and the PERS data that both declare, and end with it.
 
         Raises:
             LanguageError: a file cannot be read.
@@ -83,19 +87,30 @@ class RobotProgram:
             UnsupportedError: it uses something that is not carried out.
             mutabot_cell.CellError: the cell stops it, by a motion that it refuses or by a protective stop.
         """
+        if any(program.language.name != "rapid" for program in (*tasks, self)) and tasks:
+            raise LanguageError("tasks: only programs in RAPID have others beside them, in RAPID as well")
         station = Station(cell, self.cell_map, inputs or {})
-        units = [unit for file in self.files for unit in [self._unit(file)]]
-        machine = self.language.machine(self.language.dialect(), station, units, until, limit)
-        began = station.time
-        task = self.language.task(machine, _MAIN)
+        machines = [program._machine(station, until, limit) for program in (self, *tasks)]
+        machine, began, mains = machines[0], station.time, list[Steps]()
         schedule = TaskSchedule(machine, seed)
-        for steps in (self.language.prepare(machine, task), self.language.main(machine, task, routine)):
-            machine.start(_MAIN, steps)
+        for number, each in enumerate(machines):
+            task = self.language.task(each, _MAIN)
+            machine.start(_MAIN, self.language.prepare(each, task))
             schedule.run(_MAIN)
+            mains.append(self.language.main(each, task, "" if number else routine))
+            if number:
+                self.language.share(machine, each)
+        for number, steps in enumerate(mains):
+            machine.start(f"{_MAIN} {number}" if number else _MAIN, steps)
+        schedule.run(_MAIN)
         names = {name: variable.value for name, variable in machine.globals.items()}
-        for unit in units:
+        for unit in machine.units:
             names |= {name: variable.value for name, variable in unit.names.items()}
         return ProgramRun(names, dict(station.outputs), tuple(station.notes), station.time - began)
+
+    def _machine(self, station: Station, until: Callable[[], bool] | None, limit: float) -> Machine:
+        units = [self._unit(file) for file in self.files]
+        return self.language.machine(self.language.dialect(), station, units, until, limit)
 
     def _unit(self, file: Path) -> ProgramUnit:
         try:

@@ -39,6 +39,7 @@ class RobotLanguage:
         machine: what runs it.
         task: one of its threads.
         beside: other files that belong to a file by their names.
+        share: gives the run of another task what it shares with the first, which is given before it.
     """
 
     name: str
@@ -50,6 +51,7 @@ class RobotLanguage:
     machine: type[Machine] = Machine
     task: type[ProgramTask] = ProgramTask
     beside: Callable[[Path], list[Path]] = lambda file: []
+    share: Callable[[Machine, Machine], None] = lambda first, other: None
 
     @property
     def highlighting(self) -> tuple[str, str]:

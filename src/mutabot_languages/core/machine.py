@@ -326,7 +326,7 @@ class Evaluation:
         raise self.unsupported(node, scope)
 
     def _mapped(self, node: ProgramNode, entry: Mapping[str, Any], scope: RoutineScope) -> Steps:
-        self.station.start_function(self.site(node, scope), entry)
+        self.station.drive(self.site(node, scope), entry, is_on=True)
         if entry.get("wait"):
             yield from self.wait(node, scope, float(entry["wait"]))
         return entry.get("result", True)

@@ -28,9 +28,6 @@ class Diagnostic:
     line: int
     text: str
 
-    def __str__(self) -> str:
-        return self.text
-
 
 @dataclass(frozen=True, slots=True)
 class ParsedFile:

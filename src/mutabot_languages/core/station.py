@@ -198,17 +198,7 @@ class Station:
         if entry is None:
             self.note(f"the output {name} is connected to nothing in the cell")
             return
-        is_on = bool(value)
-        if "force" in entry:
-            self.call(site, self.cell.gripper.set_force, float(entry["force"]))
-        if "gripper" in entry:
-            controls = entry["gripper"]
-            position = controls[int(is_on)] if isinstance(controls, list) else controls if is_on else None
-            if position is not None and position >= 0:
-                self.call(site, self.cell.gripper.command, position)
-        if "suction" in entry:
-            suction = self.cell.suction
-            self.call(site, suction.on if is_on == bool(entry["suction"]) else suction.off)
+        self.drive(site, entry, is_on=bool(value))
         if "belt" in entry:
             belt = self.cell.belt(entry["belt"] or None)
             self.call(site, belt.run, float(entry.get("speed", 0.1)) * float(value))
@@ -255,14 +245,18 @@ class Station:
         """What the cell map says of a function; None if nothing."""
         return self._map.functions.get(signal_name(name))
 
-    def start_function(self, site: ProgramPlace, entry: Mapping[str, Any]) -> None:
-        """Carry out a function of the cell map, but for its waiting."""
+    def drive(self, site: ProgramPlace, entry: Mapping[str, Any], *, is_on: bool) -> None:
+        """Let gripper and suction do what an entry of the cell map says, of an output or of a function."""
         if "force" in entry:
             self.call(site, self.cell.gripper.set_force, float(entry["force"]))
         if "gripper" in entry:
-            self.call(site, self.cell.gripper.command, entry["gripper"])
+            controls = entry["gripper"]
+            position = controls[int(is_on)] if isinstance(controls, list) else controls if is_on else None
+            if position is not None and position >= 0:
+                self.call(site, self.cell.gripper.command, position)
         if "suction" in entry:
-            self.call(site, self.cell.suction.on if entry["suction"] else self.cell.suction.off)
+            suction = self.cell.suction
+            self.call(site, suction.on if is_on == bool(entry["suction"]) else suction.off)
 
 
 def matrix_frame(position: Sequence[float], rotation: Sequence[Sequence[float]]) -> Frame:

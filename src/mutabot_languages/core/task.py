@@ -153,15 +153,6 @@ class ProgramTask(Evaluation):
             self.idle_loops = 0
             yield from self.wait(node, scope, TICK)
 
-    def _while(self, node: ProgramNode, scope: RoutineScope) -> Steps:
-        yield from self._loop(node, scope, node.parts[0], None)
-
-    def _repeat(self, node: ProgramNode, scope: RoutineScope) -> Steps:
-        yield from self._loop(node, scope, None, node.parts[0])
-
-    def _endless(self, node: ProgramNode, scope: RoutineScope) -> Steps:
-        yield from self._loop(node, scope, None, None)
-
     def _for(self, node: ProgramNode, scope: RoutineScope) -> Steps:
         values = yield from self.values(node.parts, scope)
         start, end, step = values[0], values[1], values[2] if len(values) > 2 else None
@@ -286,9 +277,9 @@ def _is_label(node: ProgramNode, name: Any) -> bool:
 _STATEMENTS: dict[str, Callable[[ProgramTask, ProgramNode, RoutineScope], Steps]] = {
     "assign": ProgramTask._assign,
     "if": ProgramTask._if,
-    "while": ProgramTask._while,
-    "repeat": ProgramTask._repeat,
-    "loop": ProgramTask._endless,
+    "while": lambda task, node, scope: task._loop(node, scope, node.parts[0], None),
+    "repeat": lambda task, node, scope: task._loop(node, scope, None, node.parts[0]),
+    "loop": lambda task, node, scope: task._loop(node, scope, None, None),
     "for": ProgramTask._for,
     "switch": ProgramTask._switch,
     "return": ProgramTask._return,

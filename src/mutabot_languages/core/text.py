@@ -43,11 +43,6 @@ class SourceText:
         """The place of a part of the text."""
         return (*self.position(start), *self.position(end))
 
-    def offset(self, line: int, column: int) -> int:
-        """The offset of a 1-based line and a 0-based column in UTF-8 bytes."""
-        start = self._starts[line - 1]
-        return start + len(self.text[start:].encode()[:column].decode(errors="ignore"))
-
     def place(self, offset: int) -> str:
         """``file:line:column`` with the 1-based column that editors show."""
         line = self.line_of(offset)

@@ -46,11 +46,6 @@ class Tokens:
     ends: list[int] = field(default_factory=list)
 
 
-def pieces(text: str, lexis: Lexis) -> list[str]:
-    """All of a text, in tokens and trivia."""
-    return [found.group() for found in lexis.pattern.finditer(text)]
-
-
 def scan(text: str, lexis: Lexis) -> Tokens:
     """The tokens of a text without trivia."""
     kinds, words, starts, ends = list[str](), list[str](), list[int](), list[int]()

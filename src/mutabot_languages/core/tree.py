@@ -61,9 +61,6 @@ class ProgramNode:
                 waiting.extend(reversed(body))
             waiting.extend(reversed(node.parts))
 
-    def __repr__(self) -> str:
-        return f"{self.kind} {self.name} {self.parts} {self.bodies or ''}"
-
 
 def in_short(node: ProgramNode, text: str) -> str:
     """How a node of a text begins, on one line."""

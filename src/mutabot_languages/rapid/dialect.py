@@ -38,13 +38,9 @@ class RapidDialect(Dialect):
         self.structures: dict[str, Components] = dict(STRUCTURES)
         self.aliases: dict[str, str] = {}
 
-    def type_of(self, name: str) -> str:
-        """The type that a name stands for."""
-        return self.aliases.get(name, name)
-
     def declare(self, task: Evaluation, node: ProgramNode, scope: RoutineScope, *, is_global: bool) -> Steps:
         """Make the data of a declaration."""
-        type = self.type_of(node.value["type"])
+        type = self.aliases.get(node.value["type"], node.value["type"])
         sizes = []
         for size in node.value["sizes"]:
             found = yield from task.value(size, scope)
@@ -166,10 +162,8 @@ class RapidTask(ProgramTask):
             del self.machine.running[id(inner)]
 
     def value(self, node: ProgramNode, scope: RoutineScope) -> Steps:
-        """A division by zero is an error that handlers take."""
-        if node.kind == "omitted":
-            return None
-        return (yield from super().value(node, scope))
+        """The value of an expression; an argument that is left out has none."""
+        return None if node.kind == "omitted" else (yield from super().value(node, scope))
 
 
 _RETRIES = 50

@@ -44,7 +44,7 @@ def _members(unit: ProgramUnit) -> list[ProgramNode]:
 def _structure(dialect: Dialect, node: ProgramNode) -> None:
     assert isinstance(dialect, RapidDialect)
     if isinstance(node.value, str):
-        dialect.aliases[node.name] = dialect.type_of(node.value)
+        dialect.aliases[node.name] = dialect.aliases.get(node.value, node.value)
     else:
         dialect.structures[node.name] = tuple(node.value)
 
@@ -57,6 +57,15 @@ def _main(machine: Machine, task: ProgramTask, routine: str) -> Steps:
     yield from call_main(task, routine.lower() or "main", [] if routine else own)
 
 
+def _share(first: Machine, other: Machine) -> None:
+    """Tasks have the PERS data in common that both declare, and here their interrupts."""
+    other.tasks, other.interrupts = first.tasks, first.interrupts
+    for node in (member for unit in other.units for member in _members(unit) if member.kind == "declare"):
+        is_shared = (node.value["kind"], node.value["scope"]) == ("pers", "")
+        if is_shared and node.name in first.globals:
+            other.globals[node.name] = first.globals[node.name]
+
+
 RAPID = RobotLanguage(
     "rapid",
     (".mod", ".sys", ".prg", ".modx", ".sysx"),
@@ -66,4 +75,5 @@ RAPID = RobotLanguage(
     _main,
     machine=RapidMachine,
     task=RapidTask,
+    share=_share,
 )
