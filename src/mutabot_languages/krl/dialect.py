@@ -137,7 +137,8 @@ class KrlMachine(Machine):
         self.signals: dict[str, str] = {}
         self.system: dict[str, Any] = {
             "$vel": Structure.of("cp", {"cp": 0.25, "ori1": 200.0, "ori2": 200.0}), "$vel_axis": [100.0] * 12,
-            "$mode_op": "#t1", "$pro_state1": "#p_active", "$rob_stopped": True, "$stopmess": False,
+            "$mode_op": "#t1", "$t1": True, "$t2": False, "$aut": False, "$ext": False,
+            "$pro_state1": "#p_active", "$rob_stopped": True, "$stopmess": False,
             "$base": Structure.of("frame", dict(_NULL)), "$tool": Structure.of("frame", dict(_NULL)),
             "$pi": math.pi, "$ov_pro": 100,
         }  # fmt: skip

@@ -289,3 +289,9 @@ def test_a_value_that_is_missing_or_of_another_kind_is_named(
 ) -> None:
     with pytest.raises(ProgramError, match=f"^{re.escape(message)}$"):
         run(tmp_path, name, text)
+
+
+def test_the_mode_of_operation_of_krl_is_the_same_by_all_its_names(tmp_path: Path) -> None:
+    condition = "$T1 AND ($MODE_OP==#T1) AND NOT ($T2 OR $AUT OR $EXT)"
+    text = f"DEF a( )\nDECL INT N\nIF {condition} THEN\nN=1\nENDIF\nWAIT SEC N\nEND\n"
+    assert run(tmp_path, "a.src", text)[1].seconds == pytest.approx(1.0)
