@@ -16,9 +16,7 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from types import CodeType, FrameType, FunctionType, MethodType, TracebackType
-from typing import TYPE_CHECKING, Any, cast
-
-import wrapt
+from typing import TYPE_CHECKING, Any
 
 from mutabot.extensions import packages
 from mutabot.model import Call, Reply, Role, Span
@@ -35,6 +33,7 @@ from mutabot.runtime.interception.trace import Locator, Recorder
 from mutabot.runtime.observation.clock import Instances
 from mutabot.runtime.observation.probes import Along
 from mutabot.runtime.targets.target import NOWHERE, CallPlace, Handler, Where
+from mutabot.runtime.targets.wrapper import bound
 
 if TYPE_CHECKING:  # processes below the tests fork for nobody
     from mutabot.runtime.program_text.returns import Returns
@@ -125,7 +124,7 @@ class Dispatcher:
             """Make a call without interception, except by its guard."""
             __tracebackhide__ = True
             if adapter.guard is not None:
-                adapter.guard.check(Invocation(_bound(wrapped, instance), instance, args, kwargs, where))
+                adapter.guard.check(Invocation(bound(wrapped, instance), instance, args, kwargs, where))
             return wrapped(*args, **kwargs)
 
         def handle(wrapped: Any, instance: Any, args: Any, kwargs: Any, where: Where = NOWHERE) -> Any:
@@ -149,7 +148,7 @@ class Dispatcher:
                 if site is None:
                     return alone(wrapped, instance, args, kwargs, where)
                 is_direct = self.recorder.answers is not None and self._is_direct(frame, where)
-                wrapped = _bound(wrapped, instance)
+                wrapped = bound(wrapped, instance)
                 is_async = is_coroutine_function(wrapped) or where.is_awaited
                 caller = caller_of(where.frame or frame, is_async)
                 invocation: Any = Invocation(wrapped, instance, args, kwargs, where, caller)
@@ -308,15 +307,6 @@ def _from_here(error: BaseException) -> TracebackType | None:
     if here is not None:
         here.tb_next = without_ours(here.tb_next)
     return here
-
-
-def _bound(wrapped: Callable[..., Any], instance: Any) -> Callable[..., Any]:
-    """Return a method bound to its instance if it is called through its class."""
-    if instance is None or not isinstance(wrapped, wrapt.PartialCallableObjectProxy):
-        return wrapped
-    function = getattr(wrapped, "__wrapped__")  # noqa: B009  # its stubs do not name it
-    bind = getattr(type(function), "__get__", None)
-    return wrapped if bind is None else cast("Callable[..., Any]", bind(function, instance, type(instance)))
 
 
 def is_coroutine_function(wrapped: Callable[..., Any]) -> bool:

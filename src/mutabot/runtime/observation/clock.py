@@ -31,6 +31,7 @@ from mutabot.model.units import convert
 from mutabot.runtime.evidence import Meter
 from mutabot.runtime.interception.adapter import Invocation
 from mutabot.runtime.targets.target import NotFoundError, resolve
+from mutabot.runtime.targets.wrapper import bound
 
 #: objects per class and test that are read
 MOST = 20
@@ -281,7 +282,8 @@ class ClockReader:
 
     def _start(self, *call: Any) -> Any:
         """Return the object or argument at which the path begins. Raises PathError if there is none."""
-        invocation = Invocation(*call)
+        wrapped, instance, args, kwargs = call
+        invocation = Invocation(bound(wrapped, instance), instance, args, kwargs)
         invocation.bind(signature_of(invocation.wrapped) or ANYTHING)
         start, known = invocation.start_of(self._path), tuple(invocation.values or ())
         root = self._path.root or ""

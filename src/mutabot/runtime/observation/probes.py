@@ -30,6 +30,7 @@ from mutabot.model.clocks import monotonic, thread_time
 from mutabot.model.data import data_of, fields_of, is_of_numpy, is_textual, items_of
 from mutabot.model.path import class_name
 from mutabot.runtime.targets.target import resolve
+from mutabot.runtime.targets.wrapper import Method
 
 if TYPE_CHECKING:
     from mutabot.evidence.recorder import PictureWriter, WorldRecorder
@@ -161,6 +162,8 @@ def needed_arguments(found: Callable[..., Any]) -> list[str]:
 def _needs_none(found: Callable[..., Any]) -> bool:
     """Return whether a callable clearly needs no arguments; fast, as signatures are slow to read."""
     function = getattr(found, "__func__", found)
+    if type(function) is Method:
+        function = function.__wrapped__
     if type(function) is not FunctionType or hasattr(function, "__wrapped__"):
         return False
     given = len(function.__defaults__ or ()) + (function is not found)

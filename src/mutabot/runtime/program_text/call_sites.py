@@ -33,7 +33,7 @@ from mutabot.runtime.program_text.compiling import SourceStep
 from mutabot.runtime.program_text.instrument import declare_global, is_ours
 from mutabot.runtime.program_text.returns import is_translated
 from mutabot.runtime.targets.target import CallPlace
-from mutabot.runtime.targets.wrapper import WRAPPERS
+from mutabot.runtime.targets.wrapper import WRAPPERS, unbound
 
 _PLACE = "handed_to"
 
@@ -216,11 +216,14 @@ class CallSites(SourceStep):
             __tracebackhide__ = True
             found = getattr(receiver, name)
             kind = type(found)
-            if kind in WRAPPERS:
-                if found._self_wrapper in seen:
+            function = (
+                found.__func__ if kind is MethodType else found
+            )  # this is run at each call of such a name
+            if type(function) in WRAPPERS:
+                if function._self_wrapper in seen:
                     return found
-            elif left_alone:  # this is run at each call of such a name
-                own = found.__func__ if kind is MethodType else found if kind is FunctionType else kind
+            elif left_alone:
+                own = function if kind is MethodType or kind is FunctionType else kind
                 for names, known_name, value in left_alone.get((type(receiver), own), _ASK):
                     if names.get(known_name) is not value:
                         break
@@ -234,7 +237,8 @@ class CallSites(SourceStep):
         left_alone, seen, frame_of = site.left_alone, self.sees_itself, sys._getframe
 
         def read(found: Any, receiver: Any = NOTHING) -> Any:
-            if type(found) in WRAPPERS and not site.is_handed and found._self_wrapper in seen:
+            function = unbound(found)
+            if type(function) in WRAPPERS and not site.is_handed and function._self_wrapper in seen:
                 return found
             if left_alone and type(found) is FunctionType:
                 guards = left_alone.get((type(receiver), found), _ASK)

@@ -52,7 +52,7 @@ from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.program_text.call_sites import NOTHING, CallSite, Guards
 from mutabot.runtime.targets.callables import Callables
 from mutabot.runtime.targets.target import CallPlace, Finding, Handler, Where, named_class
-from mutabot.runtime.targets.wrapper import WRAPPERS, Wrapper
+from mutabot.runtime.targets.wrapper import WRAPPERS, Wrapper, unbound
 
 #: calls that are listed in one sentence
 _MOST = 5
@@ -354,7 +354,8 @@ def _is_of_objects(owner: type | None, adapter: Adapter) -> bool:
     if owner is None:
         return False
     raw = inspect.getattr_static(owner, adapter.operation.last_name, None)
-    return not isinstance(getattr(raw, "__wrapped__", raw), classmethod | staticmethod)
+    wrapped = getattr(raw, "__wrapped__", raw)
+    return not any(isinstance(one, classmethod | staticmethod) for one in (raw, wrapped))
 
 
 def _handlers(found: Any) -> Iterator[Any]:
@@ -432,8 +433,9 @@ class PassedCallables:
         if not callable(found) or isinstance(found, type) or type(found) is PassedCallable:
             return found
         place = self._call_targets.place(site, frame)
-        if type(found) in WRAPPERS:
-            adapters, handler = self._call_targets.adapters, found._self_wrapper
+        function = unbound(found)
+        if type(function) in WRAPPERS:
+            adapters, handler = self._call_targets.adapters, function._self_wrapper
             own = next((candidate for candidate in adapters if candidate.handler is handler), None)
             if own is None:
                 return found
@@ -443,7 +445,10 @@ class PassedCallables:
                 if known == place or not site.is_given:
                     self._given[own] = place if known == place else None
                     return found
-            return self._wrapped(own, place, receiver, found, found.__wrapped__)
+            plain = function.__wrapped__
+            if function is not found:
+                plain = MethodType(plain, found.__self__)
+            return self._wrapped(own, place, receiver, found, plain)
         adapter = self._call_targets.candidate(site, found, receiver, frame)
         if adapter is None:
             return found

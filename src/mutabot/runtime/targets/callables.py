@@ -12,7 +12,7 @@ import inspect
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from importlib import import_module
-from types import ModuleType
+from types import FunctionType, ModuleType
 from typing import TYPE_CHECKING, Any
 
 import wrapt
@@ -20,7 +20,7 @@ import wrapt
 from mutabot.model.path import class_name
 from mutabot.model.signature import parse_signature, signature_of, takes_anything
 from mutabot.runtime.targets.target import Finding, Handler, NotFoundError, Tell, resolve
-from mutabot.runtime.targets.wrapper import Wrapper
+from mutabot.runtime.targets.wrapper import Method, Wrapper
 
 if TYPE_CHECKING:
     from mutabot.model import Operation
@@ -181,6 +181,13 @@ def _wrapper(owner: Any, name: str, original: Any, handler: Handler, *, is_set: 
         raise NotCallableError(f"{class_name(original)} is a class; name one of its methods")
     if not callable(original) and not isinstance(original, classmethod | staticmethod):
         raise NotCallableError(f"{name!r} is {type(original).__name__}, which cannot be called")
+    if isinstance(owner, type):  # what Python binds, it goes on to bind
+        if type(original) is FunctionType:
+            return Method(original, handler)
+        if type(original) is classmethod and type(original.__func__) is FunctionType:
+            return classmethod(Method(original.__func__, handler))
+        if type(original) is staticmethod and type(original.__func__) is FunctionType:
+            return staticmethod(Wrapper(original.__func__, handler))
     return Wrapper(original, handler)
 
 

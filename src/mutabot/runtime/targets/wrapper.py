@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import copy
+from collections.abc import Callable
 from pkgutil import resolve_name
-from types import MethodType, ModuleType
-from typing import Any
+from types import FunctionType, MethodType, ModuleType
+from typing import Any, cast
 
 import wrapt
 
@@ -37,6 +38,26 @@ class BoundWrapper(_Copied, wrapt.BoundFunctionWrapper):  # type: ignore[type-ar
         return self._self_parent.__get__(owner, type(owner))
 
 
+class Method(_Copied, wrapt.BoundFunctionWrapper):  # type: ignore[type-arg]
+    """A function of a class, whose calls a handler gets with the object as their instance.
+
+    Python binds it as it binds the function: what is read from an object is a method, equal to the next one.
+    """
+
+    def __new__(cls, function: FunctionType, handler: Any) -> Any:
+        return super().__new__(cls, function, handler)  # type: ignore[call-arg]
+
+    def __init__(self, function: FunctionType, handler: Any) -> None:
+        # unbound, for objects of any class: whoever calls gives the object first
+        super().__init__(function, None, handler, None, "function", None, object)  # type: ignore[call-arg]
+
+    def __get__(self, instance: Any, owner: type | None = None) -> Any:
+        return self if instance is None else MethodType(self, instance)
+
+    def __deepcopy__(self, known: dict[int, Any]) -> Any:
+        return self
+
+
 class Wrapper(_Copied, wrapt.FunctionWrapper):  # type: ignore[type-arg]
     """A function, or what a class holds, whose calls a handler gets."""
 
@@ -47,4 +68,18 @@ class Wrapper(_Copied, wrapt.FunctionWrapper):  # type: ignore[type-arg]
 
 
 #: the types of what stands around functions, here and in code of others
-WRAPPERS = (wrapt.FunctionWrapper, wrapt.BoundFunctionWrapper, Wrapper, BoundWrapper)
+WRAPPERS = (wrapt.FunctionWrapper, wrapt.BoundFunctionWrapper, Wrapper, BoundWrapper, Method)
+
+
+def unbound(found: Any) -> Any:
+    """Return the function of a method; anything else is returned as it is."""
+    return found.__func__ if type(found) is MethodType else found
+
+
+def bound(wrapped: Callable[..., Any], instance: Any) -> Callable[..., Any]:
+    """Return what a handler got as a method of the instance, if it was a function called with the object."""
+    if instance is None or not isinstance(wrapped, wrapt.PartialCallableObjectProxy):
+        return wrapped
+    function = getattr(wrapped, "__wrapped__")  # noqa: B009  # its stubs do not name it
+    bind = getattr(type(function), "__get__", None)
+    return wrapped if bind is None else cast("Callable[..., Any]", bind(function, instance, type(instance)))
