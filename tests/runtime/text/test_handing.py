@@ -28,7 +28,7 @@ ROBOT = """
         return on
 """
 PROGRAM = """
-    from functools import partial
+    from functools import partial, partialmethod
     from robot import tool
 
     def alias(arm):
@@ -64,6 +64,35 @@ PROGRAM = """
 
     def get(*given):
         return getattr(*given)
+
+    def borrowed(kind):
+        class Other:
+            move_by = kind.move_by
+        other = Other()
+        other.move_by(0.5)
+        return other.x
+
+    def prepared_in_a_class(kind):
+        class Other(kind):
+            far = partialmethod(kind.move_by, 0.5, speed=2.0)
+        other = Other()
+        other.far()
+        return other.x
+
+    def made_late(kind):
+        other = type("Other", (), {"go": kind.move_by})()
+        other.go(0.5)
+        return other.x
+
+    def bound_to(kind):
+        other = kind()
+        kind.move_by.__get__(other)(0.5)
+        return other.x
+
+    def through_the_class(kind):
+        other = kind()
+        list(map(kind.move_by, [other], [0.5]))
+        return other.x
 
     def data(arm):
         move_by = arm.move_by
@@ -114,6 +143,21 @@ def test_a_call_is_seen_once_where_it_is_made(stage: Stage, function: str, what:
     session = stage.session()
     stage.load_program()
     stage.run(session, function, _arms(stage)[what])
+    ((index, written, *_),) = session.recorder.trace
+    assert written == {"dx": 0.5}
+    assert session.recorder.sites[index].span.function == function
+
+
+@pytest.mark.parametrize(
+    "function", ["borrowed", "prepared_in_a_class", "made_late", "bound_to", "through_the_class"]
+)
+def test_a_function_of_a_class_belongs_to_the_object_that_it_is_called_with(
+    stage: Stage, function: str
+) -> None:
+    session = stage.session()
+    stage.load_program()
+    kind = stage.load_robot().Arm
+    assert stage.run(session, function, kind) == 0.5
     ((index, written, *_),) = session.recorder.trace
     assert written == {"dx": 0.5}
     assert session.recorder.sites[index].span.function == function

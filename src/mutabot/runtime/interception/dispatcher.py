@@ -362,19 +362,27 @@ def _made(code: CodeType, instruction: int, is_async: bool) -> CodeType:
         co_name=code.co_name,
         co_qualname=code.co_qualname,
         co_filename=code.co_filename,
-        co_firstlineno=line,
-        co_linetable=_all_in_line(len(own.co_code) // 2),
+        co_firstlineno=code.co_firstlineno,
+        co_linetable=_all_in_line(line - code.co_firstlineno, len(own.co_code) // 2),
     )
     borders[id(made)] = made
     return made
 
 
-def _all_in_line(units: int) -> bytes:
-    """Return a line table that gives all of a code the first line and no columns.
+def _all_in_line(line: int, units: int) -> bytes:
+    """Return a line table that gives all of a code this line, counted from its first, and no columns.
 
     An entry covers up to eight code units. The format: CPython, Objects/locations.md (3.11 to 3.13). To
     compile a tree takes ten times as long, and every fork calls from places where nothing has called before.
     """
-    no_columns, same_line = 13, 0
-    sizes = (min(8, units - first) for first in range(0, units, 8))
-    return b"".join(bytes([1 << 7 | no_columns << 3 | size - 1, same_line]) for size in sizes)
+    no_columns, table = 13, bytearray()
+    for first in range(0, units, 8):
+        table.append(1 << 7 | no_columns << 3 | min(8, units - first) - 1)
+        number = (line if first == 0 else 0) << 1  # from the entry before; the lowest bit is its sign
+        if number < 0:
+            number = -number | 1
+        while number >= 64:
+            table.append(64 | number & 63)
+            number >>= 6
+        table.append(number)
+    return bytes(table)

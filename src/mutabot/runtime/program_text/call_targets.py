@@ -487,8 +487,9 @@ class PassedCallables:
     ) -> Any:
         __tracebackhide__ = True
         args, kwargs = given
-        if receiver is NOTHING and instance is not None:  # it was made a method, or is one
-            receiver, found = instance, wrapped
+        is_function = type(found) is FunctionType and instance is not receiver
+        if instance is not None and (receiver is NOTHING or is_function):  # it was made a method, or is one
+            receiver, found = instance, MethodType(found, instance) if is_function else wrapped
         where = {"handed": place, "frame": sys._getframe(1), "stands_in": self._call_targets.stands_in(found)}
         return self._call_targets.call(adapter, where, found, receiver, *args, **kwargs)
 

@@ -9,7 +9,8 @@ class Arm:
 
     def move_by(self, dx):
         caller = sys._getframe(1)
-        self.log.append((caller.f_code.co_name, caller.f_globals["__name__"], caller.f_lineno))
+        line = caller.f_lineno - caller.f_code.co_firstlineno
+        self.log.append((caller.f_code.co_name, caller.f_globals["__name__"], caller.f_lineno, line))
         if abs(dx) > 1:
             warnings.warn("a long way", stacklevel=2)
         self.x += dx

@@ -15,7 +15,7 @@ def test_comes_home(arm):
 
 def test_is_called_by_the_tour(arm):
     mission.tour(arm, 0.5)
-    assert arm.log == [("tour", "mission", 2), ("tour", "mission", 4)]
+    assert arm.log == [("tour", "mission", 2, 1), ("tour", "mission", 4, 3)]
 
 
 def test_warns_of_a_long_way(arm):
