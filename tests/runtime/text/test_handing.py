@@ -28,6 +28,7 @@ ROBOT = """
         return on
 """
 PROGRAM = """
+    from copy import deepcopy
     from functools import partial, partialmethod
     from robot import tool
 
@@ -94,6 +95,13 @@ PROGRAM = """
         list(map(kind.move_by, [other], [0.5]))
         return other.x
 
+    def copied(kind):
+        other = kind()
+        other.go = other.move_by
+        again = deepcopy(other)
+        again.go(0.5)
+        return again.x if not hasattr(other, "x") else other
+
     def data(arm):
         move_by = arm.move_by
         return [move_by, arm.move_by]
@@ -149,7 +157,7 @@ def test_a_call_is_seen_once_where_it_is_made(stage: Stage, function: str, what:
 
 
 @pytest.mark.parametrize(
-    "function", ["borrowed", "prepared_in_a_class", "made_late", "bound_to", "through_the_class"]
+    "function", ["borrowed", "prepared_in_a_class", "made_late", "bound_to", "through_the_class", "copied"]
 )
 def test_a_function_of_a_class_belongs_to_the_object_that_it_is_called_with(
     stage: Stage, function: str

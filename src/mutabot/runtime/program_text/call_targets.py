@@ -487,9 +487,11 @@ class PassedCallables:
     ) -> Any:
         __tracebackhide__ = True
         args, kwargs = given
-        is_function = type(found) is FunctionType and instance is not receiver
-        if instance is not None and (receiver is NOTHING or is_function):  # it was made a method, or is one
-            receiver, found = instance, MethodType(found, instance) if is_function else wrapped
+        function = unbound(found)
+        is_others = type(function) is FunctionType and getattr(found, "__self__", None) is not instance
+        # it was made a method, or is one, maybe of a copy of its object
+        if instance is not None and (receiver is NOTHING or is_others):
+            receiver, found = instance, MethodType(function, instance) if is_others else wrapped
         where = {"handed": place, "frame": sys._getframe(1), "stands_in": self._call_targets.stands_in(found)}
         return self._call_targets.call(adapter, where, found, receiver, *args, **kwargs)
 
