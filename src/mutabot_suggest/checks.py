@@ -146,8 +146,9 @@ class Monitor(CheckProposal):
             return (line,)
         condition = f"    lambda: {self.condition},"
         if len(condition) > _LONG:  # formatters do not break what has no parentheses
-            parts = self.condition.replace(" or ", "\n        or ")
-            condition = f"    lambda: (\n        {parts}\n    ),"
+            lines = [f"        {part}" for part in self.condition.replace(" or ", "\nor ").split("\n")]
+            broken = (line if len(line) <= _LONG else line.replace(" < ", "\n        < ") for line in lines)
+            condition = "\n".join(["    lambda: (", *broken, "    ),"])
         return (f'{self.owner}.always(\n{condition}\n    "{self.name}",\n)',)
 
     @property

@@ -25,6 +25,7 @@ class Proof:
         request: for the rounds of the campaign.
         project: into whose tests checks are put.
         progress: is told.
+        needs_all: whether all tests are run, as those with checks need what others leave behind.
         failed: checks that failed, with the reason.
         kills: of each check that was run on the survivors: the mutants and rounds that it killed.
     """
@@ -32,6 +33,7 @@ class Proof:
     request: Request
     project: SuiteFiles
     progress: Progress
+    needs_all: bool = False
     failed: dict[CheckProposal, str] = field(default_factory=dict)
     kills: dict[CheckProposal, Trials] = field(default_factory=dict)
 
@@ -50,7 +52,7 @@ class Proof:
         texts = texts_with(self.project, checks)
         found: dict[CheckProposal, str] = {}
         with copy_of(self.request, texts) as copied:
-            these = _only(copied, checks)
+            these = self._with_tests_of(checks, copied)
             self.progress.stage("proof on the original", len(rounds))
             with CampaignRun.of_original(these, rounds, self.progress) as results:
                 for result in results:
@@ -103,7 +105,8 @@ class Proof:
         only = tuple(dict.fromkeys(mutant for check in checks for mutant, _ in sorted(check.trials)))
         texts = texts_with(self.project, checks)
         with copy_of(self.request, texts) as copied:
-            these = replace(_only(copied, checks), only=only, every_test=True, repeats=False, evidence=False)
+            these = self._with_tests_of(checks, copied)
+            these = replace(these, only=only, every_test=True, repeats=False, evidence=False)
             outcomes = Results.read(CampaignRun.to_end(these, self.progress)).outcomes
         found: dict[CheckProposal, set[tuple[str, int]]] = {check: set() for check in checks}
         for outcome in outcomes:
@@ -115,15 +118,16 @@ class Proof:
                     found[blamed[0]].add((outcome.mutant, outcome.round))
         return {proposal: frozenset(trials) for proposal, trials in found.items()}
 
+    def _with_tests_of(self, checks: Sequence[CheckProposal], request: Request) -> Request:
+        """Return a request that runs the tests of these checks, and the others if they need them."""
+        if self.needs_all:
+            return request
+        return request.changed(tests=tuple(dict.fromkeys(check.place.node for check in checks)))
+
 
 def texts_with(project: SuiteFiles, checks: Sequence[CheckProposal]) -> dict[str, str]:
     """Return the changed texts of files to which checks are added, by path."""
     return edited(project, (check.addition() for check in checks))
-
-
-def _only(request: Request, checks: Sequence[CheckProposal]) -> Request:
-    tests = tuple(dict.fromkeys(check.place.node for check in checks))
-    return request.changed(tests=tests)
 
 
 def failing(

@@ -170,6 +170,7 @@ class Measured:
         reusable_checks: per place, checks of other tests that were asked there as well.
         watched: per place, imports that readings on the way need, by the readings.
         lost: mutants that could not be run there, by their ids, with the reason.
+        needs_all: whether all tests were run, as these need what others leave behind.
     """
 
     originals: dict[PlaceInTest, dict[tuple[int, str], ValuesRead]] = field(default_factory=dict)
@@ -179,6 +180,7 @@ class Measured:
     reusable_checks: dict[PlaceInTest, list[ReusableCheck]] = field(default_factory=dict)
     watched: dict[PlaceInTest, dict[str, tuple[str, ...]]] = field(default_factory=dict)
     lost: dict[str, str] = field(default_factory=dict)
+    needs_all: bool = False
 
 
 def merged(first: Measured, second: Measured) -> Measured:
@@ -191,6 +193,7 @@ def merged(first: Measured, second: Measured) -> Measured:
         reusable_checks={**first.reusable_checks, **second.reusable_checks},
         watched={**first.watched, **second.watched},
         lost={**first.lost, **second.lost},
+        needs_all=first.needs_all or second.needs_all,
     )
 
 
@@ -251,7 +254,12 @@ def _run_survivors(
             now.append((campaign.current(survivor.mutant), rounds))
         except MutabotError as error:
             measured.lost[survivor.mutant.id] = str(error)
-    campaign.prove(mutant for mutant, _ in now)
+    reached = {
+        mutant.id for mutant, rounds in now if any(baseline.tests_reaching(round, mutant) for round in rounds)
+    }
+    unreached = {mutant.id for mutant, _ in now} - reached
+    measured.lost.update(dict.fromkeys(unreached, "its tests no longer reach it"))
+    campaign.prove(mutant for mutant, _ in now if mutant.id in reached)
     trials = [(mutant, round) for mutant, rounds in now for round in rounds]
     progress.stage("survivors", len(trials))
     tasks = (

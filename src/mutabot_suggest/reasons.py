@@ -46,6 +46,9 @@ def why_unsolved(
     recorded = _of_recordings(survivor, measured, suite)
     if recorded.startswith(_SO_LITTLE) or recorded == ONLY_TIME:
         return Unsolved(mutant, recorded)
+    gaps = [gap for outcome in survivor.survived for gap in outcome.gaps]
+    if gaps and not recorded:  # what its readings differ by may be the original's own
+        return Unsolved(mutant, f"it could not be compared with the original: {gaps[0]}")
     tried = [proposal for proposal in found if proposal in failed and mutant in dict(proposal.trials)]
     if tried:
         return Unsolved(mutant, _why_failed(tried[0], failed[tried[0]]))

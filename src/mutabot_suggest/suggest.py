@@ -109,7 +109,7 @@ def suggest(
     if others:
         measured = merged(measured, _measured(wide, project, suite, others, unnoticed, quiet))
         found, refused = _proposals(project, suite, measured)
-    proof = Proof(request, project, quiet)
+    proof = Proof(request, project, quiet, needs_all=measured.needs_all)
     checks = _proven(proof, found, [*range(request.rounds), *range(calibrated, calibrated + seeds)])
     killed = {mutant for check in checks for mutant, _ in proof.kills[check]}
     left = [result for mutant, (result, _) in to_kill.items() if mutant not in killed]
@@ -142,12 +142,15 @@ def _measured(
     survivors: Survivors,
     progress: Progress,
 ) -> Measured:
-    """Return what these tests read; if they cannot run without the others, run all tests."""
+    """Return what these tests read; if they need what others leave behind, run all tests."""
     tests = tuple(place.node for place in places)
     try:
-        return measure(request.changed(tests=tests), project, suite, places, survivors, progress)
-    except MutabotError:
-        return measure(request, project, suite, places, survivors, progress)
+        measured = measure(request.changed(tests=tests), project, suite, places, survivors, progress)
+    except MutabotError:  # they fail without the others
+        measured = None
+    if measured is not None and not measured.lost:
+        return measured
+    return replace(measure(request, project, suite, places, survivors, progress), needs_all=True)
 
 
 def _proven(proof: Proof, found: Sequence[CheckProposal], rounds: Sequence[int]) -> list[CheckProposal]:

@@ -21,11 +21,31 @@ Columns = Mapping[str, Sequence[float]]
 
 @dataclass(frozen=True, slots=True)
 class Bound:
-    """One bound of a zone: ``sign`` is 1 for values above it, -1 for values below."""
+    """One bound of a zone.
+
+    Attributes:
+        text: the reading.
+        sign: 1 for values above it, -1 for values below.
+        scale: the margin that counts as clear of the original.
+        middle: the value from which the distance is bounded, in either direction; None where the reading is.
+    """
 
     text: str
     sign: int
     scale: float
+    middle: float | None = None
+
+    def of(self, value: float) -> float:
+        """Return what is bounded of a reading's value: itself, or its distance from the middle."""
+        return value if self.middle is None else abs(value - self.middle)
+
+    @property
+    def expression(self) -> str:
+        """What is bounded, as it stands in the condition: ``abs(a - b - 0.9)``."""
+        if self.middle is None:
+            return self.text
+        offset = f" {'-' if self.middle > 0 else '+'} {_number(abs(self.middle))}" if self.middle else ""
+        return f"abs({self.text}{offset})"
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,11 +69,10 @@ class Zone:
     def has(self, columns: Columns) -> bool:
         """Return whether any moment lies in the zone."""
         rows = zip(*(columns[side.text] for side in self.sides), strict=True)
-        signs = [side.sign for side in self.sides]
         return any(
             all(
-                sign * value >= sign * bound
-                for sign, value, bound in zip(signs, row, self.bounds, strict=True)
+                side.sign * side.of(value) >= side.sign * bound
+                for side, value, bound in zip(self.sides, row, self.bounds, strict=True)
             )
             for row in rows
         )
@@ -62,7 +81,7 @@ class Zone:
     def condition(self) -> str:
         """The condition that a moment lies outside the zone: ``a < 0.6 or b > 0.2``."""
         return " or ".join(
-            f"{side.text} {'<' if side.sign > 0 else '>'} {_number(bound)}"
+            f"{side.expression} {'<' if side.sign > 0 else '>'} {_number(bound)}"
             for side, bound in zip(self.sides, self.bounds, strict=True)
         )
 

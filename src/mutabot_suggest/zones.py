@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import pairwise, permutations
+from itertools import chain, pairwise, permutations
 
 from .checks import ANGLE, PLACE, Monitor, Trials, rank_of
 from .project import PlaceInTest
@@ -147,18 +147,25 @@ def _of_bounds(columns: Columns, ways: Sequence[Columns], scales: Mapping[str, f
 
 
 def _of_slips(columns: Columns, ways: Sequence[Columns], scales: Mapping[str, float]) -> Iterator[Zone]:
-    """Yield the zones of things that move in closed fingers."""
+    """Yield the zones of things that move in closed fingers, in either direction."""
     for gate in (text for text in scales if GATE.search(text)):
         values = [value for way in ways for value in way[gate]]
         half = _readable(min(values), max(values))
         for text in (text for text in scales if FROM in text):
             held = [_where_below(way, gate, half)[text] for way in ways]
             own = _where_below(columns, gate, half)[text]
-            for sign in (1, -1) if own and all(held) else ():
-                side, closed = Bound(text, sign, scales[text]), Bound(gate, -1, scales[gate])
-                found = _beyond(side, own, held, _SLIPPED)
-                if found is not None:
-                    yield Zone((side, closed), (found[0], half), found[1])
+            if not own or not all(held):
+                continue
+            side = Bound(text, 1, scales[text], _middle([*chain.from_iterable(held)], scales[text]))
+            found = _beyond(side, own, held, _SLIPPED)
+            if found is not None:
+                yield Zone((side, Bound(gate, -1, scales[gate])), (found[0], half), found[1])
+
+
+def _middle(values: Sequence[float], scale: float) -> float:
+    """Return the middle of what the original reads, in few digits, or 0 if that is near."""
+    middle = (min(values) + max(values)) / 2
+    return 0.0 if abs(middle) < scale / 2 else _readable(middle - scale / 2, middle + scale / 2)
 
 
 def _where_below(columns: Columns, gate: str, bound: float) -> Columns:
@@ -174,9 +181,9 @@ def _beyond(
 
     ``most``: times the scale, where what is farther counts as near as that.
     """
-    ends = [max(side.sign * value for value in values) for values in usual]
+    ends = [max(side.sign * side.of(value) for value in values) for values in usual]
     unit = side.scale + max(ends) - min(ends)
-    far = min((max(side.sign * value for value in own) - max(ends)) / unit, most)
+    far = min((max(side.sign * side.of(value) for value in own) - max(ends)) / unit, most)
     if far < _ROOM:
         return None
     return _readable(side.sign * max(ends), side.sign * (max(ends) + far * unit)), min(far, _FAR)

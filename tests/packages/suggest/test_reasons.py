@@ -15,7 +15,7 @@ from mutabot.results.results import MutantResult
 from mutabot_suggest.output import print_suggestions
 from mutabot_suggest.places import chosen_places, other_places
 from mutabot_suggest.project import PlaceInTest
-from mutabot_suggest.readings import Measured
+from mutabot_suggest.readings import PROBE, Measured, ReadExpression
 from mutabot_suggest.reasons import why_unsolved
 from mutabot_suggest.results import Suggestions, Unsolved
 from mutabot_suggest.suite import SuiteChecks
@@ -73,6 +73,32 @@ def reason(suite: SuiteChecks, *diverged: Diverged) -> str:
     read = {f"{check.key}.actual": 0.3, f"{check.key}.expected": 0.3, f"{check.key}.tolerance": 0.02}
     measured = Measured(originals={PLACE: {(0, PLACE.node): read}})
     return why_unsolved(survivor(*diverged), measured, suite, [], {}, {}).reason
+
+
+def test_a_survivor_that_could_not_be_compared_is_not_explained_by_readings_that_scatter(
+    suite: SuiteChecks,
+) -> None:
+    gap = "equal runs of the original differ in tests/test_it.py::test_it"
+    uncompared = survivor()
+    outcomes = [replace(outcome, gaps=(gap,)) for outcome in uncompared.survived]
+    uncompared = replace(uncompared, rounds=tuple(outcomes))
+    readings = {PLACE: [ReadExpression("start", PROBE, 0.01)]}
+    drawn = {(round, PLACE.node): {"start": 4.0 * round} for round in range(3)}
+    measured = Measured({PLACE: drawn}, {PLACE: {mutant().id: {(0, PLACE.node): {"start": 2.0}}}}, readings)
+    found = why_unsolved(uncompared, measured, suite, [], {}, {})
+    assert found.reason == f"it could not be compared with the original: {gap}"
+
+
+def test_without_a_probe_the_reason_asks_for_one_and_with_one_for_a_check_on_the_way(
+    suite: SuiteChecks,
+) -> None:
+    plain = survivor()
+    probed = replace(plain, rounds=tuple(replace(outcome, distance=0.4) for outcome in plain.survived))
+    reasons = [why_unsolved(each, Measured(), suite, [], {}, {}).reason for each in (plain, probed)]
+    assert [reason.partition("differs")[2] for reason in reasons] == [
+        "; a [[probe]] in the vocabulary may show more",
+        ": a check on the way may notice it",
+    ]
 
 
 def test_what_ends_within_the_suites_tolerance_is_told_so(suite: SuiteChecks) -> None:

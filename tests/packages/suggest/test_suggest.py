@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from textwrap import dedent
 from typing import Any
 
 import pytest
@@ -82,6 +83,74 @@ def test_the_page_lists_what_is_suggested_for_the_project_with_all_kinds_of_quan
         r"^\| fault_catalogue \| `(.+?)` \|", DOCUMENT.read_text(encoding="utf-8"), re.MULTILINE
     )
     assert {statement.removeprefix("assert ").replace("pytest.", "") for statement in suggested} == {*rows}
+
+
+STATE_ROBOT = """
+    class Tank:
+        def __init__(self):
+            self.level, self.alarm = 0.0, False
+
+        def fill(self, amount):
+            self.level += amount
+
+        def set_alarm(self, on):
+            self.alarm = on
+
+        def state(self):
+            return {"level": self.level, "alarm": self.alarm}
+"""
+STATE_PROGRAM = """
+    def fill(tank):
+        tank.fill(40.0)
+
+    def drain(tank):
+        if tank.level > 20.0:
+            tank.set_alarm(True)
+"""
+STATE_TESTS = """
+    import pytest
+    from mission import drain, fill
+    from robot import Tank
+
+    @pytest.fixture(scope="module")
+    def tank():
+        return Tank()
+
+    def test_fill(tank):
+        fill(tank)
+        assert tank.level == 40.0
+
+    def test_drain(tank):
+        drain(tank)
+        assert tank.level == 40.0
+"""
+STATE_VOCABULARY = """
+    [[probe]]
+    call = "robot:Tank.state"
+    tolerance = 0.001
+
+    [[operation]]
+    call = "robot:Tank.fill"
+
+    [[operation]]
+    call = "robot:Tank.set_alarm"
+"""
+
+
+def test_a_test_that_reaches_the_survivor_only_after_another_one_is_looked_at_after_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    make(tmp_path, {"test_tank.py": STATE_TESTS}, STATE_PROGRAM)
+    settings = 'program = ["mission.py"]\nvocabulary = ["robot.toml"]\n'
+    texts = {"robot.py": STATE_ROBOT, "robot.toml": STATE_VOCABULARY, "mutabot.toml": settings}
+    for name, text in texts.items():
+        (tmp_path / name).write_text(dedent(text))
+    monkeypatch.chdir(tmp_path)
+    assert main(["run", "--only", "*set_alarm*skip"]) == 0
+    capsys.readouterr()
+    (suggestion,) = found_by(["suggest", "--seeds", "3"], capsys)["suggestions"]
+    assert suggestion["test"] == "tests/test_tank.py::test_drain"
+    assert "alarm" in suggestion["statement"]
 
 
 def test_what_cannot_get_a_check_is_refused_with_the_true_reason(

@@ -109,15 +109,31 @@ def carried(slips: Sequence[float]) -> Moments:
     return {BOX: [1.0, 1.0, *heights, 1.0, 1.0], TOOL: [0.3, 0.1, *carried, 0.1, 0.4], OPENING: openings}
 
 
-def test_what_slips_in_the_fingers_breaks_a_condition_on_its_distance_from_the_tool() -> None:
-    slipped = [*[0.0] * 8, *[0.009] * 14]
+@pytest.mark.parametrize("direction", [1, -1])
+def test_what_slips_in_the_fingers_breaks_a_condition_on_its_distance_from_the_tool(direction: int) -> None:
+    slipped = [*[0.0] * 8, *[direction * 0.009] * 14]
     best, *_ = found([carried([0.0] * 22), carried([0.0004] * 22)], mutant=carried(slipped))
-    bound = float(best.condition.partition(f"{SLIP} > ")[2].partition(" or ")[0])
-    assert 0.9 - 0.009 < bound < 0.9 - 0.001
+    bound = float(best.condition.partition(f"abs({SLIP} - 0.9) < ")[2].partition(" or ")[0])
+    assert 0.001 < bound < 0.009
     opening = float(best.condition.partition(f" or {OPENING} > ")[2])
     assert 0.055 < opening < 0.08
     assert best.name == "box stays in its place between the fingers"
     assert not best.is_release
+
+
+def test_a_condition_on_a_slip_in_one_direction_is_broken_by_one_in_the_other_too() -> None:
+    there, back = ([*[0.0] * 8, *[direction * 0.009] * 14] for direction in (1, -1))
+    best, *_ = found([carried([0.0] * 22)], there=carried(there), back=carried(back))
+    assert {mutant for mutant, _ in best.trials} == {"there", "back"}
+
+
+def test_a_thing_held_in_the_middle_of_the_tool_is_compared_with_it_alone() -> None:
+    def beside(slip: float) -> Moments:
+        moments = carried([0.0] * 22)
+        return {**moments, TOOL: moments[TOOL], BOX: [value + slip for value in moments[TOOL]]}
+
+    best, *_ = found([beside(0.0)], mutant=beside(-0.009))
+    assert best.condition.startswith(f"abs({SLIP}) < ")
 
 
 @pytest.mark.parametrize("slip", [0.0, 0.002, 0.004])
