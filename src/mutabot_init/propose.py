@@ -27,7 +27,7 @@ from .observations import ANY, WatchedCallable
 from .observe import LIMIT, merged, watch
 from .operations import Proposal, commands_of, proposals, tells_commands
 from .proposers import brought_proposers
-from .text import counted, questions_in, value_text, vocabulary_text
+from .text import counted, probe_text, questions_in, value_text, vocabulary_text
 
 CONFIGURATION, VOCABULARY = "mutabot.toml", "robot.toml"
 #: what a test file tells that imports one that is no Python
@@ -182,14 +182,21 @@ class _Findings:
 
     def text(self) -> str:
         """Return the vocabulary's text; what a wrong guess would keep from loading is a comment."""
-        text = vocabulary_text(self.drafts, self.program)
+        text = vocabulary_text(self.drafts, self.program) + self._probe_text()
         if not self.taken or _loads(text):
             return text
         for operation in self.operations:
             operation.current = operation.opposite = None
         for draft in self.drafts:
             draft.is_taken = draft.is_taken and _loads(vocabulary_text([draft], self.program))
-        return vocabulary_text(self.drafts, self.program)
+        return vocabulary_text(self.drafts, self.program) + self._probe_text()
+
+    def _probe_text(self) -> str:
+        """Return how to name a probe, unless nothing is proposed or a shipped vocabulary brings some."""
+        if not self.taken or any(known.vocabulary.probes for known in self.known):
+            return ""
+        readings = [operation for operation in self.operations if operation.is_taken and operation.is_reading]
+        return probe_text([reading.call.target for reading in readings if not reading.call.arguments])
 
     def _new(self, calls: Sequence[WatchedCallable]) -> list[WatchedCallable]:
         """Return the calls to describe; known ones only where the program shows more about them."""

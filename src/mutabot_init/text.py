@@ -45,6 +45,14 @@ def vocabulary_text(drafts: Sequence[Proposal | MessageEntry], program: Sequence
     return _with_notes_once("\n\n".join([*blocks, *others]) + "\n")
 
 
+def probe_text(readings: Sequence[str]) -> str:
+    """Return how a reading becomes a probe, as a comment; ``readings``: those that need no arguments."""
+    return (
+        "\n# To compare survivors with the original, name a reading that shows how a test ended:\n"
+        f"# [[probe]]\n# call = {value_text(readings[0] if readings else '…')}\n# tolerance = 0.001\n"
+    )
+
+
 def _is_clock(draft: Proposal | MessageEntry) -> TypeGuard[Proposal]:
     return isinstance(draft, Proposal) and draft.is_clock
 

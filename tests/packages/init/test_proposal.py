@@ -248,6 +248,14 @@ def test_lines_show_values_that_were_seen_and_what_is_unsure_is_a_question(
     assert "with 12 operations and 1 question" in proposed[1]
 
 
+def test_a_reading_without_arguments_stands_as_the_probe_to_take(proposed: tuple[Path, str]) -> None:
+    lines = (proposed[0] / "robot.toml").read_text().splitlines()
+    at = lines.index("# [[probe]]")
+    own = "\n".join(line.removeprefix("# ") for line in lines[at:])
+    (probe,) = tomllib.loads(own)["probe"]
+    assert probe["call"] in operations(proposed[0])
+
+
 def test_what_was_run_and_what_comes_next_is_told(proposed: tuple[Path, str]) -> None:
     assert "mission.py (guessed" in proposed[1]
     assert "tests: 1 passed" in proposed[1]
