@@ -22,6 +22,11 @@ from results import samples
 _ESCAPES = re.compile(r"\x1b\[[0-9;?]*[a-zA-Z]")
 
 
+def without_times(text: str) -> list[str]:
+    """The lines, with 0:00 for each time: how long a busy machine takes is no matter."""
+    return re.sub(r"\d+:\d\d", "0:00", text).splitlines()
+
+
 def test_a_pipe_gets_the_beginning_and_the_end_of_a_stage_and_little_between() -> None:
     out = io.StringIO()
     with Lines(make_console(out, width=80), every=60.0) as progress:
@@ -29,7 +34,7 @@ def test_a_pipe_gets_the_beginning_and_the_end_of_a_stage_and_little_between() -
         for number in range(100):
             progress.advance(f"#{number} survived")
         progress.note("something to know")
-    assert out.getvalue().splitlines() == [
+    assert without_times(out.getvalue()) == [
         "mutants 0/100",
         "mutants 100/100: took 0:00 (#99 survived)",
         "something to know",
@@ -41,7 +46,7 @@ def test_a_pipe_is_told_the_time_left() -> None:
     progress = Lines(make_console(out), every=0.0)
     progress.stage("mutants", 2)
     progress.advance()
-    assert "mutants 1/2: 0:00 elapsed, 0:00 left" in out.getvalue()
+    assert "mutants 1/2: 0:00 elapsed, 0:00 left" in without_times(out.getvalue())
 
 
 def test_the_time_left_is_not_guessed_from_the_first_few() -> None:
@@ -50,7 +55,7 @@ def test_the_time_left_is_not_guessed_from_the_first_few() -> None:
     progress.stage("mutants", 100)
     for _ in range(10):
         progress.advance()
-    *first, last = out.getvalue().splitlines()[1:]
+    *first, last = without_times(out.getvalue())[1:]
     assert not any("left" in line for line in first)
     assert last == "mutants 10/100: 0:00 elapsed, 0:00 left"
 
@@ -60,7 +65,7 @@ def test_a_stage_of_unknown_length_only_counts() -> None:
     progress = Lines(make_console(out), every=0.0)
     progress.stage("baseline")
     progress.advance("round 1")
-    assert out.getvalue().splitlines() == ["baseline", "baseline 1: 0:00 elapsed (round 1)"]
+    assert without_times(out.getvalue()) == ["baseline", "baseline 1: 0:00 elapsed (round 1)"]
 
 
 def test_a_terminal_gets_a_bar() -> None:
@@ -115,7 +120,7 @@ def told(*ends: MutantEnd) -> list[str]:
         for outcome in ends:
             progress.mutant_ended(outcome)
             progress.advance()
-    return out.getvalue().splitlines()[1:]
+    return without_times(out.getvalue())[1:]
 
 
 def test_survivors_are_printed_as_they_are_found_and_once() -> None:
