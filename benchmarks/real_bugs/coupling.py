@@ -208,12 +208,18 @@ def of_scores(programs: Sequence[Found]) -> Iterable[str]:
     yield "|---|---|---|---|"
     columns = [bands(programs, family) for family in FAMILIES]
     for band, row in enumerate(zip(*columns, strict=True)):
-        cells = [f"{own.mean} % ({own.low}–{own.high}; {own.programs} programs)" for own in row]
-        yield f"| {20 * band}–{20 * band + 20} % | {' | '.join(cells)} |"
+        yield f"| {20 * band}–{20 * band + 20} % | {' | '.join(map(_cell, row))} |"
 
 
-def bands(programs: Sequence[Found], family: str) -> tuple[Caught, ...]:
-    """Return what parts with scores of each band catch, over programs.
+def _cell(caught: Caught | None) -> str:
+    """Return what is caught as a cell of the table; a dash where no part has such a score."""
+    if caught is None:
+        return "–"
+    return f"{caught.mean} % ({caught.low}–{caught.high}; {caught.programs} programs)"
+
+
+def bands(programs: Sequence[Found], family: str) -> tuple[Caught | None, ...]:
+    """Return what parts with scores of each band catch, over programs; None where no part has such a score.
 
     Of each program as many parts are drawn, of sizes that are drawn evenly from one test to all.
     """
@@ -225,7 +231,7 @@ def bands(programs: Sequence[Found], family: str) -> tuple[Caught, ...]:
             tests = frozenset(draw.sample(program.tests, draw.randint(1, len(program.tests))))
             band = found[band_of(noticed(kills, tests))]
             band.setdefault(program.name, []).append(noticed(bugs, tests))
-    return tuple(map(_caught, found))
+    return tuple(_caught(by_program) if by_program else None for by_program in found)
 
 
 def _caught(by_program: Mapping[str, Sequence[float]]) -> Caught:

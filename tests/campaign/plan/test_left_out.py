@@ -106,7 +106,7 @@ def test_a_moment_or_demand_that_nobody_heeds_is_told(tmp_path: Path) -> None:
     file.write_text(file.read_text() + '[[demand]]\nquantity = "speed"\nnotice = "1 mm"\n')
     asked = request_for(folder, families=("robot", "conventional"), moments=(Moment.parse_any("once"),))
     notes = [line for line in check(asked, Quiet()).lines if line.startswith("note ")]
-    assert any("when: mutants of conventional act wherever they are reached" in line for line in notes), notes
+    assert any("when: mutants of conventional ignore it: only" in line for line in notes), notes
     assert any("demand: no mutant of offset is what it speaks of" in line for line in notes), notes
 
 
