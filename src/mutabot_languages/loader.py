@@ -87,7 +87,8 @@ class RobotProgram:
             UnsupportedError: it uses something that is not carried out.
             mutabot_cell.CellError: the cell stops it, by a motion that it refuses or by a protective stop.
         """
-        if any(program.language.name != "rapid" for program in (*tasks, self)) and tasks:
+        share = self.language.share
+        if tasks and (share is None or any(program.language is not self.language for program in tasks)):
             raise LanguageError("tasks: only programs in RAPID have others beside them, in RAPID as well")
         station = Station(cell, self.cell_map, inputs or {})
         machines = [program._machine(station, until, limit) for program in (self, *tasks)]
@@ -98,8 +99,8 @@ class RobotProgram:
             machine.start(_MAIN, self.language.prepare(each, task))
             schedule.run(_MAIN)
             mains.append(self.language.main(each, task, "" if number else routine))
-            if number:
-                self.language.share(machine, each)
+            if number and share is not None:
+                share(machine, each)
         for number, steps in enumerate(mains):
             machine.start(f"{_MAIN} {number}" if number else _MAIN, steps)
         schedule.run(_MAIN)

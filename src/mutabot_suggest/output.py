@@ -23,10 +23,8 @@ def print_suggestions(context: CommandContext, found: Suggestions) -> None:
     is_shared = len(found.checks) > 1 and len(proofs) == 1
     for number, check in enumerate(found.checks, start=1):
         context.print_section(f"{number}  {check.test}")
-        for line in check_lines(
-            check, found, with_proof=not is_shared
-        ):  # a statement is copied, so that it must not be wrapped
-            context.print(f"  {line}")
+        for line in check_lines(check, found, with_proof=not is_shared):
+            context.print(f"  {line}")  # a statement is copied, so that it must not be wrapped
     if is_shared:
         context.print_section(f"Each of the {len(found.checks)} checks", proofs.pop())
     left = [survivor for survivor in found.unsolved if not survivor.never]

@@ -8,10 +8,10 @@ from enum import Enum
 from functools import cache
 from typing import Any
 
+from mutabot.model.codec import is_plain
+
 #: what the facts of a class are, where they are others than its fields: a line, or a function
 Facts = Mapping[type, str | Callable[[Any], dict[str, Any]]]
-#: scalar types of JSON, which are passed on unchanged
-_PLAIN = {str, int, float, bool, type(None)}
 
 
 def fact(value: Any, path: Sequence[str]) -> Any:
@@ -36,7 +36,7 @@ class Encoder:
 
     def __call__(self, value: Any) -> Any:
         """Return the data of any value."""
-        if type(value) in _PLAIN:
+        if is_plain(value):
             return value
         known = self._known.get(type(value))
         if known is not None:

@@ -39,7 +39,8 @@ class RobotLanguage:
         machine: what runs it.
         task: one of its threads.
         beside: other files that belong to a file by their names.
-        share: gives the run of another task what it shares with the first, which is given before it.
+        share: gives the run of another task what it shares with the first, which is given before it; None if
+            a controller runs one task.
     """
 
     name: str
@@ -51,7 +52,7 @@ class RobotLanguage:
     machine: type[Machine] = Machine
     task: type[ProgramTask] = ProgramTask
     beside: Callable[[Path], list[Path]] = lambda file: []
-    share: Callable[[Machine, Machine], None] = lambda first, other: None
+    share: Callable[[Machine, Machine], None] | None = None
 
     @property
     def highlighting(self) -> tuple[str, str]:

@@ -214,11 +214,10 @@ class CallSites(SourceStep):
 
         def read(receiver: Any) -> Any:
             __tracebackhide__ = True
+            # this is run at each call of such a name, so it calls nothing that it need not
             found = getattr(receiver, name)
             kind = type(found)
-            function = (
-                found.__func__ if kind is MethodType else found
-            )  # this is run at each call of such a name
+            function = found.__func__ if kind is MethodType else found
             if type(function) in WRAPPERS:
                 if function._self_wrapper in seen:
                     return found

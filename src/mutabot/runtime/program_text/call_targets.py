@@ -355,7 +355,7 @@ def _is_of_objects(owner: type | None, adapter: Adapter) -> bool:
         return False
     raw = inspect.getattr_static(owner, adapter.operation.last_name, None)
     wrapped = getattr(raw, "__wrapped__", raw)
-    return not any(isinstance(one, classmethod | staticmethod) for one in (raw, wrapped))
+    return not any(isinstance(found, classmethod | staticmethod) for found in (raw, wrapped))
 
 
 def _handlers(found: Any) -> Iterator[Any]:
