@@ -83,7 +83,7 @@ class Link:
         address: of its scheduler.
 
     Attributes:
-        reply: answers, as they come.
+        replies: answers, as they come.
 
     Raises UsageError if nobody answers there.
     """

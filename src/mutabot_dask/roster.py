@@ -57,7 +57,7 @@ class Roster:
 
     Attributes:
         bundle: the project; None as long as it is not needed.
-        told: all that was told.
+        reported: what users were told, in order.
     """
 
     link: Link

@@ -51,7 +51,6 @@ class Station:
         cell: a ``mutabot_cell.Cell``.
         signals: what its signals are.
         inputs: values of inputs, or functions that give them, which go before the map.
-        site_of: tells what of a file is being carried out.
 
     Attributes:
         tool: the program's tool on its flange.
