@@ -80,11 +80,8 @@ def part_position(cell: Cell, change: Changed, *, names: str, random: Random, ax
 
 def part_angle(cell: Cell, change: Changed, *, names: str, random: Random) -> None:
     """Change the rotation of parts about the vertical, rad."""
-    turn = quaternion_from_euler(0.0, 0.0, math.degrees(change(0.0)))
     for body in _part_bodies(cell, names):
-        turned, place = np.zeros(4), _place(cell, body)
-        mujoco.mju_mulQuat(turned, turn, place[3:7])
-        place[3:7] = turned
+        _turn(_place(cell, body)[3:7], change(0.0))
     _forward(cell)
 
 
@@ -135,12 +132,17 @@ def fixture_position(cell: Cell, change: Changed, *, names: str, random: Random,
 
 
 def fixture_angle(cell: Cell, change: Changed, *, names: str, random: Random) -> None:
-    """Change the rotation of fixtures about the vertical, rad; parts on them keep their places."""
-    turn, model = quaternion_from_euler(0.0, 0.0, math.degrees(change(0.0))), cell.simulation.model
+    """Turn fixtures about the vertical through their centres, rad, with the parts that stand on them."""
+    angle, model = change(0.0), cell.simulation.model
+    turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
     for name in _fixtures(cell, names):
-        body, turned = cell.simulation.id_of("body", name), np.zeros(4)
-        mujoco.mju_mulQuat(turned, turn, model.body_quat[body])
-        model.body_quat[body] = turned
+        body = cell.simulation.id_of("body", name)
+        centre, carried = model.body_pos[body][:2], _carried(cell, name)
+        _turn(model.body_quat[body], angle)
+        for part in carried:
+            place = _place(cell, part)
+            place[:2] = centre + turn @ (place[:2] - centre)
+            _turn(place[3:7], angle)
     _forward(cell)
 
 
@@ -318,6 +320,13 @@ def _place(cell: Cell, body: int) -> Array:
     model = cell.simulation.model
     place: Array = cell.simulation.data.qpos[model.jnt_qposadr[model.body_jntadr[body]] :][:7]
     return place
+
+
+def _turn(orientation: Array, angle: float) -> None:
+    """Turn a quaternion (w, x, y, z) about the vertical of the world, rad, in place."""
+    turned = np.zeros(4)
+    mujoco.mju_mulQuat(turned, quaternion_from_euler(0.0, 0.0, math.degrees(angle)), orientation)
+    orientation[:] = turned
 
 
 def _forward(cell: Cell) -> None:

@@ -110,6 +110,28 @@ def test_a_fixture_takes_along_what_stands_on_it() -> None:
         assert cell.truth.box_position().z == pytest.approx(CONVEYOR.centre[2] + 0.05 + 0.02, abs=0.001)
 
 
+def test_what_stands_on_a_turned_fixture_keeps_its_pose_in_the_fixture_s_frame() -> None:
+    x, y, z = TARGET_TABLE.centre
+    beside = Box(name="beside", position=(x, y, z + TARGET_TABLE.size[2] / 2 + 0.03), jitter=0.0)
+    with Cell(3, scene=Scene(parts=(BOX, beside))) as cell:
+        relative, far = pose_in(cell, "conveyor", "box"), cell.simulation.data.joint("beside").qpos.tolist()
+        turned = cell.simulation.data.body("box").xpos.copy()
+        disturb(cell, "fixture_angle", "offset", np.radians(5.0), "conveyor")
+        np.testing.assert_allclose(pose_in(cell, "conveyor", "box"), relative, atol=1e-12)
+        assert cell.simulation.data.joint("beside").qpos.tolist() == far
+        _, _, _, w, x, y, z = cell.simulation.data.joint("box").qpos.tolist()
+        assert 2 * np.degrees(np.arctan2(z, w)) == pytest.approx(5.0)
+        assert (cell.simulation.data.body("box").xpos[:2] != turned[:2]).any()
+
+
+def pose_in(cell: Cell, fixture: str, part: str) -> list[float]:
+    """Return position and rotation matrix of a part in the frame of a fixture, 12 numbers."""
+    data = cell.simulation.data
+    frame = data.body(fixture).xmat.reshape(3, 3)
+    place = frame.T @ (data.body(part).xpos - data.body(fixture).xpos)
+    return [*place, *(frame.T @ data.body(part).xmat.reshape(3, 3)).ravel()]
+
+
 def test_a_part_may_lie_elsewhere_be_turned_and_be_larger() -> None:
     making: dict[str, Any] = {"seed": 3, "scene": Scene(parts=(BOX,))}
     disturb(making, "part_size", "offset", 0.01)
