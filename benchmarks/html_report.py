@@ -38,7 +38,7 @@ from mutabot.journal.recordings import ORIGINAL, Rank, Recordings
 from mutabot.journal.records import BaselineTest
 from mutabot.model import By, Check, Looked, Mutant, Outcome, Role, Site, Span, Verdict
 from mutabot.model.events import TestEnd
-from mutabot.model.outcome import Apart, Diverged
+from mutabot.model.world_difference import Apart, Diverged
 from mutabot.report.html.folder import Contents, Written, write_folder
 from mutabot.report.texts import portable
 from mutabot.results.stored import StoredEvidence

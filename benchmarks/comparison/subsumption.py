@@ -20,7 +20,7 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 from mutabot.model import Outcome
-from mutabot.model.outcome import without_accidents
+from mutabot.model.outcome_text import without_accidents
 
 from .ends import noticing_tests
 

@@ -189,7 +189,7 @@ def has_text(error: BaseException) -> bool:
     return True
 
 
-def in_words(error: BaseException) -> str:
+def error_text(error: BaseException) -> str:
     """Return an exception's class and text."""
     return f"{type(error).__name__}: {text_of(error)}"
 

@@ -165,14 +165,14 @@ class ExtensionPart:
             for name in attribute.split(".") if attribute else ():
                 found = getattr(found, name)
         except Exception as error:  # a package of others may fail in any way
-            raise ExtensionError(f"{self.words} cannot be loaded: {error!r}") from error
+            raise ExtensionError(f"{self.text} cannot be loaded: {error!r}") from error
         return found
 
     def load_function(self) -> Callable[..., Any]:
         """Load the object as a function. Raises ExtensionError also if it is not one."""
         found = self.load()
         if not callable(found):
-            raise ExtensionError(f"{self.words} is not a function")
+            raise ExtensionError(f"{self.text} is not a function")
         return found  # type: ignore[no-any-return]
 
     @property
@@ -191,7 +191,7 @@ class ExtensionPart:
         """Load the object as a class. Raises ExtensionError also if it is not a subclass of ``base``."""
         found = self.load()
         if not (isinstance(found, type) and issubclass(found, base)):
-            raise ExtensionError(f"{self.words} is not a subclass of {base.__module__}.{base.__qualname__}")
+            raise ExtensionError(f"{self.text} is not a subclass of {base.__module__}.{base.__qualname__}")
         return found
 
     def make(self, base: type[T]) -> T:
@@ -200,14 +200,14 @@ class ExtensionPart:
         try:
             made = kind()
         except Exception as error:  # as above
-            raise ExtensionError(f"{self.words} cannot be made: {error!r}") from error
+            raise ExtensionError(f"{self.text} cannot be made: {error!r}") from error
         name = getattr(made, "name", None)
         if name != self.name:
-            raise ExtensionError(f"{self.words} calls itself {name!r}; extension and class must agree")
+            raise ExtensionError(f"{self.text} calls itself {name!r}; extension and class must agree")
         return made
 
     @property
-    def words(self) -> str:
+    def text(self) -> str:
         """The part's name in messages."""
         return f"{self.name!r} of package {self.owner!r} ({self.reference})"
 

@@ -60,7 +60,7 @@ class Drop(MessageOperator):
     )
 
     def describe(self, subject: Subject, before: Any | None, after: Any | None) -> str:
-        return self.words(subject, which=self.variants[subject.variant])
+        return self.fault_text(subject, which=self.variants[subject.variant])
 
     def least_calls(self, subject: Subject) -> int:
         return 3 if subject.variant else 1
@@ -268,7 +268,7 @@ class JumpClock(_Mishap):
 
     def describe(self, subject: Subject, before: Any | None, after: Any | None) -> str:
         way = "back" if subject.variant.startswith("-") else "ahead"
-        return self.words(subject, way=way)
+        return self.fault_text(subject, way=way)
 
 
 class LoseAnswer(MessageOperator):

@@ -20,7 +20,7 @@ from mutabot.api.reports import UsageError
 #: how the type of bytes is pickled, which is all that an answer needs
 _BYTES = {pickle.dumps(bytes, protocol) for protocol in range(pickle.HIGHEST_PROTOCOL + 1)}
 #: characters of what an exception says that are kept
-_SAID = 1000
+_LENGTH = 1000
 
 
 class Placeholder(Exception):  # noqa: N818  # it is a value
@@ -28,15 +28,15 @@ class Placeholder(Exception):  # noqa: N818  # it is a value
 
     Attributes:
         kind: the name of its class.
-        said: its texts, as far as they are plain.
+        text: its texts, as far as they are plain.
     """
 
-    kind = said = ""
+    kind = text = ""
 
     def __init__(self, *given: Any, **_: Any) -> None:
         super().__init__()
         flat = [part for value in given for part in (value if type(value) is tuple else (value,))]
-        self.said = ": ".join(value[:_SAID] for value in flat if type(value) is str)[:_SAID]
+        self.text = ": ".join(value[:_LENGTH] for value in flat if type(value) is str)[:_LENGTH]
         # an exception comes with what makes it, which comes first
         kinds = (value.__name__ for value in given if isinstance(value, type))
         self.kind = next(kinds, type(self).__name__)
@@ -45,7 +45,7 @@ class Placeholder(Exception):  # noqa: N818  # it is a value
         """Ignore the state."""
 
     def __str__(self) -> str:
-        return self.said or "an object that is not read"
+        return self.text or "an object that is not read"
 
 
 class _SafeUnpickler(pickle.Unpickler):
@@ -101,7 +101,7 @@ def _deserialized(header: Any, frames: Any, deserializers: Any = None) -> Any:
             case "pickle":
                 return _loaded(data)
             case "error":
-                return Placeholder(data[:_SAID].decode("utf-8", "replace"))
+                return Placeholder(data[:_LENGTH].decode("utf-8", "replace"))
     except Exception as error:
         return Placeholder(f"no readable data ({type(error).__name__})")
     return Placeholder("an object that is not read")

@@ -71,8 +71,10 @@ def _of(result: MutantResult) -> Rehearsed:
     if any(deviation is None for deviation in known):
         return Rehearsed(inf, f"{outcomes[0].verdict} in simulation; how far it led is not known")
     worst = max(deviation or 0.0 for deviation in known)
+    shown = (outcome.shown_difference for outcome in outcomes)
     story = next(
-        (outcome.told.story for outcome in outcomes if outcome.told is not None and outcome.told.story), ""
+        (difference.story for difference in shown if difference is not None and difference.story),
+        "",
     )
     text = story or f"{worst:.3g} times the original's own spread away"
     return Rehearsed(worst, f"{outcomes[0].verdict} in simulation: {text}")

@@ -111,7 +111,7 @@ def _clearest_round(result: MutantResult) -> int:
     """Return the round that shows the mutant's effect best, from 0; of equal ones the first."""
     ranks = []
     for outcome in result.outcomes:
-        difference = outcome.told
+        difference = outcome.shown_difference
         deviation = outcome.deviation or 0.0 if difference is not None else 0.0
         is_clear = difference is not None and not difference.scatters
         ranks.append((bool(outcome.acted), is_clear, deviation, -outcome.round))

@@ -74,7 +74,8 @@ def _why_failed(check: CheckProposal, why: str) -> str:
 
 def _of_recordings(survivor: MutantResult, measured: Measured, suite: SuiteChecks) -> str:
     """Describe the difference in recordings of the world; empty without any recordings."""
-    stories = [found for out in survivor.survived if (found := out.told) is not None and found.apart]
+    shown = (outcome.shown_difference for outcome in survivor.survived)
+    stories = [difference for difference in shown if difference is not None and difference.apart]
     if not stories:
         return ""
     found = max(stories, key=lambda divergence: divergence.rank)

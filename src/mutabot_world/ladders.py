@@ -45,7 +45,7 @@ class JudgedOutcome:
 
 def judge(outcome: Any, tolerances: Tolerances) -> JudgedOutcome:
     """Return how a disturbance ended in a round, derived from its outcome."""
-    story = outcome.told.story if outcome.told is not None else ""
+    story = outcome.shown_difference.story if outcome.shown_difference is not None else ""
     if outcome.verdict.is_killed:
         error = f"{outcome.exception.rpartition(':')[2]}: {outcome.message}" if outcome.exception else ""
         first = (error or outcome.message or "").split("\n")[0]

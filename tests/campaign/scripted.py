@@ -394,7 +394,7 @@ def _executed(
     for path in sorted(root.glob("**/*.py")):
         name = path.relative_to(root).as_posix()
         file = File(name, path.read_bytes())
-        names = set(file.said)
+        names = set(file.digests)
         if name in program or is_test_file(name):
             wanted = {"", test} if name == test_file else {"", *functions} if name in program else {""}
             names &= wanted

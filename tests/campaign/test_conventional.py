@@ -14,7 +14,7 @@ from mutabot.campaign.verdict import Run, _ruling
 from mutabot.errors import NothingToDoError
 from mutabot.model import By, Mutant, Outcome, Role, Site, Span, Verdict
 from mutabot.model.events import TestEnd
-from mutabot.model.outcome import same_end
+from mutabot.model.outcome_text import same_end
 from tests.campaign.project import (
     CONFIGURATION,
     REPLAY,

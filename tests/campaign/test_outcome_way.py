@@ -46,6 +46,7 @@ DATA = {
 #: what was recorded of the world has a way beside it: kept recordings, what is in them, and how they differ
 RECORDED = {
     "campaign/evidence.py", "journal/recordings.py", "evidence/recording.py", "evidence/story.py",
+    "model/world_difference.py",
 }  # fmt: skip
 #: the most files of the others that an outcome goes through
 MOST = 14

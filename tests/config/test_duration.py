@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from mutabot.config.options import in_words, seconds_of
+from mutabot.config.options import duration_text, parse_duration
 from mutabot.errors import UsageError
 
 
@@ -21,13 +21,13 @@ from mutabot.errors import UsageError
     ],
 )
 def test_a_length_of_time_is_read(text: str, seconds: float) -> None:
-    assert seconds_of(text) == seconds
+    assert parse_duration(text) == seconds
 
 
 @pytest.mark.parametrize("text", ["", "10", "m", "ten minutes", "10m!", "-5m", "0s", "10mm", "1d"])
 def test_anything_else_is_an_error_that_says_what_is_right(text: str) -> None:
     with pytest.raises(UsageError, match="10m"):
-        seconds_of(text)
+        parse_duration(text)
 
 
 @pytest.mark.parametrize(
@@ -35,5 +35,5 @@ def test_anything_else_is_an_error_that_says_what_is_right(text: str) -> None:
     [(600, "10 min"), (90, "90 s"), (5400, "1 h 30 min"), (3601, "1 h 1 s"), (150, "2 min 30 s")],
 )
 def test_a_length_of_time_is_said_again(seconds: float, text: str) -> None:
-    assert in_words(seconds) == text
-    assert seconds_of(text) == seconds
+    assert duration_text(seconds) == text
+    assert parse_duration(text) == seconds

@@ -14,7 +14,7 @@ from mutabot.evidence.spread import spread_between
 from mutabot.evidence.story import diverged
 from mutabot.model import Outcome, Verdict
 from mutabot.model.deviation import deviation_of, difference_of, spread_of
-from mutabot.model.outcome import Diverged
+from mutabot.model.world_difference import Diverged
 from tests.evidence.worlds import SHELF, TABLE, Place, line, recorded
 
 WAY = [SHELF, *line(SHELF, TABLE, 2.0)]

@@ -9,7 +9,7 @@ from mutabot.evidence.feed import Feed
 from mutabot.evidence.paths import RecordedPaths
 from mutabot.evidence.recording import RecordedCall, Recording
 from mutabot.evidence.story import diverged
-from mutabot.model.outcome import Diverged
+from mutabot.model.world_difference import Diverged
 
 Place = tuple[float, float, float]
 SHELF: Place = (0.0, 0.0, 0.525)

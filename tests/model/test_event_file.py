@@ -34,7 +34,7 @@ from mutabot.model.events import (
     Untrusted,
 )
 from mutabot.model.outcome import By
-from mutabot.runtime.event_file import EventFile, plain
+from mutabot.runtime.event_file import EventFile, json_stand_in
 
 KEY = "0123456789abcdef"
 END = TestEnd(
@@ -52,7 +52,7 @@ NAME = "1-2"
 
 
 def line_of(event: Event, number: int = 1, key: str = KEY, name: str = NAME) -> bytes:
-    return sealed(event, number, name, key, plain)
+    return sealed(event, number, name, key, json_stand_in)
 
 
 def line_with(text: bytes) -> bytes:

@@ -36,13 +36,13 @@ def file(text: str, name: str = "mission.py") -> File:
 
 
 def changed(old: str, new: str, name: str = "mission.py") -> set[str]:
-    before, now = file(old, name).said, file(new, name).said
+    before, now = file(old, name).digests, file(new, name).digests
     return {unit for unit in {*before, *now} if before.get(unit) != now.get(unit)}
 
 
 def test_functions_are_units_but_for_those_with_decorators_that_nobody_knows() -> None:
     source_file = file(TEXT)
-    assert set(source_file.said) == {"", "Arm.move", "far"}
+    assert set(source_file.digests) == {"", "Arm.move", "far"}
     lines = source_file.lines_of({"", "Arm.move"})
     assert lines == (MODULE, 9)
     assert source_file.names_at(lines) == {"", "Arm.move"}
@@ -105,7 +105,7 @@ def test_what_cannot_be_parsed_counts_whole() -> None:
 def test_a_file_keeps_no_syntax_tree() -> None:
     source_file = file("def only_here():\n    pass\n")
     assert source_file.is_python
-    assert "only_here" in source_file.said
+    assert "only_here" in source_file.digests
     kept = (node for node in gc.get_objects() if isinstance(node, ast.FunctionDef))
     assert not any(node.name == "only_here" for node in kept)
 

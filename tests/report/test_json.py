@@ -18,7 +18,7 @@ from mutabot.extensions import ExtensionPart
 from mutabot.journal.journal import Journal
 from mutabot.journal.records import Untested
 from mutabot.model import Diverged, Outcome, Verdict
-from mutabot.model.outcome import Apart
+from mutabot.model.world_difference import Apart
 from mutabot.report.document import document, dumps
 from mutabot.report.terminal.campaign import plan_data
 from mutabot.results.results import Results, read_results

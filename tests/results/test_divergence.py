@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from mutabot.model import By, Compared, Kind, Outcome, Path, Quantity, Verdict
-from mutabot.model.outcome import Apart, Diverged
+from mutabot.model.world_difference import Apart, Diverged
 from mutabot.results.divergence import change_text, explain, quantity_of
 from mutabot.results.results import MutantResult
 from tests.results.samples import BACK, NEGATE, REVERSE, SKIP, VOCABULARY, mutant

@@ -37,7 +37,9 @@ def earlier_decision(journal: Journal) -> bool | None:
     return journal.meta().get(CONFIRMATION) if journal.finished != "complete" else None
 
 
-def decide(campaign: Campaign, mutants: Sequence[Mutant], journal: Journal, earlier: bool | None) -> Campaign:
+def leave_tests_out(
+    campaign: Campaign, mutants: Sequence[Mutant], journal: Journal, earlier: bool | None
+) -> Campaign:
     """Decide whether some tests are left out at first, note that in the journal, and return the campaign.
 
     This goes by what the tests took in the baseline, and by how many mutants are taken to survive.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
-from mutabot.config.options import in_words
+from mutabot.config.options import duration_text
 from mutabot.errors import plural
 from mutabot.frozen import frozen
 
@@ -40,7 +40,7 @@ class Duration:
         """``up to about 4 min for 130 runs, 2 at a time``."""
         step = 5 if self.seconds < 100 else 30 if self.seconds < 1000 else 300
         about = max(step, step * round(self.seconds / step))
-        return f"up to about {in_words(about)} for {plural(self.runs, 'run')}, {self.jobs} at a time"
+        return f"up to about {duration_text(about)} for {plural(self.runs, 'run')}, {self.jobs} at a time"
 
 
 def duration_of(campaign: Campaign, mutants: Sequence[Mutant]) -> Duration:

@@ -16,7 +16,7 @@ from mutabot.evidence.recording import TrackKind, bytes_of, from_bytes
 from mutabot.evidence.spread import spread_between
 from mutabot.evidence.story import diverged
 from mutabot.journal.recordings import ORIGINAL, Rank, Recordings
-from mutabot.journal.records import UNFIT
+from mutabot.journal.row_checks import UNFIT
 
 if TYPE_CHECKING:
     from mutabot.campaign.request import Progress, Request

@@ -22,7 +22,7 @@ from mutabot.journal.records import Replayed
 from mutabot.model.activation import Activation
 from mutabot.model.deadline import Limit
 from mutabot.model.mutant import Mutant, Place
-from mutabot.model.outcome import in_words
+from mutabot.model.outcome_text import outcome_text
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -120,5 +120,5 @@ def replay_one(
         second = {}
         for outcome in replay(campaign, [(now, round) for round in rounds]):
             second[outcome.round] = outcome
-            progress.advance(in_words(outcome))
+            progress.advance(outcome_text(outcome))
     return [Replayed(round, first.get((now.id, round)), second[round]) for round in rounds]

@@ -14,7 +14,7 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from mutabot.campaign.faults.planned import planned_by
-from mutabot.campaign.faults.providers import asked_for, provider, rules_of
+from mutabot.campaign.faults.providers import provider, rules_of, selected_providers
 from mutabot.faults import Project, known_families
 from mutabot.frozen import frozen
 from mutabot.journal.records import Drawing, Reaching, Stratum
@@ -68,7 +68,7 @@ def shuffled(mutants: Iterable[Mutant], salt: str) -> list[Mutant]:
 def make_plan(baseline: Baseline, project: Project) -> Plan:
     """Return all mutants that are asked for, by provider, and add their places to the baseline."""
     plan = Plan([], [])
-    planned = {provider: planned_by(provider, project, baseline) for provider in asked_for(project)}
+    planned = {provider: planned_by(provider, project, baseline) for provider in selected_providers(project)}
     for made in planned.values():
         made.reach_text(baseline)
     baseline.add_planned({provider.name: found for provider, found in planned.items()})
@@ -132,7 +132,7 @@ def reaching(baseline: Baseline, mutants: Iterable[Mutant]) -> Reaching:
     return Reaching(tuple(numbers), {site: tuple(sorted(found)) for site, found in sites.items()})
 
 
-def carry(
+def carry_over(
     known: Iterable[Mutant], request: Request, planned: Sequence[Mutant], whole: Iterable[Mutant]
 ) -> list[Mutant]:
     """Return the mutants of earlier campaigns that the program still has and that are not planned now.

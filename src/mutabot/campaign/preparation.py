@@ -35,8 +35,8 @@ from mutabot.journal.reader import kept_original
 from mutabot.languages.registry import program_files
 from mutabot.model.codec import to_data
 from mutabot.model.events import Remark
+from mutabot.model.left_out import by_heading
 from mutabot.model.mutant import Place
-from mutabot.model.outcome import by_heading
 from mutabot.model.selection import select
 from mutabot.thresholds.planned import split_ladders
 

@@ -12,18 +12,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mutabot import __version__, extensions
-from mutabot.campaign.confirmation import decide, earlier_decision
+from mutabot.campaign.confirmation import earlier_decision, leave_tests_out
 from mutabot.campaign.engines.rerun import refuse_flaky, rerun
 from mutabot.campaign.evidence import CampaignEvidence, recorded
 from mutabot.campaign.faults.providers import family_of
-from mutabot.campaign.plan import Plan, carry, drawing, reaching, summaries
+from mutabot.campaign.plan import Plan, carry_over, drawing, reaching, summaries
 from mutabot.campaign.preparation import begin, locked_executor, selected, whole_plan
 from mutabot.campaign.reuse.keys import Dependencies, OutcomeWriter
 from mutabot.campaign.reuse.original import OriginalRuns
 from mutabot.campaign.reuse.snapshot import Snapshot, State, is_source
 from mutabot.campaign.schedule import OUT_OF_TIME, run_planned
 from mutabot.campaign.sharding.shards import part_of, write_shard
-from mutabot.campaign.suppressions import note_accepted, text_of
+from mutabot.campaign.suppressions import note_accepted, source_text
 from mutabot.errors import ControlError, JournalError, in_short
 from mutabot.execution.interruption import interruptions_kept
 from mutabot.journal import records
@@ -101,7 +101,7 @@ def _run(
     note_accepted(journal, campaign.suppressions, unmatched)
     write_shard(journal, request.shard, part)
     if request.shard is not None:
-        progress.note(f"{request.shard.words}: {len(part.mutants)} of {len(plan.mutants)} mutants")
+        progress.note(f"{request.shard.text}: {len(part.mutants)} of {len(plan.mutants)} mutants")
     if request.fresh:
         journal.forget(mutant.id for mutant in part.mutants)
     if evidence is not None:
@@ -109,7 +109,7 @@ def _run(
     for (round, test), reason in baseline.unstable.items():
         progress.note(f"excluded in round {round + 1}: {test} ({reason})")
     refuse_flaky(request, baseline)
-    campaign = decide(campaign, plan.mutants, journal, decided)
+    campaign = leave_tests_out(campaign, plan.mutants, journal, decided)
     original.keep(journal.set_original)
     edited = [name for name in after.edited_since(before.digests) if is_source(name, request)]
     dependencies, found = None, Reused()
@@ -240,9 +240,9 @@ def _write_beginning(
     for result in results:
         round, repetition = result.task.key
         journal.add_tests(records.BaselineTest.of(round, repetition, end) for end in result.ends)
-    carried = carry([mutant for mutant, _ in journal.known()], request, plan.mutants, whole.mutants)
+    carried = carry_over([mutant for mutant, _ in journal.known()], request, plan.mutants, whole.mutants)
     files = {span.file for mutant in (*plan.mutants, *carried) for span in mutant.site.spans}
-    sources = {file: text_of(path) for file in files if (path := request.root / file).is_file()}
+    sources = {file: source_text(path) for file in files if (path := request.root / file).is_file()}
     journal.set_plan(plan.mutants, plan.left_out, sources=sources)
     journal.set_known((mutant, True) for mutant in carried)
     if plan.drawing is not None:

@@ -16,7 +16,7 @@ from mutabot.campaign.baseline.seeds import record_more_seeds
 from mutabot.campaign.engines.engine import run_trials
 from mutabot.campaign.faults.providers import provider
 from mutabot.campaign.plan import shuffled
-from mutabot.config.options import in_words
+from mutabot.config.options import duration_text
 from mutabot.errors import plural
 from mutabot.execution.interruption import OutOfTimeError, limited
 from mutabot.journal.records import BUDGET, Budgeted
@@ -93,7 +93,7 @@ def _run_batches(
     runs = in_order(mutants, request.rounds, found.done, request.seed, found.before)
     seconds = request.budget or 0.0
     left = max(until - request.clock(), 0.0)
-    campaign.progress.note(f"budget: {in_words(seconds)}, of which {left:.0f} s are left")
+    campaign.progress.note(f"budget: {duration_text(seconds)}, of which {left:.0f} s are left")
     outcomes: list[Outcome] = []
     budgeted = Budgeted(seconds, planned=len(runs))
     done, size = 0, _FIRST * request.jobs

@@ -46,12 +46,12 @@ def suppressions_of(request: Request) -> tuple[Suppression, ...]:
     configuration = request.configuration
     found = [*read_suppressions(request.root)]
     for file in program_files(request.root, (*configuration.program, *configuration.oracle)):
-        found += comments_in(file, text_of(request.root / file))
+        found += comments_in(file, source_text(request.root / file))
     raise_errors([*_unknown_operators(found)])
     return tuple(found)
 
 
-def text_of(file: Path) -> str:
+def source_text(file: Path) -> str:
     """Return a program text with plain newlines, decoded as far as possible."""
     source = file.read_bytes()
     try:
@@ -154,7 +154,7 @@ def _unmatched(campaign: Campaign, plan: Plan, lines: _SourceLines) -> Iterator[
             change = f"the line of {suppression.id} has changed from {suppression.line!r} to {now!r}"
             yield f"{suppression.source}: {change}: decide again"
         elif _is_of(suppression, campaign.request.families):
-            yield f"{suppression.source}: no mutant is {suppression.words}: the decision has no effect"
+            yield f"{suppression.source}: no mutant is {suppression.mutants_text}: the decision has no effect"
 
 
 def _is_of(suppression: Suppression, families: Collection[str]) -> bool:
@@ -197,5 +197,5 @@ class _SourceLines:
         """Return the lines of a file; none if there is no such file."""
         if file not in self._of:
             path = self._root / file
-            self._of[file] = text_of(path).split("\n") if path.is_file() else []
+            self._of[file] = source_text(path).split("\n") if path.is_file() else []
         return self._of[file]

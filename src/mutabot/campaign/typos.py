@@ -6,12 +6,12 @@ import re
 from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING
 
-from mutabot.campaign.faults.providers import asked_for, operators_of_packages
+from mutabot.campaign.faults.providers import operators_of_packages, selected_providers
 from mutabot.errors import SelectionError
 from mutabot.faults import known_families
 from mutabot.languages.registry import program_files
 from mutabot.model.mutant import Role
-from mutabot.model.mutant_pattern import line_of, means_numbers
+from mutabot.model.mutant_pattern import lines_of_pattern, means_numbers
 from mutabot.model.selection import nothing_fits
 from mutabot.operators import registry
 
@@ -28,7 +28,7 @@ def refuse_typos(request: Request) -> None:
 
     Where mutants may stand elsewhere than in the program, only the plan can tell.
     """
-    if not all(provider.in_program for provider in asked_for(request.project)):
+    if not all(provider.in_program for provider in selected_providers(request.project)):
         return
     sources = (*request.configuration.program, *request.configuration.oracle)
     files = program_files(request.root, sources)
@@ -52,7 +52,7 @@ def _may_fit(word: str, files: Sequence[str], names: Collection[str], root: Path
     if not colon and (word in names or word in operators_of_packages()):
         return True
     meant = [known for known in files if _is_file(file, known)]
-    lines = line_of(word)
+    lines = lines_of_pattern(word)
     return bool(meant) and (lines is None or any(lines[1].start <= _length(root / path) for path in meant))
 
 

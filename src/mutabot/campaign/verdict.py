@@ -16,7 +16,8 @@ from mutabot.model import By, Kill, Looked, Mutant, Outcome, Verdict
 from mutabot.model.codec import shallow
 from mutabot.model.event_file import OWN_FAULT
 from mutabot.model.events import TestEnd
-from mutabot.model.outcome import added, in_words
+from mutabot.model.outcome import added
+from mutabot.model.outcome_text import outcome_text
 from mutabot.model.source_units import Executed, together
 
 if TYPE_CHECKING:
@@ -178,7 +179,7 @@ def judge_safely(campaign: Campaign, run: Run) -> Outcome:
         outcome = _with_recordings(campaign, run)
     except Exception as error:
         return not_judged(run.mutant, run.round, error, run.engine)
-    beside = f"{in_words(outcome)}; {run.hindered}" if run.hindered is not None else None
+    beside = f"{outcome_text(outcome)}; {run.hindered}" if run.hindered is not None else None
     return replace(outcome, beside=beside)
 
 

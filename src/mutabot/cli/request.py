@@ -11,7 +11,7 @@ from typing import Unpack
 from mutabot.campaign.request import ExecutorChoice, Request
 from mutabot.campaign.simulation import with_simulation
 from mutabot.config.configuration import Configuration, load_configuration
-from mutabot.config.options import ALL, AUTO, ENGINES, OPERATORS, Sample, Shard, seconds_of
+from mutabot.config.options import ALL, AUTO, ENGINES, OPERATORS, Sample, Shard, parse_duration
 from mutabot.config.vocabulary import load_vocabulary
 from mutabot.errors import UsageError, unknown_name_text
 from mutabot.extensions import brought
@@ -79,7 +79,7 @@ def request_of(
         evidence=evidence and configuration.evidence > 0,
         since=given.get("since"),
         other_journal=given.get("journal"),
-        budget=None if budget is None else seconds_of(budget),
+        budget=None if budget is None else parse_duration(budget),
     )
     return request if chosen is None else chosen.fitted(request)
 

@@ -47,7 +47,7 @@ _PART = re.compile(r"(\d{1,12}(?:\.\d{1,12})?)\s*(h|min|m|s)")
 _SECONDS = {"h": 3600.0, "min": 60.0, "m": 60.0, "s": 1.0}
 
 
-def seconds_of(text: str) -> float:
+def parse_duration(text: str) -> float:
     """Return the seconds in a text such as ``90s``, ``10m`` or ``1h 30m``. Raises UsageError otherwise."""
     plain, text = text.strip().lower(), shortened(text)
     parts = _PART.findall(plain)
@@ -61,7 +61,7 @@ def seconds_of(text: str) -> float:
     return found
 
 
-def in_words(seconds: float) -> str:
+def duration_text(seconds: float) -> str:
     """Return a duration as text: ``10 min``, ``1 h 30 min``, ``90 s``."""
     if seconds < 120 and seconds % 60:
         return f"{seconds:g} s"
@@ -145,7 +145,7 @@ class Shard:
     of: int
 
     @property
-    def words(self) -> str:
+    def text(self) -> str:
         """``shard 2 of 8``."""
         return f"shard {self.number} of {self.of}"
 

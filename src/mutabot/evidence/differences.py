@@ -11,7 +11,7 @@ from mutabot.evidence.paths import LENGTH, RecordedPaths, Row, TrackPath, aside,
 from mutabot.evidence.recording import TrackKind
 from mutabot.frozen import frozen
 from mutabot.model.deviation import TOLERANCES, TURNS, difference_of
-from mutabot.model.outcome import Apart
+from mutabot.model.world_difference import Apart
 
 #: two bodies that touch each other, sorted
 BodyPair = tuple[str, ...]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from mutabot.evidence.physics import COLLISION, DRAG, DURATION, IMPACT, MARGIN, RELEASE, SLIP, SPEED, Fact
 from mutabot.model.deviation import TOLERANCES
-from mutabot.model.outcome import Measurement
+from mutabot.model.world_difference import Measurement
 
 if TYPE_CHECKING:
     from mutabot.evidence.differences import Spread

@@ -30,8 +30,8 @@ from mutabot.evidence.physics import (
     facts_of,
 )
 from mutabot.evidence.recording import TrackKind
-from mutabot.model.outcome import Apart, Diverged, Measurement
 from mutabot.model.quantity import value_text
+from mutabot.model.world_difference import Apart, Diverged, Measurement
 
 #: parts of a sentence, how many of them may be contacts, and differences that are kept
 _MOST_PARTS, _MOST_CONTACTS, _MOST = 3, 2, 8
@@ -312,7 +312,7 @@ def _beside(measurement: Measurement, digits: int = 2) -> str:
 
 
 def _amount(value: float, unit: str = "m", digits: int = 2) -> str:
-    return amount(float(f"{value:.{digits}g}"), unit)
+    return value_with_unit(float(f"{value:.{digits}g}"), unit)
 
 
 def _is_significant(deviation: Apart) -> bool:
@@ -327,13 +327,15 @@ def _strayed(deviation: Apart, *, is_whole: bool) -> str:
         return ""
     thing = deviation.name.removesuffix(TURNED)
     if thing != deviation.name:
-        return f"{thing} ended turned by {amount(final, deviation.unit)}"
+        return f"{thing} ended turned by {value_with_unit(final, deviation.unit)}"
     if deviation.unit != "m" or deviation.is_value:
-        return f"{deviation.name} ended {amount(final, deviation.unit)} from its value in the original"
+        return (
+            f"{deviation.name} ended {value_with_unit(final, deviation.unit)} from its value in the original"
+        )
     if strayed > 2.0 * final:
-        left = f"{deviation.name} left its path by up to {amount(strayed)}"
-        return f"{left} and ended {amount(final)} from its original position"
-    return f"{deviation.name} ended {amount(final)} from its position in the original"
+        left = f"{deviation.name} left its path by up to {value_with_unit(strayed)}"
+        return f"{left} and ended {value_with_unit(final)} from its original position"
+    return f"{deviation.name} ended {value_with_unit(final)} from its position in the original"
 
 
 def _detours(apart: Sequence[Apart], *, is_whole: bool) -> Iterator[tuple[float, str]]:
@@ -343,17 +345,18 @@ def _detours(apart: Sequence[Apart], *, is_whole: bool) -> Iterator[tuple[float,
     paths = [gap for gap in found if gap.unit == "m" and not gap.is_value]
     if paths:
         names = " and ".join(path.name for path in paths[:_MOST_PATHS])
-        far = " and ".join(amount(path.aside or 0.0) for path in paths[:_MOST_PATHS])
+        far = " and ".join(value_with_unit(path.aside or 0.0) for path in paths[:_MOST_PATHS])
         its, plural = ("its path", "") if len(paths) == 1 else ("their paths", "s")
         end = f" but reached the correct end position{plural}" if is_whole else ""
         yield paths[0].deviation, f"{names} left {its} by up to {far}{end}"
     for deviation in found:
         if deviation.name.endswith(TURNED) and (deviation.aside or 0.0) > _LEAST_TURN:
-            thing, far = deviation.name.removesuffix(TURNED), amount(deviation.aside or 0.0, deviation.unit)
+            thing = deviation.name.removesuffix(TURNED)
+            far = value_with_unit(deviation.aside or 0.0, deviation.unit)
             yield deviation.deviation, f"{thing} was turned by up to {far} on its way"
 
 
-def amount(value: float, unit: str = "m") -> str:
+def value_with_unit(value: float, unit: str = "m") -> str:
     """Return a value with its unit: ``40 mm``, ``0.31 m``, ``12 deg``."""
     if unit == "m" and value < 0.1:
         millimetres = 1e3 * value if value >= 1e-4 else 0.0

@@ -187,7 +187,7 @@ def _rows(connection: sqlite3.Connection, table: str) -> dict[int, tuple[Any, ..
     return {row: tuple(values) for row, *values in found}
 
 
-def differences(file: sqlite3.Connection, known: sqlite3.Connection) -> list[str]:
+def row_differences(file: sqlite3.Connection, known: sqlite3.Connection) -> list[str]:
     """Return one text for each row that was changed, added or removed, and for other differences."""
     if set(file.execute(_THINGS, (_MOST,))) != set(known.execute(_THINGS, (_MOST,))):
         return ["the tables are others than were made"]

@@ -418,7 +418,7 @@ class Journal(JournalReader):
         if whole or now != self._stamps:
             try:
                 with closing(database.connect_to_read(self.path)) as file:
-                    found = database.differences(file, self._copy)
+                    found = database.row_differences(file, self._copy)
             except (sqlite3.Error, OSError) as error:
                 found = [f"the file cannot be read any more ({error})"]
         self.altered += found

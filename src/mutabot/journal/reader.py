@@ -12,13 +12,14 @@ from pathlib import Path
 from typing import Any, Self, TypeVar
 
 from mutabot.errors import JournalError
+from mutabot.journal.row_checks import UNFIT
 from mutabot.model import LeftOut, Mutant, Outcome, Verdict, Vocabulary
 from mutabot.model.codec import from_data
 
-from . import database, records
+from . import database, row_checks
 from .database import LAST, columns
 from .files import refuse_tracked
-from .records import UNFIT, BaselineTest, ControlEnd, Kept, KeptBaseline, OriginalRun
+from .records import BaselineTest, ControlEnd, Kept, KeptBaseline, OriginalRun
 
 T = TypeVar("T")
 #: a key of meta that is the journal's own: why the campaign ended
@@ -85,7 +86,7 @@ class JournalReader:
         for key, text in self._rows("SELECT key, value FROM meta"):
             if isinstance(key, str) and not key.startswith("journal:"):
                 with self._checked("meta", key):
-                    found[key] = records.fact(key, records.load(text))
+                    found[key] = row_checks.fact(key, row_checks.load(text))
         return {key: value for key, value in found.items() if value is not None}
 
     @property
@@ -97,7 +98,7 @@ class JournalReader:
     @property
     def finished(self) -> str | None:
         """Why the campaign ended; None while it runs and after it was killed."""
-        return self._one("meta", FINISHED_KEY, lambda text: str(records.load(text)))
+        return self._one("meta", FINISHED_KEY, lambda text: str(row_checks.load(text)))
 
     @property
     def attempt(self) -> str | None:
@@ -107,7 +108,7 @@ class JournalReader:
         """
         rows = self._rows("SELECT value FROM meta WHERE key = ?", ATTEMPT_KEY)
         with self._checked("meta", ATTEMPT_KEY):
-            return str(records.load(rows[0][0]) or "") if rows else None
+            return str(row_checks.load(rows[0][0]) or "") if rows else None
         return ""
 
     # The baseline and the plan
@@ -130,7 +131,7 @@ class JournalReader:
 
     def source(self, file: str) -> str | None:
         """Return the text of a mutated file at the time of the campaign; None if it was not recorded."""
-        return self._one("source", file, records.text_in)
+        return self._one("source", file, row_checks.text_in)
 
     def original(self) -> KeptBaseline | None:
         """Return the runs of the original that are kept; None if there are none."""
@@ -139,10 +140,10 @@ class JournalReader:
             with self._checked("original", task):
                 row = {"task": task, "data": data}
                 if task:
-                    run = records.held(OriginalRun, row)
+                    run = row_checks.held(OriginalRun, row)
                     runs.append(replace(run, events=bytes(memoryview(events))))
                 else:
-                    head = records.held(KeptBaseline, {"data": data})
+                    head = row_checks.held(KeptBaseline, {"data": data})
         return replace(head, runs=tuple(runs)) if head is not None else None
 
     # Outcomes
@@ -180,7 +181,7 @@ class JournalReader:
             for verdict, data, key in rows:
                 with self._checked(table, mutant, round):
                     row = {"mutant": mutant, "round": round, "verdict": verdict, "data": data}
-                    return Kept(mutant, round, records.held(Outcome, row).verdict, key, data=data)
+                    return Kept(mutant, round, row_checks.held(Outcome, row).verdict, key, data=data)
                 return None
         raise KeyError((mutant, round))
 
@@ -193,8 +194,8 @@ class JournalReader:
         found = {}
         for mutant, round, verdict, key, is_sound in rows:
             with self._checked(table, mutant, round):
-                pair = records.text_in(mutant), records.round_in(round)
-                found[pair] = Kept(*pair, Verdict(verdict), records.text_in(key), bool(is_sound))
+                pair = row_checks.text_in(mutant), row_checks.round_in(round)
+                found[pair] = Kept(*pair, Verdict(verdict), row_checks.text_in(key), bool(is_sound))
         return found
 
     def kept_outcomes(self) -> list[Outcome]:
@@ -208,7 +209,7 @@ class JournalReader:
 
     def parts(self, digest: str) -> dict[str, str] | None:
         """Return the content behind a digest in a key; None if it is no longer stored."""
-        return self._one("parts", digest, lambda text: from_data(dict[str, str], records.load(text)))
+        return self._one("parts", digest, lambda text: from_data(dict[str, str], row_checks.load(text)))
 
     def text(self, digest: str) -> bytes | None:
         """Return the content of a Python file with this digest; None if it is no longer stored."""
@@ -231,7 +232,7 @@ class JournalReader:
         found = []
         for row in self._rows(f"SELECT * FROM {table} {which}"):
             with self._checked(table, *row):
-                found.append(records.held(kind, dict(zip(columns()[table], row, strict=True))))
+                found.append(row_checks.held(kind, dict(zip(columns()[table], row, strict=True))))
         return found
 
     def _one(self, table: str, name: str, read: Callable[[Any], T]) -> T | None:

@@ -60,7 +60,7 @@ def highlighting_of(file: str) -> tuple[str, str]:
     return getattr(_by_language().get(language_of(file) or ""), "highlighting", ("", ""))
 
 
-def units_of(file: str) -> Callable[[bytes], Mapping[str, TextUnit]] | None:
+def unit_parser(file: str) -> Callable[[bytes], Mapping[str, TextUnit]] | None:
     """Return what tells the units of a file, as ``FrontEnd`` says; None for Python, and if nothing does."""
     return getattr(_by_language().get(language_of(file) or ""), "units", None)
 

@@ -11,9 +11,10 @@ from mutabot.lazy import lazily
 
 if TYPE_CHECKING:
     from mutabot.model.call import Call, CallFault, Middleware, Proceed, Reply, Unchanged
+    from mutabot.model.left_out import LeftOut
     from mutabot.model.mutant import Moment, Mutant, Role, Site, Span
     from mutabot.model.operation import ANY, Case, Clock, Operation, Pattern, Probe, Vocabulary, Wait
-    from mutabot.model.outcome import By, Check, Compared, Diverged, Kill, LeftOut, Looked, Outcome, Verdict
+    from mutabot.model.outcome import By, Check, Compared, Kill, Looked, Outcome, Verdict
     from mutabot.model.path import Path
     from mutabot.model.program_text import (
         FATAL,
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
         TextPlace,
     )
     from mutabot.model.quantity import Kind, Mode, Quantity
+    from mutabot.model.world_difference import Diverged
 
 __all__ = [
     "ANY", "FATAL", "IDENTITY", "Alternative", "By", "Call", "CallFault", "Case", "Check",
@@ -44,8 +46,8 @@ _HOMES = {
     "mutabot.model.operation": (
         "ANY", "Case", "Clock", "Operation", "Pattern", "Probe", "Vocabulary", "Wait",
     ),
-    "mutabot.model.outcome": (
-        "By", "Check", "Compared", "Diverged", "Kill", "LeftOut", "Looked", "Outcome", "Verdict",
-    ),
+    "mutabot.model.outcome": ("By", "Check", "Compared", "Kill", "Looked", "Outcome", "Verdict"),
+    "mutabot.model.world_difference": ("Diverged",),
+    "mutabot.model.left_out": ("LeftOut",),
 }  # fmt: skip
 __getattr__ = lazily(__name__, _HOMES)

@@ -18,6 +18,8 @@ from enum import Enum
 from functools import cache
 from typing import Any, TypeVar, Union, get_args, get_origin, get_type_hints
 
+from mutabot.model.source_units import digest
+
 T = TypeVar("T")
 Decoder = Callable[[Any], Any]
 #: scalar types of JSON, which are passed on unchanged
@@ -178,6 +180,12 @@ _TEXTS = re.compile(rb'"(?:[^"\\]|\\.)*"')
 _NO_BRACKETS = bytes(set(range(256)).difference(b"[]{}"))
 #: how JSON in ASCII writes what may be half of a character
 _SURROGATE = "\\ud"
+
+
+def data_digest(data: Any) -> str:
+    """Return the digest of JSON-like data; anything else counts by its text."""
+    text = json.dumps(data, sort_keys=True, default=str)
+    return digest(text.encode())
 
 
 def printable(text: str) -> str:

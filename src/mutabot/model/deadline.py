@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 from mutabot.frozen import frozen
 from mutabot.model.clocks import monotonic
-from mutabot.model.process_time import MOST, TimeUsed, below
+from mutabot.model.process_time import MOST, TimeUsed, descendants
 
 #: seconds after which the accounts of a process are read for the first time, which takes milliseconds: most
 #: tests are over by then
@@ -76,7 +76,7 @@ class Deadline:
     def is_over(self, process: int) -> bool:
         """Return whether a process has used up its time. Call it at ``until``, which it updates."""
         if not self.is_counted:
-            self.is_counted, self.used = True, TimeUsed.from_now(below([process]))
+            self.is_counted, self.used = True, TimeUsed.from_now(descendants([process]))
             self.until = self.used.began + self.limit.least
             return False
         wall, processor = self.used.remaining(self.limit.wall, self.limit.processor, [process])

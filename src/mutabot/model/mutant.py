@@ -97,7 +97,7 @@ class Moment:
         return _TEXTS[self.when][0].format(first=self.first, last=self.last)
 
     @property
-    def words(self) -> str:
+    def phrase(self) -> str:
         """The moment as part of a sentence about what the mutant does."""
         return _TEXTS[self.when][1].format(first=self.first, last=self.last)
 

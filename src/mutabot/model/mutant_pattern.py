@@ -19,7 +19,7 @@ def fits(pattern: str, mutant: Mutant) -> bool:
     """Return whether a word of ``--only`` or ``--skip`` matches this mutant."""
     if means_numbers(pattern):
         return any(mutant.number in _range(part) for part in pattern.split(","))
-    line = line_of(pattern)
+    line = lines_of_pattern(pattern)
     if line is not None and any(_is_at(span, *line) for span in mutant.site.spans):
         return True
     names = (mutant.operator, mutant.family, mutant.site.role.value)
@@ -48,7 +48,7 @@ def numbers_in(pattern: str) -> Iterator[int]:
     return (number for part in pattern.split(",") for number in _range(part))
 
 
-def line_of(pattern: str) -> tuple[str, range] | None:
+def lines_of_pattern(pattern: str) -> tuple[str, range] | None:
     """Return the file and the lines that a word names; None if it is no ``file:line``."""
     line = _LINE.fullmatch(pattern)
     return (line[1], _range(line[2])) if line is not None else None

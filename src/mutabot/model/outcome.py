@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping
 from dataclasses import field
 from enum import StrEnum
-from itertools import groupby
 from typing import Any
 
 from mutabot.frozen import frozen
-from mutabot.model.deviation import deviation_of
+from mutabot.model.world_difference import Diverged
 
 
 class By(StrEnum):
@@ -86,129 +84,6 @@ class Looked:
     acted: bool
     checks: tuple[Check, ...] = ()
     more: int = 0
-
-
-@frozen
-class Apart:
-    """The distance of one object from its position in the original at the same time.
-
-    Attributes:
-        name: which thing, such as ``box``; ``box turned`` for its orientation.
-        unit: of the numbers: m, deg, or that of a value.
-        first: when it was apart first by more than the tolerance, s.
-        largest: greatest difference, and ``at`` when, s.
-        final: difference at the end.
-        aside: of a position, the greatest distance from the path of the original, whenever that was there; of
-            an orientation, the greatest angle from all that the original has; of a value, how far it left
-            the original's range; None for angles that are values.
-        tolerance: difference up to which it counts as the same.
-        spread: how far apart it ends in runs of the original with different seeds.
-        aside_spread: how far these runs leave the paths or ranges of each other.
-        is_value: whether it is a value, and no place.
-    """
-
-    name: str
-    unit: str
-    first: float
-    largest: float
-    at: float
-    final: float
-    aside: float | None = None
-    tolerance: float = 0.0
-    spread: float = 0.0
-    aside_spread: float = 0.0
-    is_value: bool = False
-
-    @property
-    def deviation(self) -> float:
-        """The deviation that delay alone cannot explain, in units of the original's spread."""
-        return max(self.of_end, deviation_of(self.aside or 0.0, self.aside_spread, self.tolerance))
-
-    @property
-    def of_end(self) -> float:
-        """The difference at the end in units of the original's spread."""
-        return deviation_of(self.final, self.spread, self.tolerance)
-
-    @property
-    def is_delay(self) -> bool:
-        """Whether it may have taken the same path at other times."""
-        return max(self.final, self.aside or 0.0) <= self.tolerance
-
-
-@frozen
-class Measurement:
-    """A measurement of one motion or contact, as the mutant and as the original.
-
-    Attributes:
-        name: what was measured, such as ``release height``.
-        thing: of what, such as ``box``.
-        unit: of the numbers: m, m/s or s.
-        value: as the mutant; None if it did not happen.
-        original: as the original; None if it does not happen there.
-        at: when, s; None if it did not happen.
-        tolerance: difference up to which it counts as the same.
-        spread: by how much it differs in runs of the original with different seeds.
-    """
-
-    name: str
-    thing: str
-    unit: str
-    value: float | None
-    original: float | None
-    at: float | None = None
-    tolerance: float = 0.0
-    spread: float = 0.0
-
-    @property
-    def deviation(self) -> float:
-        """The difference in units of the original's spread; zero for times, which may be mere delay."""
-        difference = abs((self.value or 0.0) - (self.original or 0.0))
-        return 0.0 if self.unit == "s" else deviation_of(difference, self.spread, self.tolerance)
-
-
-@frozen
-class Diverged:
-    """How a test of a mutant differs from the same test of the original.
-
-    Attributes:
-        test: node id.
-        at: the first moment at which the world, or what the program commands or reads, differs, s; None
-            without a clock.
-        what: what differed then.
-        story: what happened, in a sentence.
-        apart: what was apart by more than its tolerance, largest deviation first.
-        measurements: what was measured of motions and contacts, where it differs.
-        fault: when the mutant changed something for the first time, s; None if that is not known.
-        example: value before and after when it did so; None if that is not known.
-        is_simulated: whether times are simulated; else they are of the wall clock.
-        scatters: what ends far apart in runs of the original with different seeds, such as ``box by 0.52 m``;
-            empty if the end of the test is stable.
-    """
-
-    test: str
-    at: float | None
-    what: str
-    story: str
-    apart: tuple[Apart, ...] = ()
-    measurements: tuple[Measurement, ...] = ()
-    fault: float | None = None
-    example: tuple[Any, ...] | None = None
-    is_simulated: bool = True
-    scatters: str = ""
-
-    @property
-    def deviation(self) -> float:
-        """The greatest distance of the world from the original's, in units of the original's spread."""
-        found = [deviation.deviation for deviation in self.apart] + [
-            measurement.deviation for measurement in self.measurements
-        ]
-        return max(found, default=0.0)
-
-    @property
-    def rank(self) -> tuple[bool, bool, bool, float]:
-        """The sort key of a difference; the highest is that of a stable test whose world differs most."""
-        is_stable = not self.scatters
-        return bool(self.story) and is_stable, bool(self.story), is_stable, self.deviation
 
 
 @frozen
@@ -348,7 +223,7 @@ class Outcome:
     executed: Mapping[str, tuple[int, ...]] | None = None
 
     @property
-    def told(self) -> Diverged | None:
+    def shown_difference(self) -> Diverged | None:
         """The most telling difference in recordings, whose story reports show; None if there is none."""
         return max(self.diverged, key=lambda divergence: divergence.rank, default=None)
 
@@ -374,90 +249,3 @@ def added(counts: Iterable[Mapping[str, int]]) -> dict[str, int]:
         for name, count in counter.items():
             total[name] = total.get(name, 0) + count
     return total
-
-
-@frozen
-class LeftOut:
-    """A mutant that the plan leaves out because it cannot matter.
-
-    Attributes:
-        id: the id it would have had.
-        description: what it would have done.
-        reason: why it cannot matter.
-    """
-
-    id: str
-    description: str
-    reason: str
-
-    @property
-    def heading(self) -> str:
-        """The heading of its list: a common one for mutants without effect, otherwise the reason."""
-        return NOTHING if self.reason.startswith(NOTHING) else self.reason
-
-
-#: how the reason begins why a mutant is left out that would change nothing in the calls of the baseline
-NOTHING = "would change nothing"
-
-
-def by_heading(left_out: Iterable[LeftOut]) -> dict[str, list[LeftOut]]:
-    """Group by heading: first what would change nothing, then the largest group first."""
-    found: dict[str, list[LeftOut]] = {}
-    for omission in left_out:
-        found.setdefault(omission.heading, []).append(omission)
-    return dict(sorted(found.items(), key=lambda item: (item[0] != NOTHING, -len(item[1]))))
-
-
-#: parts of a message that differ between equal runs in different processes: addresses, temporary folders,
-#: and the last words of a process that died, which only a process of its own can have
-_ACCIDENTAL = (
-    (re.compile(r"0x[0-9a-fA-F]{6,}"), "0x…"),
-    (re.compile(r"pytest-\d+"), "pytest-…"),
-    (re.compile(r"; it said last: .*", re.DOTALL), ""),
-)
-
-
-def same_end(first: Outcome, second: Outcome) -> bool:
-    """Return whether two outcomes have the same verdict, cause, test and message."""
-    return _end(first) == _end(second)
-
-
-def in_words(outcome: Outcome) -> str:
-    """Return how a mutant ended: ``killed by check in tests/test_box.py::test_arrives: assert 1 == 2``."""
-    is_told = bool((outcome.message or "").strip())
-    return f"{describe_end(outcome)}: {first_line(outcome.message)}" if is_told else describe_end(outcome)
-
-
-def first_line(text: str | None) -> str:
-    """Return the first line of a message, or a placeholder for an empty message."""
-    lines = (text or "").strip().splitlines()
-    return lines[0] if lines else "no message"
-
-
-def describe_end(outcome: Outcome) -> str:
-    """Describe how the test ended, without the message."""
-    by = f" by {outcome.by}" if outcome.by is not None else ""
-    test = f" in {outcome.test}" if outcome.test is not None else ""
-    return f"{outcome.verdict}{by}{test}"
-
-
-def without_accidents(message: str | None) -> str | None:
-    """Return a message without parts that differ between equal runs in different processes."""
-    for pattern, text in _ACCIDENTAL if message is not None else ():
-        message = pattern.sub(text, message or "")
-    return message
-
-
-def _end(outcome: Outcome) -> tuple[Any, ...]:
-    return outcome.verdict, outcome.by, outcome.test, without_accidents(outcome.message)
-
-
-def numbers_text(numbers: Iterable[int]) -> str:
-    """Return ``round 3``, ``rounds 1 and 2``, ``rounds 1 and 3 to 5``."""
-    runs: list[str] = []
-    for _, group in groupby(enumerate(sorted({*numbers})), key=lambda pair: pair[1] - pair[0]):
-        run = [number for _, number in group]
-        runs += [f"{run[0]} to {run[-1]}"] if len(run) > 2 else map(str, run)
-    *others, last = runs
-    text = f"{', '.join(others)} and {last}" if others else last
-    return f"{'round' if text.isdigit() else 'rounds'} {text}"

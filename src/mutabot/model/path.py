@@ -20,7 +20,7 @@ from dataclasses import fields as dataclass_fields
 from dataclasses import is_dataclass
 from typing import Any
 
-from mutabot.errors import PathError, in_words, nearest_name, text_of
+from mutabot.errors import PathError, error_text, nearest_name, text_of
 from mutabot.frozen import frozen
 
 _STEP = re.compile(r"\.(?P<attribute>[^\W\d]\w*)|\[(?P<item>[^\[\]]*)\]")
@@ -134,7 +134,7 @@ class Path:
                 known=known,
             ) from error
         except Exception as error:  # what the user's objects do when they are asked is up to them
-            what = f"{step} of {type(value).__name__} raises {in_words(error)}"
+            what = f"{step} of {type(value).__name__} raises {error_text(error)}"
             raise PathError(f"{str(self) or 'the value'}: {what}", step=str(step)) from error
 
 

@@ -49,7 +49,7 @@ def accounts_of(processes: Iterable[int]) -> Accounts:
     return found
 
 
-def below(roots: Iterable[int]) -> set[int]:
+def descendants(roots: Iterable[int]) -> set[int]:
     """Return these processes and all their descendants."""
     found, due = set[int](), list(roots)
     children = _children_of if _are_listed() else _all_children().get
@@ -96,7 +96,7 @@ def ran_below() -> float:
     except ChildProcessError:  # there is none: to look for them would take long
         return seconds
     here = os.getpid()
-    found = accounts_of(below([here]) - {here})
+    found = accounts_of(descendants([here]) - {here})
     return seconds + sum(account.ran for account in (found or {}).values())
 
 
@@ -200,7 +200,7 @@ class TimeUsed:
     def _had(self, processes: Iterable[int]) -> tuple[float, float]:
         """Return the seconds that the processes' tasks spent on a processor, and waiting for one."""
         roots = list(processes)
-        found = accounts_of(below(roots)) if roots else None
+        found = accounts_of(descendants(roots)) if roots else None
         if not found:
             return 0.0, 0.0
         before = self.accounts or {}

@@ -12,8 +12,8 @@ from mutabot.errors import SelectionError, nearest_name
 from mutabot.model.mutant_pattern import fits, is_like
 
 if TYPE_CHECKING:
+    from mutabot.model.left_out import LeftOut
     from mutabot.model.mutant import Mutant
-    from mutabot.model.outcome import LeftOut
 
 
 def select(

@@ -140,12 +140,12 @@ class _Units(NamedTuple):
 
     Attributes:
         lines: their lines, by name, as executed units are told.
-        said: what they say, as digests, by name.
+        digests: of their content, by name.
         is_quiet: whether nothing happens at the module level but that names are given to what is plain.
     """
 
     lines: Mapping[str, int]
-    said: Mapping[str, str]
+    digests: Mapping[str, str]
     is_quiet: bool
 
 
@@ -208,9 +208,9 @@ class File:
         return self._units is not None
 
     @cached_property
-    def said(self) -> Mapping[str, str]:
+    def digests(self) -> Mapping[str, str]:
         """The digests of the units by name; of a file that cannot be parsed, that of the text."""
-        return {"": self.digest} if self._units is None else self._units.said
+        return {"": self.digest} if self._units is None else self._units.digests
 
     @property
     def is_quiet(self) -> bool:
@@ -240,7 +240,7 @@ class File:
         found: dict[NodeExtent, NodeExtent | None] = {}
         places, others = self._places(), new._places()
         for name, before in places.items():
-            if name not in others or self.said[name] != new.said.get(name):
+            if name not in others or self.digests[name] != new.digests.get(name):
                 continue
             for was, is_now in zip(before, others[name], strict=True):
                 for part in (slice(None), slice(0, 1), slice(2, 3)) if was and is_now else ():

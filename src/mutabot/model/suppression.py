@@ -83,7 +83,7 @@ class Suppression:
         return any(is_like(self.line, text.strip()) for text in lines[max(0, span.line - 1) : span.end_line])
 
     @property
-    def words(self) -> str:
+    def mutants_text(self) -> str:
         """The mutants that it names, as a text: ``reverse in mission.py:22``."""
         if self.id:
             return self.id

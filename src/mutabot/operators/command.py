@@ -78,9 +78,9 @@ class CommandOperator(Operator):
         return mutated
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
-        return self.words(subject)
+        return self.fault_text(subject)
 
-    def words(self, subject: Subject, **more: str) -> str:
+    def fault_text(self, subject: Subject, **more: str) -> str:
         """Return ``fault`` with its placeholders filled in."""
         form = subject.operation.form
         what = _CALLED.get(form, "call") if form is not None else "call"

@@ -14,7 +14,7 @@ from mutabot.errors import ExtensionError
 from mutabot.extensions import ExtensionPart, brought
 from mutabot.journal import records
 from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity, Span
-from mutabot.model.outcome import Apart, Measurement
+from mutabot.model.world_difference import Apart, Measurement
 from mutabot.report.mutant_data import SPAN
 from mutabot.report.texts import effect_text, excerpts, state_of, telling
 from mutabot.results.encoder import Encoder
@@ -22,7 +22,7 @@ from mutabot.results.results import MutantResult, Results
 from mutabot.results.score import Group, RoundScores, Score
 from mutabot.results.statistics import Confirmed, Estimate, false_kills, false_survivors
 from mutabot.thresholds import ladders, thresholds
-from mutabot.thresholds.thresholds import line_of
+from mutabot.thresholds.thresholds import ladder_line
 
 if TYPE_CHECKING:
     from mutabot.results.suggested import Suggestion
@@ -69,7 +69,7 @@ def _section(part: ExtensionPart, results: Results) -> Any:
     try:
         return data_of(make(results))
     except Exception as error:  # a package of others may fail in any way
-        raise ExtensionError(f"{part.words} makes no section of these results: {error!r}") from error
+        raise ExtensionError(f"{part.text} makes no section of these results: {error!r}") from error
 
 
 def accepting_data(results: Results) -> dict[str, Any]:
@@ -147,7 +147,7 @@ def _ladder(ladder: ladders.Ladder) -> dict[str, Any]:
             "magnitudes=sizes why=why_unjudged?",
         ),
         "judged": is_judged,
-        "text": line_of(ladder) if is_judged else None,
+        "text": ladder_line(ladder) if is_judged else None,
         **found,
         "rounds_counted": len(ladder.counted),
         **data_of.facts(ladder, "rounds violations"),

@@ -9,11 +9,12 @@ from mutabot.errors import in_short, plural
 from mutabot.frozen import frozen
 from mutabot.journal.records import RAN_OVER, REMARKS, SIMULATION, Repeated, Untested
 from mutabot.model import LeftOut, Mutant, Span, Verdict
-from mutabot.model.outcome import NOTHING, by_heading, first_line
+from mutabot.model.left_out import NOTHING, by_heading
+from mutabot.model.outcome_text import first_line
 from mutabot.results.divergence import UNKNOWN_END
 from mutabot.results.results import OUTSIDE, Results, unlooked
 from mutabot.results.statistics import Estimate, Interval, false_kills, false_survivors
-from mutabot.thresholds.thresholds import line_of, thresholds_of
+from mutabot.thresholds.thresholds import ladder_line, thresholds_of
 
 from .texts import acceptance_text, effect_text, escaped, places_text, rounds_text
 
@@ -248,7 +249,7 @@ def _thresholds(results: Results, place: PlaceName) -> Iterator[Section]:
         runs = sum(len(result.outcomes) for result in results.graded)
         graded = f"{plural(results.ladders, 'ladder')} of graded mutants ({plural(runs, 'run')})"
         rows = [
-            (places_text(ladder.mutant.site, place), ladder.name, line_of(ladder))
+            (places_text(ladder.mutant.site, place), ladder.name, ladder_line(ladder))
             for ladder in thresholds_of(results).ladders
         ]
         title = f"{graded}, in no score: `mutabot thresholds` shows them"

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from mutabot.journal.records import Reaching, Untested
 from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity
-from mutabot.model.outcome import first_line, numbers_text
+from mutabot.model.outcome_text import first_line, numbers_text
 from mutabot.results.divergence import weight_of
 
 if TYPE_CHECKING:
@@ -226,7 +226,7 @@ def telling(result: MutantResult) -> tuple[int, Diverged | None] | None:
     if not outcomes:
         return next(((outcome.round, None) for outcome in result.outcomes), None)
     worst = max(outcomes, key=weight_of)
-    return worst.round, worst.told
+    return worst.round, worst.shown_difference
 
 
 def place_text(result: MutantResult, number: int, diverged: Diverged) -> str:

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Sequence
 
 from mutabot.model import Mutant, Outcome, Quantity, Verdict, Vocabulary
-from mutabot.model.outcome import first_line
+from mutabot.model.outcome_text import first_line
 from mutabot.model.quantity import distinct_texts, value_text
 
 #: what is said of the world where nothing was compared
@@ -44,7 +44,7 @@ def change_text(mutant: Mutant, outcome: Outcome, quantity: Quantity | None = No
 
     That is in the test whose story is told, if there is one.
     """
-    reported = outcome.told.example if outcome.told is not None else None
+    reported = outcome.shown_difference.example if outcome.shown_difference is not None else None
     example = reported if reported is not None else outcome.example
     if mutant.quantity is None or example is None or len(example) != 2:
         return None
@@ -57,7 +57,8 @@ def change_text(mutant: Mutant, outcome: Outcome, quantity: Quantity | None = No
 
 def weight_of(outcome: Outcome) -> tuple[bool, float]:
     """Rank a round for reports: one that differs in a stable test first, then the largest deviation."""
-    return outcome.told is not None and not outcome.told.scatters, outcome.deviation or 0.0
+    shown = outcome.shown_difference
+    return shown is not None and not shown.scatters, outcome.deviation or 0.0
 
 
 def _verb(quantity: Quantity | None) -> str:
@@ -70,7 +71,7 @@ def _world_text(outcome: Outcome) -> str:
     if outcome.indistinguishable:
         extent = f"in {outcome.compared.text}" if outcome.compared is not None else "that was compared"
         return f"nothing differs {extent} (indistinguishable)"
-    story = outcome.told.story if outcome.told is not None else ""
+    story = outcome.shown_difference.story if outcome.shown_difference is not None else ""
     if story:
         return story
     if outcome.divergence:

@@ -114,7 +114,7 @@ def _of_shard(results: Results, shard: ShardOf) -> Decision:
     wrong = _disagreements(results)
     if wrong:
         return Decision(ExitCode.UNRELIABLE, wrong)
-    text = f"{shard.words}: limits and scores are judged by `mutabot merge`, with all shards"
+    text = f"{shard.text}: limits and scores are judged by `mutabot merge`, with all shards"
     return Decision(ExitCode.FINE, (text,))
 
 

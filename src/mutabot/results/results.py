@@ -528,7 +528,7 @@ def _state(journal: JournalReader, shard: records.ShardOf | None, *, is_whole: b
     if shard is None or shard.of == 1:
         return state
     # a part of a campaign is never complete, whatever has become of it
-    return shard.words if state == "complete" else f"{shard.words}, {state}"
+    return shard.text if state == "complete" else f"{shard.text}, {state}"
 
 
 def unlooked(results: Iterable[MutantResult]) -> list[str]:

@@ -70,7 +70,7 @@ class EventFile:
             number = 0
             while number != self._last + 1:  # handlers of signals may write, too
                 number = self._last + 1
-                line = sealed(event, number, self.name, self._key, plain)
+                line = sealed(event, number, self.name, self._key, json_stand_in)
             self._last = number
             try:
                 is_written = os.write(self._file, line) == len(line)
@@ -144,7 +144,7 @@ class Held:
         self.events.append(event)
 
 
-def plain(value: Any) -> Any:
+def json_stand_in(value: Any) -> Any:
     """Return JSON-like stand-in for a value that JSON cannot represent."""
     data = data_of(value)
     if type(data) is array or is_of_numpy(data):

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from mutabot.errors import MutabotError, in_words, text_of
+from mutabot.errors import MutabotError, error_text, text_of
 from mutabot.extensions import brought
 from mutabot.model.clocks import process_time
 from mutabot.model.path import class_name
@@ -49,7 +49,7 @@ def failure_in(error: BaseException, failures: Iterable[str]) -> str | None:
         if isinstance(link, MemoryError):
             return "the memory limit was reached"
         if isinstance(link, MutabotError) or is_named(link, failures):
-            return in_words(link)
+            return error_text(link)
     return None
 
 
@@ -148,7 +148,7 @@ class Evidence:
         acted: hits at which it changed something.
         example: value before and after, at the first hit at which it acted.
         refusals: how the robot refused mutated calls by exceptions, the latest last; not all of many.
-        said: how the robot refused a mutated call by data, in words; None if it did not.
+        refusing_answer: the answer by which the robot refused a mutated call; None if there was none.
         failure: what went wrong in the tool or the operator itself, or None.
         is_of_text: whether the mutant is one of the program text, which makes no calls itself: a refusal
             then counts only if it ends the test.
@@ -160,7 +160,7 @@ class Evidence:
     acted: int = 0
     example: tuple[Any, ...] | None = None
     refusals: tuple[Refusal, ...] = ()
-    said: str | None = None
+    refusing_answer: str | None = None
     failure: str | None = None
     is_of_text: bool = False
     is_unknown: bool = False
@@ -178,7 +178,7 @@ class Evidence:
     @property
     def refusal(self) -> str | None:
         """The robot's text of refusing a mutated call; None if it refused none."""
-        return self.refusals[-1].text if self.refusals else self.said
+        return self.refusals[-1].text if self.refusals else self.refusing_answer
 
 
 class TimeExceeded(BaseException):  # it is no error of the program's

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import wrapt
 
-from mutabot.errors import in_words
+from mutabot.errors import error_text
 from mutabot.model import Mutant
 from mutabot.model.activation import Activation, Key
 from mutabot.operators.command import FatalFault
@@ -154,7 +154,7 @@ class FaultRunner:
                 self.fatal = error
                 return
             operator = self._mutant.operator if self._mutant is not None else ""
-            self._failure = self._failure or f"{operator} cannot be {what}: {in_words(error)}"
+            self._failure = self._failure or f"{operator} cannot be {what}: {error_text(error)}"
 
     def failure_in(self, error: BaseException, robots: Collection[str], locator: Locator) -> str | None:
         """Return how the fault's own code failed, if it is the source of an exception; None if it is not.
@@ -173,7 +173,7 @@ class FaultRunner:
             owners = (_is_own(frame, type(fault).__module__, robots, locator) for frame in frames)
             # the nearest to the raise decides that is the fault's, the robot's, the program's or a test's
             if id(part) not in meant and next((is_own for is_own in owners if is_own is not None), False):
-                return f"{fault.mutant.operator} fails at work: {in_words(part)}"
+                return f"{fault.mutant.operator} fails at work: {error_text(part)}"
         return None
 
     def _made(self) -> ActiveFault:

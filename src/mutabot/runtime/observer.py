@@ -27,7 +27,7 @@ from mutabot.model.observation import JOB, SEEN, ObservationJob
 from mutabot.model.operation import MAIN, Form
 from mutabot.runtime.interception.frames import border
 from mutabot.runtime.interception.trace import Locator
-from mutabot.runtime.processes.environment import carry, write_wake
+from mutabot.runtime.processes.environment import export_folder, write_wake
 from mutabot.runtime.program_text.call_sites import NOTHING, CallSite, CallSites
 from mutabot.runtime.program_text.loading import hook_script
 from mutabot.runtime.targets.target import NOWHERE, CallPlace, Handler, Messages, Where
@@ -134,7 +134,7 @@ class ProcessObservation:
         """Observe what is imported from now on, also in processes that are started from now on."""
         _Uses(self.observer, self._locator)
         questions(self.observer, self._locator).install()
-        carry(self.folder)
+        export_folder(self.folder)
 
     def wake(self) -> None:
         """Make processes below the tests join the observation."""

@@ -24,7 +24,7 @@ from mutabot.runtime.interception.dispatcher import Dispatcher, Untracked
 from mutabot.runtime.interception.guarding import CallGuards, OperationGuard
 from mutabot.runtime.interception.trace import Answers, Locator, Recorder, seen_by
 from mutabot.runtime.observation.clock import ClockReader, Instances, ProgramTime
-from mutabot.runtime.observation.probes import Along, Reading, TestRecording, rehearse, take
+from mutabot.runtime.observation.probes import Along, Reading, TestRecording, first_reading, take
 from mutabot.runtime.program_text.call_sites import CallSites
 from mutabot.runtime.program_text.call_targets import CallFindings, CallTargets, PassedCallables
 from mutabot.runtime.program_text.instrument import SessionText
@@ -390,7 +390,7 @@ class Session:
             self.returns.stop()
         self.along.stop()
         self.recording.stop()
-        reading = rehearse(self._read_probes)
+        reading = first_reading(self._read_probes)
         self.instances.let_go()  # what the program is done with may go
         return reading
 

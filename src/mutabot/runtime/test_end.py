@@ -81,7 +81,7 @@ def of_evidence(end: TestEnd, evidence: Evidence, cause: TestEnd | None = None) 
     if evidence.is_of_text and cause.refused is None:
         refusal = None
     # what follows a refusal that is data follows from what the program makes of it
-    is_caught = refusal is not None and evidence.said is None
+    is_caught = refusal is not None and evidence.refusing_answer is None
     return {
         "failure": evidence.failure or cause.failure,
         "invalid": cause.invalid,

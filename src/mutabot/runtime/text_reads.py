@@ -16,7 +16,7 @@ from types import FrameType
 from typing import Any
 
 from mutabot.extensions import packages
-from mutabot.languages.registry import units_of
+from mutabot.languages.registry import unit_parser
 from mutabot.runtime import real_folder
 from mutabot.runtime.processes.environment import FRAMES, listen
 
@@ -77,9 +77,9 @@ class TextReads:
         if name is None or is_own(frame):
             return
         if not name.endswith(".py"):
-            told = units_of(name)
+            parser = unit_parser(name)
             # the package that runs such files tells by itself which of their units are executed
-            if told is None or not _reader(frame, _FOR_OTHERS).startswith(_package_of(told)):
+            if parser is None or not _reader(frame, _FOR_OTHERS).startswith(_package_of(parser)):
                 self._tell(name, False)
         elif not _reader(frame, _FOR_OTHERS).startswith(_IMPORTING):
             package = _reader(frame, _TEXT_FOR_OTHERS).partition(".")[0]

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from mutabot.errors import plural, unknown_name_text
 from mutabot.model import Outcome, Verdict
-from mutabot.model.outcome import numbers_text
+from mutabot.model.outcome_text import numbers_text
 from mutabot.thresholds.brackets import MagnitudeResult, seen
 from mutabot.thresholds.demands import Demand, is_at_least, is_same
 from mutabot.thresholds.ladders import Ladder, LadderRound, NextLarger, ladders_of, looseness
@@ -22,14 +22,14 @@ if TYPE_CHECKING:
     from .ladders import GradedResults
 
 
-def amount(magnitude: float, unit: str | None) -> str:
+def magnitude_text(magnitude: float, unit: str | None) -> str:
     """Return a magnitude as text: ``20 mm``; fractions in percent, numbers without a unit."""
     if unit in ("fraction", "percent"):
         return f"{magnitude * (100 if unit == 'fraction' else 1):.6g} %"
     return f"{magnitude:.6g}{f' {unit}' if unit is not None else ''}"
 
 
-def line_of(ladder: Ladder) -> str:
+def ladder_line(ladder: Ladder) -> str:
     """Return the line of a ladder that can be judged: a fact about these rounds."""
     brackets = {
         (ladder_round.bracket.low, ladder_round.bracket.high, ladder_round.above)
@@ -113,7 +113,7 @@ def _all(ladder: Ladder) -> str:
 
 
 def _text(ladder: Ladder, magnitude: float) -> str:
-    return amount(magnitude, ladder.unit)
+    return magnitude_text(magnitude, ladder.unit)
 
 
 def describe_violations(ladder: Ladder) -> Iterator[str]:

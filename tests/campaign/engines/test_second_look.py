@@ -14,7 +14,7 @@ from mutabot.cli.app import main
 from mutabot.errors import UnstableError
 from mutabot.journal.journal import Journal
 from mutabot.model import By, Outcome, Verdict
-from mutabot.model.outcome import same_end
+from mutabot.model.outcome_text import same_end
 from mutabot.results.gate import decide
 from mutabot.results.results import Results, read_results
 from tests.campaign.project import CONFIGURATION, DEPENDENT, Quiet, outcomes, request_for, write_project

@@ -312,7 +312,7 @@ def test_processes_below_are_found_whether_or_not_the_kernel_lists_children(
     ) as process:
         assert process.stdout is not None
         process.stdout.readline()  # the inner one runs
-        found = process_time.below([process.pid])
+        found = process_time.descendants([process.pid])
         process.communicate("\n")
     assert process.pid in found
     assert len(found) == 2

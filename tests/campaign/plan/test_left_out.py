@@ -9,7 +9,7 @@ import pytest
 from mutabot.campaign.preparation import check, plan_only
 from mutabot.errors import NothingToDoError
 from mutabot.model import LeftOut, Moment
-from mutabot.model.outcome import by_heading
+from mutabot.model.left_out import by_heading
 from mutabot.model.quantity import holds_number
 from mutabot.report.sections import skipped
 from tests.campaign.project import Quiet, request_for, write_project

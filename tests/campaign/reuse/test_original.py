@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from mutabot.campaign.preparation import check, plan_only
-from mutabot.campaign.reuse import keys
+from mutabot.campaign.reuse import parts
 from mutabot.campaign.run import run_campaign
 from mutabot.errors import BaselineError, ControlError, JournalError
 from mutabot.execution.interruption import Interruption
@@ -179,8 +179,8 @@ def test_what_is_installed_makes_it_anew(
     project: Project, monkeypatch: pytest.MonkeyPatch, where: str, found: Any
 ) -> None:
     project.runs()
-    before = getattr(keys, where)
-    monkeypatch.setattr(keys, where, lambda *of: {**before(*of), "arms": found})
+    before = getattr(parts, where)
+    monkeypatch.setattr(parts, where, lambda *of: {**before(*of), "arms": found})
     assert project.runs() == 1
 
 

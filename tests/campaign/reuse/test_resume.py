@@ -17,7 +17,7 @@ import pytest
 
 import mutabot
 from mutabot.campaign import run as campaign
-from mutabot.campaign.reuse.keys import changes
+from mutabot.campaign.reuse.keys import changed_parts
 from mutabot.campaign.reuse.snapshot import Snapshot
 from mutabot.campaign.run import run_campaign
 from mutabot.errors import BaselineError, JournalError, NothingToDoError, SelectionError
@@ -73,10 +73,10 @@ class Project:
         path = self.folder / name
         path.write_text(change(path.read_text()))
 
-    def run(self, **changes: Any) -> set[Pair]:
+    def run(self, **changed_parts: Any) -> set[Pair]:
         """Run a campaign: the mutants and rounds that it really ran."""
         self.progress = Quiet()
-        run_campaign(request_for(self.folder, **changes), self.progress)
+        run_campaign(request_for(self.folder, **changed_parts), self.progress)
         with Journal.open(self.journal) as journal:
             results = read_results(journal)
             assert results.done == results.planned
@@ -615,8 +615,8 @@ def test_campaigns_killed_at_random_moments_end_like_an_undisturbed_one() -> Non
 def test_changes_are_told_in_words() -> None:
     old = {"a.py": "#1", "b.py": "#1", "seed": "1", "numpy": "2.0"}
     new = {"b.py": "#2", "c.py": "#1", "seed": "2", "numpy": "2.0"}
-    assert changes(old, new) == ["a.py is gone", "b.py changed", "c.py is new", "seed is 2, was 1"]
-    assert changes({}, {"numpy": "2.0"}) == ["numpy is new"]
+    assert changed_parts(old, new) == ["a.py is gone", "b.py changed", "c.py is new", "seed is 2, was 1"]
+    assert changed_parts({}, {"numpy": "2.0"}) == ["numpy is new"]
 
 
 def test_a_snapshot_holds_what_tests_could_read_and_nothing_else(tmp_path: Path) -> None:

@@ -434,7 +434,7 @@ def test_a_goal_that_ends_badly_is_refused_if_the_vocabulary_says_so(
     vocabulary = ACTION.replace("goal.order", f'refused = ["{word}"]\n    goal.order')
     program = TURN.replace("angle=30", f"angle={angle}")
     _, activation = make(program, vocabulary).mutated("reverse", "order", index=1)
-    assert activation.evidence.said == f"/cell/turn: {word}"
+    assert activation.evidence.refusing_answer == f"/cell/turn: {word}"
 
 
 PARAMETER = """

@@ -10,7 +10,8 @@ from typing import Any
 import pytest
 
 from mutabot.model import Mutant, Outcome, Role, Site, Span, Verdict
-from mutabot.model.outcome import Apart, Diverged, Looked, Measurement
+from mutabot.model.outcome import Looked
+from mutabot.model.world_difference import Apart, Diverged, Measurement
 from mutabot.results.results import MutantResult
 from mutabot_suggest.output import print_suggestions
 from mutabot_suggest.places import chosen_places, other_places

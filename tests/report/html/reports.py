@@ -20,7 +20,7 @@ from mutabot.evidence.recording import (
     to_bytes,
 )
 from mutabot.journal.recordings import ORIGINAL, Rank, Recordings
-from mutabot.model.outcome import Apart, Diverged
+from mutabot.model.world_difference import Apart, Diverged
 from mutabot.report.html.folder import Contents, Written, write_folder
 from mutabot.report.texts import Cleaner, portable
 from mutabot.results.stored import StoredEvidence

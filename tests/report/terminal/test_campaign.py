@@ -17,7 +17,7 @@ from mutabot.journal.journal import Journal
 from mutabot.journal.records import Untested
 from mutabot.model import By, Outcome, Span, Verdict
 from mutabot.report.terminal.campaign import print_plan, print_results, print_summary
-from mutabot.report.terminal.console import make_console, mark_of, plain, short_place
+from mutabot.report.terminal.console import make_console, mark_of, short_place, terminal_text
 from mutabot.report.terminal.mutant import print_mutant
 from mutabot.report.texts import told_text
 from mutabot.results.results import Results, read_results
@@ -388,7 +388,7 @@ def test_the_plan_names_place_operator_and_quantity(width: int) -> None:
 
 
 def test_texts_of_programs_cannot_play_with_the_terminal() -> None:
-    assert plain("\x1b[31mred\x1b[0m \x07\x1b]0;title\x07\tx") == "red     x"
+    assert terminal_text("\x1b[31mred\x1b[0m \x07\x1b]0;title\x07\tx") == "red     x"
 
 
 def test_a_long_path_keeps_its_end() -> None:

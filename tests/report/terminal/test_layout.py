@@ -7,7 +7,7 @@ import io
 import pytest
 
 from mutabot.model import LeftOut
-from mutabot.model.outcome import NOTHING
+from mutabot.model.left_out import NOTHING
 from mutabot.report.sections import Section, skipped
 from mutabot.report.terminal.console import Breakable, make_console, print_section
 

@@ -14,7 +14,7 @@ from mutabot.report.document import data_of, dumps
 from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.thresholds import print_thresholds
 from mutabot.thresholds.ladders import Ladder, ladders_of
-from mutabot.thresholds.thresholds import line_of, thresholds_of
+from mutabot.thresholds.thresholds import ladder_line, thresholds_of
 from results.thresholds import journals
 from results.thresholds.journals import LETTERS, SIZES, Rungs
 
@@ -35,7 +35,7 @@ def test_whatever_was_seen_can_be_told(tmp_path_factory: pytest.TempPathFactory,
 
 
 def assert_sound(ladder: Ladder) -> None:
-    assert line_of(ladder)
+    assert ladder_line(ladder)
     assert all(low < high for low, high in zip(ladder.lows, ladder.highs, strict=True))
     assert ladder.none_up_to < ladder.half_from <= ladder.all_from
     for ladder_round in ladder.counted:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.thresholds.thresholds import amount, describe_violations, line_of
+from mutabot.thresholds.thresholds import describe_violations, ladder_line, magnitude_text
 from results.thresholds import journals
 
 
@@ -48,7 +48,7 @@ from results.thresholds import journals
     ],
 )
 def test_the_line_of_a_ladder(tmp_path: Path, rounds: list[str], line: str) -> None:
-    assert line_of(journals.ladder(tmp_path, *rounds)) == line
+    assert ladder_line(journals.ladder(tmp_path, *rounds)) == line
 
 
 @pytest.mark.parametrize(
@@ -71,13 +71,15 @@ def test_a_ladder_of_which_nothing_is_known_says_why(tmp_path: Path, letters: st
 
 def test_what_is_unstable_inside_a_bracket_does_not_open_it(tmp_path: Path) -> None:
     found = journals.ladder(tmp_path, "SSSUCCC")
-    assert line_of(found) == "noticed from 20 mm, not at 5 mm (1 round)"
+    assert ladder_line(found) == "noticed from 20 mm, not at 5 mm (1 round)"
 
 
 def test_a_larger_fault_that_is_missed_is_told(tmp_path: Path) -> None:
     found = journals.ladder(tmp_path, "SSSSCCC", "SSSSCCC", "SSCSSCC")
     assert list(describe_violations(found)) == ["noticed at 5 mm, survives 20 mm, round 3"]
-    assert line_of(found) == "noticed in 2 of 3 rounds from 20 mm, in all 3 from 50 mm; in none up to 10 mm"
+    assert (
+        ladder_line(found) == "noticed in 2 of 3 rounds from 20 mm, in all 3 from 50 mm; in none up to 10 mm"
+    )
 
 
 @pytest.mark.parametrize(
@@ -91,7 +93,7 @@ def test_a_larger_fault_that_is_missed_is_told(tmp_path: Path) -> None:
     ],
 )
 def test_magnitudes_have_the_unit_that_people_read(magnitude: float, unit: str | None, text: str) -> None:
-    assert amount(magnitude, unit) == text
+    assert magnitude_text(magnitude, unit) == text
 
 
 def test_the_axis_of_a_turn_is_named(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ import pytest
 from mutabot.model import Call, Operation, Pattern, Role, Site, Span
 from mutabot.model.job import RefusedAt
 from mutabot.model.operation import Form, Named, Refused
-from mutabot.runtime.interception.active_mutant import RefusedCalls, answered, heard, refused_of
+from mutabot.runtime.interception.active_mutant import RefusedCalls, answered, heard, possible_refusals
 from mutabot.runtime.interception.adapter import SiteCall
 
 STATUS = Refused(".status", (5, 6))
@@ -63,15 +63,15 @@ def test_the_goal_of_an_action_is_refused_by_its_end() -> None:
     goal = call(told, named=Named(Form.GOAL, "/follow"))
     assert answered(goal, SimpleNamespace(accepted=False)) == "/follow: REJECTED"
     assert answered(goal, SimpleNamespace(accepted=True)) is None
-    assert heard(refused_of(goal), "/follow", "ABORTED") == "/follow: ABORTED"
-    assert heard(refused_of(goal), "/follow", "SUCCEEDED") is None
+    assert heard(possible_refusals(goal), "/follow", "ABORTED") == "/follow: ABORTED"
+    assert heard(possible_refusals(goal), "/follow", "SUCCEEDED") is None
 
 
 def test_what_an_entry_says_of_some_calls_goes_before_the_operation() -> None:
     own = Pattern("kind=1", refused=(STATUS,))
     operation = Operation("a:b", patterns=(own,), refused=(Refused("", (1,)),))
-    assert refused_of(Call(operation, own)) == (STATUS,)
-    assert refused_of(Call(operation)) == operation.refused
+    assert possible_refusals(Call(operation, own)) == (STATUS,)
+    assert possible_refusals(Call(operation)) == operation.refused
 
 
 SITE = (Span("mission.py", 3, 4, 3, 20, "run"), Role.PROGRAM)

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.runtime.observation.probes import FIRST, Along, Reading, rehearse
+from mutabot.runtime.observation.probes import FIRST, Along, Reading, first_reading
 
 
 def read_after(commands: int, stride: int) -> list[int]:
@@ -54,7 +54,7 @@ def test_commands_of_other_threads_are_counted_but_not_read() -> None:
 
 
 def test_a_reading_that_changes_nothing_can_be_repeated() -> None:
-    found = rehearse(lambda: Reading({"x": float("nan")}))
+    found = first_reading(lambda: Reading({"x": float("nan")}))
     assert found.values.keys() == {"x"}
     assert found.not_along is None
     assert found.seconds is not None
@@ -73,7 +73,7 @@ def test_one_reading_that_happens_to_take_long_does_not_count(slow: int, clock: 
                 pass
         return Reading({"x": 1.0})
 
-    found = rehearse(read)
+    found = first_reading(read)
     assert found.not_along is None
     assert found.seconds is not None
     assert found.seconds < 0.25
@@ -84,7 +84,7 @@ def test_readings_that_always_take_long_are_not_repeated() -> None:
         time.sleep(0.06)
         return Reading({"x": 1.0})
 
-    found = rehearse(read)
+    found = first_reading(read)
     assert found.seconds is None
     assert found.not_along is not None
     assert found.not_along.startswith("reading them takes")
@@ -99,5 +99,5 @@ def test_readings_that_always_take_long_are_not_repeated() -> None:
     ],
 )
 def test_a_reading_that_changes_something_cannot(read: Any, why: str | None) -> None:
-    found = rehearse(read)
+    found = first_reading(read)
     assert (found.seconds, found.not_along) == (None, why)

@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from mutabot.runtime.interception.trace import Locator
-from mutabot.runtime.observation.probes import LONGEST, MOST, plain
+from mutabot.runtime.observation.probes import LONGEST, MOST, json_data
 from mutabot.runtime.program_text.returns import LIMIT, Returns
 from tests.runtime.stage import forget
 
@@ -194,17 +194,17 @@ def test_only_so_many_are_noted_and_those_of_fixtures_are_told_apart(program: No
     ],
 )
 def test_values_become_plain_data(value: object, data: object) -> None:
-    assert plain(value) == data
+    assert json_data(value) == data
 
 
 def test_large_values_are_told_apart_by_a_digest() -> None:
     first, second = list(range(LONGEST)), list(range(LONGEST + 1))
-    assert plain(first) == plain(list(first)) != plain(second)
-    assert plain("a" * 1000) == plain("a" * 1000) != plain("a" * 999 + "b")
+    assert json_data(first) == json_data(list(first)) != json_data(second)
+    assert json_data("a" * 1000) == json_data("a" * 1000) != json_data("a" * 999 + "b")
 
 
 def test_arrays_are_values_or_digests() -> None:
     numpy = pytest.importorskip("numpy")
-    assert plain(numpy.float32(0.5)) == 0.5
-    assert plain(numpy.eye(2)) == [[1.0, 0.0], [0.0, 1.0]]
-    assert plain(numpy.zeros(1000)) == plain(numpy.zeros(1000)) != plain(numpy.ones(1000))
+    assert json_data(numpy.float32(0.5)) == 0.5
+    assert json_data(numpy.eye(2)) == [[1.0, 0.0], [0.0, 1.0]]
+    assert json_data(numpy.zeros(1000)) == json_data(numpy.zeros(1000)) != json_data(numpy.ones(1000))

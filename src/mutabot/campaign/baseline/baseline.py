@@ -362,7 +362,7 @@ def observation(end: TestEnd, places: Mapping[int, Place]) -> Observation:
     )
 
 
-def refused_of(result: Result, places: Mapping[int, Place]) -> dict[str, tuple[RefusedAt, ...]]:
+def refusals_by_test(result: Result, places: Mapping[int, Place]) -> dict[str, tuple[RefusedAt, ...]]:
     """Return the calls that the robot refused in a run, by test; ``places`` are those of its traces."""
     found: dict[str, tuple[RefusedAt, ...]] = {}
     for end in result.ends:

@@ -25,12 +25,12 @@ from mutabot.model import Instrumentation, Span
 from mutabot.model.call import CAMPAIGN_SEED_VARIABLE, DEFAULT_SEED, ROUND_VARIABLE, derive
 from mutabot.model.deadline import Limit
 from mutabot.model.events import Event, Remark, TestEnd
-from mutabot.model.outcome import first_line
+from mutabot.model.outcome_text import first_line
 from mutabot.model.source_units import ExecutedByTests
 from mutabot.operators import load_all
 from mutabot.original import Hit, RecordedAnswers, TextSeen
 
-from .baseline import Baseline, Sources, observation, refused_of
+from .baseline import Baseline, Sources, observation, refusals_by_test
 from .untested import add_untested
 
 if TYPE_CHECKING:
@@ -407,7 +407,7 @@ def _add_round(
     is_set_aside = len(good) < len(runs[0]) and repetitions[0].exit_code == _FAILED
     baseline.exits[round] = 0 if is_set_aside else repetitions[0].exit_code
     _add_hits(baseline, sources, round, repetitions[0], places[0])
-    refused = refused_of(repetitions[0], places[0])
+    refused = refusals_by_test(repetitions[0], places[0])
     baseline.refused |= {(round, test): calls for test, calls in refused.items()}
     return failed
 

@@ -30,7 +30,7 @@ from mutabot.campaign.reuse.keys import OutcomeWriter
 from mutabot.errors import UnstableError
 from mutabot.journal import records
 from mutabot.model import Mutant, Outcome, Verdict
-from mutabot.model.outcome import in_words, same_end
+from mutabot.model.outcome_text import outcome_text, same_end
 
 from .replay import replay
 
@@ -288,7 +288,7 @@ class _Reruns:
         for outcome in replay(over or self.campaign, runs):
             looked.append((outcome.mutant, outcome.round))
             self.found[looked[-1]] = outcome
-            self.campaign.progress.advance(in_words(outcome))
+            self.campaign.progress.advance(outcome_text(outcome))
         return looked
 
     def _is_changed(self, key: RunId) -> bool:
@@ -318,7 +318,7 @@ def choose(outcomes: Iterable[Outcome], count: int, seed: int) -> list[RunId]:
 
 def unconfirmed(first: Outcome, second: Outcome) -> Outcome:
     """Return the outcome of a mutant whose re-run ended differently: unstable."""
-    text = f"{in_words(first)}; run once more: {in_words(second)}"
+    text = f"{outcome_text(first)}; run once more: {outcome_text(second)}"
     return replace(
         first, verdict=Verdict.UNSTABLE, by=None, test=second.test or first.test, message=text,
         indistinguishable=None, distance=None, divergence=(), gaps=(), way=None, compared=None,
@@ -326,7 +326,7 @@ def unconfirmed(first: Outcome, second: Outcome) -> Outcome:
 
 
 def _disagreement(mutant: Mutant, first: Outcome, second: Outcome) -> records.Disagreement:
-    texts = in_words(first), in_words(second)
+    texts = outcome_text(first), outcome_text(second)
     if texts[0] == texts[1]:  # they differ in a later line of the message
         texts = f"{first.verdict}: {first.message}", f"{second.verdict}: {second.message}"
     return records.Disagreement(mutant.id, mutant.number, first.round, *texts)

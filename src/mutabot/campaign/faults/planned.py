@@ -62,7 +62,7 @@ def _at(mutant: Mutant, moment: Moment, original: Original) -> Mutant:
     if moment.when is When.ONCE:
         counts = {f"{round} {test}": count for (round, test), count in _calls_at(mutant, original).items()}
         moment = replace(moment, calls=counts)
-    return replace(mutant, moment=moment, description=f"{mutant.description}, {moment.words}")
+    return replace(mutant, moment=moment, description=f"{mutant.description}, {moment.phrase}")
 
 
 def _why_not(mutant: Mutant, rule: Rule, project: Project, original: Original) -> str | None:

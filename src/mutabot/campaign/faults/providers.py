@@ -401,7 +401,7 @@ def all_providers() -> tuple[FaultProvider, ...]:
     return (*_OWN, *brought_providers())
 
 
-def asked_for(project: Project) -> list[FaultProvider]:
+def selected_providers(project: Project) -> list[FaultProvider]:
     """Return the providers whose mutants are selected; packages are searched only if they may have some."""
     of_calls = {demand.operator for demand in project.demands} <= set(operators_on_calls())
     known = _OWN if of_calls and set(project.families) <= set(OF_CALLS) else all_providers()
@@ -412,7 +412,7 @@ def texts_of(project: Project, tell: Callable[[str], None]) -> dict[str, tuple[P
     """Return the program text that the baseline has to instrument, by the names of its providers."""
     found: dict[str, tuple[ProgramText, ...]] = {}
     first = 1
-    for provider in asked_for(project):
+    for provider in selected_providers(project):
         texts = tuple(provider.texts(project, first, tell))
         if texts:
             found[provider.name] = texts

@@ -11,98 +11,40 @@ them has noticed it: then all tests do.
 
 from __future__ import annotations
 
-import json
-import re
-import tomllib
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
-from functools import cached_property, lru_cache
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from mutabot.execution.versions import versions
+from mutabot.campaign.reuse.parts import (
+    Parts,
+    environment_parts,
+    everything_of,
+    operation_parts,
+)
+from mutabot.campaign.reuse.source_tree import SourceTree
 from mutabot.frozen import frozen
 from mutabot.journal.records import ACCEPTED
-from mutabot.languages.registry import units_of
-from mutabot.model.codec import to_data
+from mutabot.model.codec import data_digest
 from mutabot.model.job import Idle
 from mutabot.model.mutant_end import MutantEnd
-from mutabot.model.source_units import ALL_FILES, WHOLE, Executed, File, digest, is_test_file, together
+from mutabot.model.source_units import ALL_FILES, WHOLE, Executed, is_test_file, together
 from mutabot.model.suppression import Accepted
 
-from .packages import code_of_packages
-from .snapshot import _HASH, State, counts_by_name, digest_of, read, role_of
+from .snapshot import HASH, State, counts_by_name, read
 
 if TYPE_CHECKING:
     from mutabot.campaign.baseline.baseline import Baseline
     from mutabot.campaign.request import Request
     from mutabot.journal.journal import Journal
-    from mutabot.model import Mutant, Outcome, Vocabulary
+    from mutabot.model import Mutant, Outcome
 
-#: what something is made of: names, and a digest or a plain value for each
-Parts = Mapping[str, str]
 
-_CONFIGURATIONS = ("pyproject.toml", "pytest.ini", ".pytest.ini", "tox.ini", "setup.cfg", "conftest.py")
 #: parts of a place: the tests that reach it, or all of them if one that does not has noticed it; the one that
 #: decided; and those that are set aside
 _REACHING, _SUITE, _UNTIL = "which tests reach it", "which tests there are", "the test that decided"
 _ASIDE = "which tests are set aside"
-
-
-class SourceTree:
-    """The program files of a project at one moment.
-
-    Args:
-        digests: by their names.
-        text: what stood in a file with this name and digest; None if nobody knows that any more.
-    """
-
-    def __init__(self, digests: Parts, text: Callable[[str, str], bytes | None]) -> None:
-        self.digests = digests
-        self._text = text
-        self._files: dict[str, File | None] = {}
-
-    def file(self, name: str) -> File | None:
-        """Return a file; None if it does not exist, or its content is no longer known."""
-        if name not in self._files:
-            text = self._text(name, self.digests[name]) if name in self.digests else None
-            self._files[name] = File(name, text, units_of(name)) if text is not None else None
-        return self._files[name]
-
-    @cached_property
-    def said(self) -> dict[str, Mapping[str, str] | None]:
-        """The content of each unit of each file."""
-        files = {name: self.file(name) for name in self.digests}
-        return {name: file.said if file is not None else None for name, file in files.items()}
-
-    def moved(self, text: str, new: SourceTree) -> str | None:
-        """Return a text with the lines that it names as in a new tree; None if one no longer exists."""
-        gone = False
-
-        def place(match: re.Match[str]) -> str:
-            nonlocal gone
-            name = match[1]
-            before, now = self.file(name), new.file(name)
-            if name not in self.digests or self.digests[name] == new.digests.get(name):
-                return match[0]
-            extent = tuple(int(part) for part in match.groups()[1:] if part is not None)
-            found = _moves(before, now).get(extent) if before is not None and now is not None else None
-            if found is None:
-                gone = True
-                return match[0]
-            line, *rest = map(str, found)
-            return f"{name}:{line}:{rest[0]}-{rest[1]}:{rest[2]}" if rest else f"{name}:{line}"
-
-        text = _PLACE.sub(place, text)
-        return None if gone else text
-
-
-#: a place as outcomes name it: ``file:line``, or ``file:line:column-line:column``
-_PLACE = re.compile(r"(?<![\w./$-])([\w./$-]+\.\w+):(\d+)(?::(\d+)-(\d+):(\d+))?")
-
-#: cached for two versions of a file: most places that moved lie in the same ones
-_moves = lru_cache(8)(File.moves_to)
 
 
 @frozen
@@ -124,11 +66,6 @@ class PastDependencies:
     found_in: SourceTree
     executed: Executed | None
     notes: Parts
-
-
-def _digest(data: Any) -> str:
-    text = json.dumps(data, sort_keys=True, default=str)
-    return digest(text.encode())
 
 
 class Dependencies:
@@ -175,11 +112,11 @@ class Dependencies:
         self.common = {
             **{name: digest for name, digest in self.files.items() if name not in self.texts},
             **dict(self._around()),
-            **_environment_parts(request, self.files, installed, read),
+            **environment_parts(request, self.files, installed, read),
         }
         self._common = self._stored(self.common)
         self._operations = {
-            operation.target: _operation_parts(request.vocabulary, operation.target)
+            operation.target: operation_parts(request.vocabulary, operation.target)
             for operation in request.vocabulary.operations
         }
 
@@ -191,7 +128,7 @@ class Dependencies:
                 continue
             file = self.tree.file(name)
             if file is not None and not file.is_quiet:
-                yield file.shown(""), f"#{file.said['']}"
+                yield file.shown(""), f"#{file.digests['']}"
 
     def was(
         self,
@@ -260,16 +197,16 @@ class Dependencies:
         tests = self.tests(mutant, round, whole=whole, until=until)
         return {
             **entries,
-            (_SUITE if whole else _REACHING): _HASH + _digest(tests),
+            (_SUITE if whole else _REACHING): HASH + data_digest(tests),
             **({_UNTIL: until} if until else {}),
-            **({_ASIDE: _HASH + _digest(sorted(aside))} if aside else {}),
+            **({_ASIDE: HASH + data_digest(sorted(aside))} if aside else {}),
         }
 
     def own(self, mutant: Mutant, round: int) -> str:
         """Return what a mutant does, beyond what its id says."""
         planted = self._baseline.faults.by_id.get(mutant.id)
         does = planted.does if planted is not None else None
-        return _digest([mutant.provider, Idle.of(mutant.idle).in_round(round), mutant.pattern, does])
+        return data_digest([mutant.provider, Idle.of(mutant.idle).in_round(round), mutant.pattern, does])
 
     def why(self, was: PastDependencies, mutant: Mutant, round: int, *, is_known: bool = True) -> list[str]:
         """Return why an outcome with these dependencies may differ now; empty if it cannot.
@@ -280,10 +217,10 @@ class Dependencies:
             return ["what they depend on is not known any more"]
         found = self._differing_units(was, mutant, round)
         if is_known:
-            found = [*found, *changes(was.place, self.place(mutant, round, *self.asked(was)))]
+            found = [*found, *changed_parts(was.place, self.place(mutant, round, *self.asked(was)))]
         if was.common is not self.common:
             common = was.common
-            found = [*found, *self._once(lambda: changes(common, self.common), common)]
+            found = [*found, *self._once(lambda: changed_parts(common, self.common), common)]
         if is_known and was.own != self.own(mutant, round) and not found:
             found = ["the calls return something else" if mutant.operation else "it does something else"]
         return found
@@ -312,7 +249,7 @@ class Dependencies:
             everywhere = executed.by(self._baseline.suite(round)) or {}
             files = [self.tree.file(name) for name in self.tree.digests if not is_test_file(name)]
             self._idle[round] = {
-                file.name: tuple({*file.lines_of(file.said)}.difference(everywhere.get(file.name, ())))
+                file.name: tuple({*file.lines_of(file.digests)}.difference(everywhere.get(file.name, ())))
                 for file in files
                 if file is not None
             }
@@ -336,7 +273,7 @@ class Dependencies:
         def differing() -> list[str]:
             names = self._names_of_all(was.tree, tests) if is_all else _names(was)
             notes = {name: self.notes.get(name, self.files.get(name, "")) for name in was.notes}
-            found = [*_differing(names, was.tree, self.tree), *changes(was.notes, notes)]
+            found = [*_differing(names, was.tree, self.tree), *changed_parts(was.notes, notes)]
             return found or ([] if is_all else self._executed_now(names, tests, round))
 
         return self._once(differing, was.tree, was.found_in, was.executed, was.notes, group)
@@ -371,14 +308,14 @@ class Dependencies:
         found: dict[str, set[str] | None] = {}
         for name in {*tree.digests, *self.tree.digests}:
             files = [file for file in (tree.file(name), self.tree.file(name)) if file is not None]
-            found[name] = {unit for file in files for unit in file.said if counts(name, unit)}
+            found[name] = {unit for file in files for unit in file.digests if counts(name, unit)}
         return found
 
     def is_of(self, test: str, tree: SourceTree) -> bool:
         """Return whether a current test existed in a tree; assumed of a test that is no function."""
         file, name = self.file_of(test), _function_of(test)
         now, then = self.tree.file(file), tree.file(file)
-        return now is None or name not in now.said or (then is not None and name in then.said)
+        return now is None or name not in now.digests or (then is not None and name in then.digests)
 
     def file_of(self, test: str) -> str:
         """Return the test's file relative to the project's root; pytest's root may be a folder above."""
@@ -394,7 +331,7 @@ class Dependencies:
         return new
 
     def _stored(self, parts: Parts) -> str:
-        digest = _digest(parts)
+        digest = data_digest(parts)
         self.parts[digest] = parts
         return digest
 
@@ -477,7 +414,7 @@ def _differing(names: Mapping[str, set[str] | None], old: SourceTree, new: Sourc
             found.append(f"{name} {state if name in new.digests else 'is gone'}")
             continue
         for unit in sorted(units):
-            stored, says = before.said.get(unit), now.said.get(unit)
+            stored, says = before.digests.get(unit), now.digests.get(unit)
             if stored is None and says is not None:
                 made.append(f"{now.shown(unit)} is new")
             elif stored != says:
@@ -485,112 +422,13 @@ def _differing(names: Mapping[str, set[str] | None], old: SourceTree, new: Sourc
     return found + made
 
 
-def changes(old: Parts, new: Parts) -> list[str]:
+def changed_parts(old: Parts, new: Parts) -> list[str]:
     """Describe the parts that differ, files of the project first."""
     found = []
     for name in {*old, *new}:
         before, now = old.get(name), new.get(name)
-        is_setting = not any(value is not None and value.startswith(_HASH) for value in (before, now))
+        is_setting = not any(value is not None and value.startswith(HASH) for value in (before, now))
         what = f"is {now}, was {before}" if is_setting else "changed"
         what = "is new" if before is None else "is gone" if now is None else what
         found += [(is_setting, name, what)] if before != now else []
     return [f"{name} {what}" for _, name, what in sorted(found)]
-
-
-def everything_of(request: Request, files: Parts, installed: Parts) -> Parts:
-    """Return everything that runs of the tests depend on, for any mutant.
-
-    Args:
-        files: the files that count, with their digests.
-        installed: what is installed.
-    """
-    vocabulary = request.vocabulary
-    entries = (_operation_parts(vocabulary, operation.target) for operation in vocabulary.operations)
-    operations = {name: digest for entry in entries for name, digest in entry.items()}
-    return {**_environment_parts(request, files, installed, read), **operations, **files}
-
-
-def _environment_parts(
-    request: Request, files: Parts, installed: Parts, read: Callable[[Path], bytes | None]
-) -> dict[str, str]:
-    """Return what all outcomes depend on besides the content of the project's files."""
-    return {
-        **_pytest_parts(request, read),
-        **_settings(request),
-        **{f"role of {name}": role for name in files if (role := role_of(name, request))},
-        **_vocabulary_parts(request.vocabulary),
-        **installed,
-    }
-
-
-def _settings(request: Request) -> dict[str, str]:
-    configuration = request.configuration
-    return {
-        "seed": str(request.seed),
-        "oracle_nodes": ", ".join(configuration.oracle_nodes) or "none",
-        "timeout_factor": str(configuration.timeout_factor),
-        "timeout_seconds": str(configuration.timeout_seconds),
-        "memory": str(configuration.memory),
-        **({"every test": "run"} if request.every_test else {}),
-        **({"guards": _HASH + _digest(request.guards)} if request.guards else {}),
-    }
-
-
-def _pytest_parts(request: Request, read: Callable[[Path], bytes | None]) -> dict[str, str]:
-    """Return pytest's arguments, and its configuration files in folders above the project."""
-    parts = {"pytest's arguments": " ".join(request.arguments)}
-    for depth, folder in enumerate((request.root, *request.root.parents)):
-        for name in _CONFIGURATIONS:
-            text = read(folder / name)
-            if text is None:
-                continue
-            shown = "../" * depth + name
-            if name == "pyproject.toml":
-                parts[f"tool.pytest in {shown}"] = _HASH + _digest(tool_table(text, "pytest"))
-            elif depth:
-                parts[shown] = digest_of(text)
-    return parts
-
-
-def tool_table(text: bytes | None, tool: str) -> Any:
-    """Return the table of a tool in a ``pyproject.toml``; None if there is none."""
-    try:
-        data = tomllib.loads((text or b"").decode("utf-8"))
-    except ValueError:
-        return None
-    tools = data.get("tool")
-    return tools.get(tool) if isinstance(tools, dict) else None
-
-
-def _vocabulary_parts(vocabulary: Vocabulary) -> dict[str, str]:
-    names = ("refusals", "checks", "failures", "clock", "probes")
-    return {
-        f"{name} of the vocabulary": _HASH + _digest(_meaning(getattr(vocabulary, name))) for name in names
-    }
-
-
-def _operation_parts(vocabulary: Vocabulary, target: str) -> dict[str, str]:
-    """Return the entry of an operation, and those of the operations that its mutants need."""
-    found: dict[str, str] = {}
-    waiting = [target]
-    while waiting:
-        operation = vocabulary.operation(waiting.pop())
-        name = f"{operation.target} in the vocabulary" if operation is not None else ""
-        if operation is not None and name not in found:
-            found[name] = _HASH + _digest(_meaning(operation))
-            waiting += [*operation.currents, *operation.opposites]
-    return found
-
-
-def _meaning(value: Any) -> Any:
-    """Return the content of an entry, without its line number."""
-    data = to_data(value)
-    if isinstance(data, dict):
-        return {key: _meaning(item) for key, item in data.items() if key != "source"}
-    return [_meaning(item) for item in data] if isinstance(data, list) else data
-
-
-def installed(root: Path) -> dict[str, str]:
-    """Return versions of installed distributions, and digests where a version does not fix the content."""
-    code = code_of_packages(root).items()
-    return {**versions(), **{f"code of {name}": _HASH + _digest(files) for name, files in code}}

@@ -18,13 +18,13 @@ from dataclasses import dataclass
 from types import TracebackType
 from typing import TYPE_CHECKING, Self
 
+from mutabot.campaign.reuse.parts import Parts, everything_of, installed
 from mutabot.execution.processes import usual_environment
 from mutabot.execution.task import Executor, Result, Task
 from mutabot.journal.records import KeptBaseline, OriginalRun
-from mutabot.model.codec import to_data
+from mutabot.model.codec import data_digest, to_data
 from mutabot.model.event_file import MOST_BYTES, sealed, unsealed
 
-from .keys import Parts, _digest, everything_of, installed
 from .snapshot import OpenedFiles, Snapshot, State
 
 if TYPE_CHECKING:
@@ -137,7 +137,7 @@ class OriginalRuns:
     def _depends(self, opened: set[str] | None) -> str:
         state = State.now(self._request, self.before, self.before, opened)
         parts: Parts = {**everything_of(self._request, state.files, self.installed), **self._beside}
-        return _digest(parts)
+        return data_digest(parts)
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,7 +173,7 @@ class _KeptRuns:
     def _name_of(self, task: Task) -> str:
         """Return a name that is equal for tasks that do the same."""
         request = self.request
-        return _digest([to_data(task.job), task.may_share, request.arguments, request.simulation])
+        return data_digest([to_data(task.job), task.may_share, request.arguments, request.simulation])
 
 
 class _Note:
@@ -220,4 +220,4 @@ def _read(run: OriginalRun) -> list[Event]:
 def _environment() -> str:
     """Return all environment variables that tests can see, as a digest."""
     found = {name: text for name, text in usual_environment().items() if name not in _OF_SHELLS}
-    return _digest(found | {_UNORDERED: sorted(found.get(_UNORDERED, "").split(os.pathsep))})
+    return data_digest(found | {_UNORDERED: sorted(found.get(_UNORDERED, "").split(os.pathsep))})

@@ -14,7 +14,9 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mutabot.campaign.reuse.keys import Dependencies, PastDependencies, SourceTree, tool_table
+from mutabot.campaign.reuse.keys import Dependencies, PastDependencies
+from mutabot.campaign.reuse.parts import tool_table
+from mutabot.campaign.reuse.source_tree import SourceTree
 from mutabot.errors import JournalError, UsageError, in_short
 from mutabot.frozen import frozen
 from mutabot.journal.files import find_journal, refuse_tracked
@@ -72,7 +74,7 @@ class Earlier:
         some, all = (self._now.tests(mutant, row.round, whole=whole) for whole in (False, True))
         if row.verdict != Verdict.SURVIVED or len(some) == len(all):
             return False
-        return self.was(self.kept[row.mutant, row.round].key).tree.said != self._now.tree.said
+        return self.was(self.kept[row.mutant, row.round].key).tree.unit_digests != self._now.tree.unit_digests
 
 
 #: why an outcome is not taken over although it holds, or although nothing that it depends on has changed
@@ -125,7 +127,7 @@ def reuse(
     taken = [_taken(found, mutant, round) for mutant, round in pairs]
     journal.add_parts(dependencies.new_parts())
     journal.take_over(row for row in taken if row is not None)
-    progress.note(text_of(found))
+    progress.note(reuse_text(found))
     if found.unasked:
         progress.note(
             f"{found.unasked} of them are survivors that tests do not reach which may have changed: "
@@ -181,7 +183,7 @@ def note_outdated(journal: Journal, request: Request, dependencies: Dependencies
     journal.set_known([(mutant, is_outdated(mutant)) for mutant in known])
 
 
-def text_of(found: Reused) -> str:
+def reuse_text(found: Reused) -> str:
     """Describe how many outcomes were reused, and why the rest was not."""
     reused = len(found.done)
     planned = len(found.done) + len(found.why) + len(found.unsound - found.why.keys()) + found.first

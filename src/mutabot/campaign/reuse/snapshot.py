@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 
 from mutabot.campaign.project_files import UNREAD, is_folder_of_project, is_name_of_project
 from mutabot.config.suppressions import FILE as ACCEPTED_FILE
-from mutabot.languages.registry import units_of
+from mutabot.languages.registry import unit_parser
 
 if TYPE_CHECKING:
     from mutabot.campaign.request import Request
@@ -80,7 +80,7 @@ def role_of(file: str, request: Request) -> str:
 
 def is_source(file: str, request: Request) -> bool:
     """Return whether a file counts by its units: Python, or program text whose language tells them."""
-    return file.endswith(".py") or (units_of(file) is not None and role_of(file, request) == "program")
+    return file.endswith(".py") or (unit_parser(file) is not None and role_of(file, request) == "program")
 
 
 def own_files(request: Request) -> set[str]:
@@ -112,7 +112,7 @@ _FOR_PEOPLE = re.compile(
 
 
 _FOR_TOOLS = {ACCEPTED_FILE, ".gitignore", ".gitattributes", ".editorconfig", ".coverage", ".DS_Store"}
-_HASH = "#"
+HASH = "#"
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,13 +192,13 @@ def _walk(root: Path) -> Iterator[tuple[str, Path, tuple[int, ...]]]:
 
 def digest_of(text: bytes) -> str:
     """Return the digest of a text."""
-    return f"{_HASH}{_new_hash(text).hexdigest()}"
+    return f"{HASH}{_new_hash(text).hexdigest()}"
 
 
 def _digest_of(path: Path) -> str | None:
     try:
         with path.open("rb") as file:
-            return _HASH + hashlib.file_digest(file, _new_hash).hexdigest()
+            return HASH + hashlib.file_digest(file, _new_hash).hexdigest()
     except FileNotFoundError:
         return None
     except OSError as error:

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from mutabot.campaign.baseline.baseline import Baseline, cost
 from mutabot.campaign.plan import Plan, renumbered
-from mutabot.campaign.reuse.keys import Dependencies, changes
+from mutabot.campaign.reuse.keys import Dependencies, changed_parts
 from mutabot.errors import MergeError
 from mutabot.frozen import frozen
 from mutabot.journal import records
@@ -142,9 +142,9 @@ class ShardJournal:
     mutants: tuple[Mutant, ...]
 
     @property
-    def words(self) -> str:
+    def text(self) -> str:
         """``shard 2 of 8 (b.sqlite)``."""
-        return f"{self.shard.words} ({self.path})"
+        return f"{self.shard.text} ({self.path})"
 
 
 def refuse_strangers(parts: Sequence[ShardJournal]) -> None:
@@ -154,10 +154,10 @@ def refuse_strangers(parts: Sequence[ShardJournal]) -> None:
     for part in parts:
         other = by_number.setdefault(part.shard.number, part)
         if other is not part:
-            raise MergeError(f"{part.shard.words} is there twice: {other.path} and {part.path}")
+            raise MergeError(f"{part.shard.text} is there twice: {other.path} and {part.path}")
         if part.shard.depends is None:
             raise MergeError(
-                f"{part.words} ended in its baseline, or files changed meanwhile, so its plan is not known: "
+                f"{part.text} ended in its baseline, or files changed meanwhile, so its plan is not known: "
                 f"run it again with --shard {part.shard.number}/{part.shard.of} or leave it out"
             )
     for part in others:
@@ -165,7 +165,7 @@ def refuse_strangers(parts: Sequence[ShardJournal]) -> None:
         if differing:
             more = f"; and {len(differing) - _SHOWN} more" if len(differing) > _SHOWN else ""
             raise MergeError(
-                f"{part.words} and {first.words} are not of one plan: {'; '.join(differing[:_SHOWN])}{more}. "
+                f"{part.text} and {first.text} are not of one plan: {'; '.join(differing[:_SHOWN])}{more}. "
                 "Run all shards of one commit with the same options, packages and kind of machine"
             )
 
@@ -173,7 +173,7 @@ def refuse_strangers(parts: Sequence[ShardJournal]) -> None:
 def _differing(old: ShardJournal, new: ShardJournal) -> list[str]:
     if old.shard.of != new.shard.of:
         return [f"one is of {new.shard.of} shards, the other of {old.shard.of}"]
-    differences = changes(old.shard.depends or {}, new.shard.depends or {})
+    differences = changed_parts(old.shard.depends or {}, new.shard.depends or {})
     before, now = ({(mutant.id, mutant.number) for mutant in part.mutants} for part in (old, new))
     others = sorted(before ^ now)
     if others and not differences:  # else they differ for that reason
@@ -260,7 +260,7 @@ def _missing(parts: Sequence[ShardJournal]) -> Iterator[str]:
         again = f"run it again with `mutabot run --shard {part.shard.number}/{of}`"
         if part.journal.set_aside:
             row = part.journal.set_aside[0]
-            yield f"{part.words} holds what mutabot has not written, or what is damaged ({row}): {again}"
+            yield f"{part.text} holds what mutabot has not written, or what is damaged ({row}): {again}"
         ended = part.journal.finished or "killed"
         if ended != "complete":
             own = set(part.shard.mutants)
@@ -269,7 +269,7 @@ def _missing(parts: Sequence[ShardJournal]) -> Iterator[str]:
                 outcome.mutant in alone for outcome in part.journal.outcomes()
             )
             yield (
-                f"{part.words} is not complete ({ended}), {lacking} outcomes are missing: {again} and its "
+                f"{part.text} is not complete ({ended}), {lacking} outcomes are missing: {again} and its "
                 "journal, and merge again"
             )
 

@@ -88,7 +88,7 @@ class _Merged:
         if table is None:
             return
         if not document.data and self.is_needed:
-            place.error("is empty; a vocabulary names operations: [[operation]]")
+            place.error("describes nothing; a vocabulary describes operations: [[operation]]")
         for at, raw in (place / "operation").each(table.operation):
             for operation in read_operations(at, raw):
                 if self._counts(operation.target, is_shipped):

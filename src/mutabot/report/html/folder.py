@@ -32,7 +32,7 @@ from mutabot.results.films import KeptFilm
 from mutabot.results.results import MutantResult, Results, killing_tests, unlooked
 from mutabot.results.stored import StoredEvidence
 from mutabot.results.suggested import Suggestion
-from mutabot.thresholds.thresholds import line_of, thresholds_of
+from mutabot.thresholds.thresholds import ladder_line, thresholds_of
 
 #: facts of a row of the list, by the names that they have in the results document
 _ROW = (
@@ -82,7 +82,7 @@ def campaign_data(campaign: Results, name: str) -> dict[str, Any]:
         "withoutEffect": [*campaign.needlessly_accepted, *campaign.accepting.unmatched],
         "unlooked": unlooked(campaign.mutants),
         "ladders": [
-            {**data_of.facts(ladder, _LADDER), "text": line_of(ladder)}
+            {**data_of.facts(ladder, _LADDER), "text": ladder_line(ladder)}
             for ladder in thresholds.ladders[:_LADDERS]
         ],
         "thresholds": thresholds.summary,

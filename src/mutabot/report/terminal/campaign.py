@@ -16,7 +16,17 @@ from mutabot.report.document import data_of
 from mutabot.report.sections import Section, sections, size_text, skipped, untested
 from mutabot.report.texts import places_text
 
-from .console import Breakable, below, heading, legend, letters, make_table, plain, print_section, short_place
+from .console import (
+    Breakable,
+    below,
+    heading,
+    legend,
+    letters,
+    make_table,
+    print_section,
+    short_place,
+    terminal_text,
+)
 
 if TYPE_CHECKING:
     from mutabot.journal.records import Untested
@@ -73,7 +83,7 @@ def _earlier(results: Results) -> Iterator[RenderableType]:
     if results.attempt == "running":
         yield Text("A new campaign is still running its baseline; these are the previous results.")
     elif results.attempt is not None:
-        ended = f"A later run ended before its first mutant ({plain(results.attempt)})"
+        ended = f"A later run ended before its first mutant ({terminal_text(results.attempt)})"
         yield Text(f"{ended}; these are the previous results.", style="bold")
     if results.earlier:
         outdated = sum(result.outdated for result in results.earlier)
@@ -96,7 +106,7 @@ def _mutants(results: Results) -> Iterator[RenderableType]:
             mutant.site.role.value,
             places_text(mutant.site, short_place),
             mutant.operator,
-            Breakable(plain(mutant.description)),
+            Breakable(terminal_text(mutant.description)),
             letters(result.rounds, many=many),
         )
     yield table

@@ -90,19 +90,20 @@ def make_console(file: IO[str] | None = None, *, width: int | None = None, stder
     return _Console(file=file, width=width, stderr=stderr, markup=False, highlight=False, emoji=False)
 
 
-def plain(text: str) -> str:
+def terminal_text(text: str) -> str:
     """Return a program's text without characters that confuse the terminal."""
     return _CONTROLS.sub("", ESCAPES.sub("", text)).expandtabs(4)
 
 
 def heading(text: str) -> Text:
     """Return the heading of a section."""
-    return Text(f"\n{plain(text)}", style="bold", overflow="fold")
+    return Text(f"\n{terminal_text(text)}", style="bold", overflow="fold")
 
 
 def below(text: str, indent: int = 2, style: str = "") -> RenderableType:
     """Return an indented text."""
-    return Padding(Breakable(plain(text), style=style, overflow="fold"), (0, 0, 0, indent), expand=False)
+    breakable = Breakable(terminal_text(text), style=style, overflow="fold")
+    return Padding(breakable, (0, 0, 0, indent), expand=False)
 
 
 def make_table(columns: Sequence[str] = (), *, header: bool = True) -> Table:
@@ -142,7 +143,7 @@ def short_place(span: Span, width: int = 24) -> str:
 def print_section(console: Console, section: Section, at_most: int | None = None) -> None:
     """Print a section, with at most ``at_most`` rows and lines. Neighbouring text columns share a cell."""
     style = "bold red" if section.is_alarm else "bold"
-    console.print(Text(f"\n{plain(section.title)}", style=style, overflow="fold"))
+    console.print(Text(f"\n{terminal_text(section.title)}", style=style, overflow="fold"))
     groups: list[list[int]] = []
     for index, name in enumerate(section.columns):
         if groups and name.startswith("*") and section.columns[index - 1].startswith("*"):
@@ -155,13 +156,13 @@ def print_section(console: Console, section: Section, at_most: int | None = None
         for row in section.rows[:at_most]:
             table.add_row(
                 *(
-                    Breakable("\n".join(plain(row[index]) for index in group if row[index]))
+                    Breakable("\n".join(terminal_text(row[index]) for index in group if row[index]))
                     for group in groups
                 )
             )
         console.print(table)
     for line in section.code.splitlines():
-        console.print(Text(f"  {plain(line)}"), soft_wrap=True)
+        console.print(Text(f"  {terminal_text(line)}"), soft_wrap=True)
     for line in section.lines[:at_most]:
         console.print(below(line.lstrip(), 2 + len(line) - len(line.lstrip())))
     left = max(len(section.rows), len(section.lines)) - (at_most or 0)
@@ -175,7 +176,7 @@ class VerdictMark:
 
     letter: str
     style: str
-    words: str
+    text: str
 
 
 _BY_CHECK = VerdictMark("C", "green", "killed by a check")
@@ -223,7 +224,7 @@ def legend(outcomes: Iterable[Outcome | None]) -> Text:
     """Return the explanation of the letters that occur."""
     # Spaces that do not break keep a letter and its words on one line.
     parts = [
-        Text.assemble((mark.letter, mark.style), f" {mark.words}".replace(" ", "\N{NO-BREAK SPACE}"))
+        Text.assemble((mark.letter, mark.style), f" {mark.text}".replace(" ", "\N{NO-BREAK SPACE}"))
         for mark, _ in marks_in(outcomes)
     ]
     return Text("   ").join(parts)

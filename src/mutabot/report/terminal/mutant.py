@@ -11,11 +11,12 @@ from rich.table import Table
 from rich.text import Text
 
 from mutabot.errors import plural
-from mutabot.model.outcome import Verdict, describe_end, numbers_text
+from mutabot.model.outcome import Verdict
+from mutabot.model.outcome_text import describe_end, numbers_text
 from mutabot.report.sections import Section, between
 from mutabot.report.texts import acceptance_text, effect_text, excerpts, places_text, telling
 
-from .console import Breakable, below, heading, letters, make_table, mark_of, plain, print_section
+from .console import Breakable, below, heading, letters, make_table, mark_of, print_section, terminal_text
 
 if TYPE_CHECKING:
     from mutabot.journal.records import Replayed
@@ -43,11 +44,13 @@ def print_mutant(
         everything: print every round.
     """
     mutant = result.mutant
-    console.print(Text(f"Mutant {mutant.number}: {plain(mutant.description)}", style="bold", overflow="fold"))
+    console.print(
+        Text(f"Mutant {mutant.number}: {terminal_text(mutant.description)}", style="bold", overflow="fold")
+    )
     console.print(_facts(result))
     lines = excerpts(mutant.site, source)
     if lines:
-        text = "\n" + "\n".join(plain(line) for line in lines)
+        text = "\n" + "\n".join(terminal_text(line) for line in lines)
         console.print(Text(text, no_wrap=True, overflow="ellipsis"))
     rounds = _rounds(result, everything=everything)
     sections = (rounds, *_happened(result), *_checks(result, everything=everything))
@@ -61,7 +64,9 @@ def print_mutant(
 def print_replayed(console: Console, mutant: Mutant, rounds: Iterable[Replayed]) -> None:
     """Print how a mutant ended when it was re-run, beside what the journal says."""
     states = {True: "as in the journal", False: "not as in the journal", None: "not in the journal"}
-    console.print(Text(f"Mutant {mutant.number}: {plain(mutant.description)}", style="bold", overflow="fold"))
+    console.print(
+        Text(f"Mutant {mutant.number}: {terminal_text(mutant.description)}", style="bold", overflow="fold")
+    )
     for replayed_round in rounds:
         console.print(heading(f"Round {replayed_round.round + 1}: {states[replayed_round.agrees]}"))
         ends = [("now", replayed_round.second)]
@@ -91,7 +96,7 @@ def _facts(result: MutantResult) -> Table:
     table = make_table(("", "*"), header=False)
     for name, text in facts.items():
         if text:
-            table.add_row(Text(name, style="dim"), Breakable(plain(text)))
+            table.add_row(Text(name, style="dim"), Breakable(terminal_text(text)))
     return table
 
 
@@ -119,9 +124,7 @@ def _rounds(result: MutantResult, *, everything: bool) -> Section:
         if everything or most is None or most[0] in numbers:
             test = f" in {outcome.test}" if outcome is not None and outcome.test is not None else ""
             mark = mark_of(outcome)
-            lines.append(
-                f"{numbers_text(number + 1 for number in numbers)}: {mark.letter} {mark.words}{test}"
-            )
+            lines.append(f"{numbers_text(number + 1 for number in numbers)}: {mark.letter} {mark.text}{test}")
             details = "\n".join(_details(outcome)).splitlines() if outcome is not None else []
             lines += (f"    {line}" for line in (details if everything else details[:_LINES]))
     if len(groups) > 1 and most is not None:

@@ -18,7 +18,7 @@ from rich.text import Text
 
 from mutabot.report.texts import one_line, places_text
 
-from .console import plain, short_place
+from .console import short_place, terminal_text
 
 if TYPE_CHECKING:
     from mutabot.model.mutant_end import MutantEnd
@@ -70,7 +70,7 @@ class Pace:
         return spent / self.done * max(0, self.total - self.done)
 
     @property
-    def words(self) -> str:
+    def text(self) -> str:
         """The times as text: ``0:08 elapsed, 0:20 left``; only the elapsed time when all is done."""
         if self.total is not None and self.done >= self.total:
             return f"took {clock_text(self.spent)}"
@@ -119,7 +119,7 @@ class Tally:
         return f"{state}: {what} (round {end.outcome.round + 1})"
 
     @property
-    def words(self) -> str:
+    def text(self) -> str:
         """The counts as text: ``killed 35, survived 4``; empty if there are none."""
         return ", ".join(f"{state} {self._counts[state]}" for state in _ORDER if self._counts[state])
 
@@ -154,7 +154,7 @@ class _Times(ProgressColumn):
     def render(self, task: Task) -> Text:
         """Return both times as text."""
         pace = task.fields["pace"]
-        return Text(pace.words if isinstance(pace, Pace) else "")
+        return Text(pace.text if isinstance(pace, Pace) else "")
 
 
 class Bar:
@@ -186,13 +186,15 @@ class Bar:
         """Count an outcome, and print a survivor above the bars."""
         text = self._tally.add(end)
         if text is not None:
-            self._progress.console.print(Text(plain(text), style="red" if end.state in _SHOWN else ""))
+            self._progress.console.print(
+                Text(terminal_text(text), style="red" if end.state in _SHOWN else "")
+            )
 
     def advance(self, line: str | None = None) -> None:
         """Advance the progress bar, and show the counts beside it, or ``line`` if there are none."""
         self._pace.advance()
         if self._task is not None:
-            text = self._tally.words or plain(line or "").partition("\n")[0]
+            text = self._tally.text or terminal_text(line or "").partition("\n")[0]
             self._progress.update(self._task, advance=1, line=text)
 
     @property
@@ -202,7 +204,7 @@ class Bar:
 
     def note(self, text: str) -> None:
         """Print a line above the bars."""
-        self._progress.console.print(plain(text))
+        self._progress.console.print(terminal_text(text))
 
     def _close_stage(self) -> None:
         if self._task is not None:
@@ -261,8 +263,8 @@ class Lines:
         self._last = time.monotonic()
         pace = self._pace
         of = "" if pace.total is None else f"/{pace.total}"
-        counts = self._tally.words or line
-        self._print(f"{self._text} {pace.done}{of}: {pace.words}{f' ({counts})' if counts else ''}")
+        counts = self._tally.text or line
+        self._print(f"{self._text} {pace.done}{of}: {pace.text}{f' ({counts})' if counts else ''}")
 
     def _live(self) -> None:
         while not self._is_over.wait(self._every / 10):
@@ -271,7 +273,7 @@ class Lines:
 
     def _print(self, text: str) -> None:
         with self._lock:
-            self._console.print(plain(text), soft_wrap=True)
+            self._console.print(terminal_text(text), soft_wrap=True)
 
     def __enter__(self) -> Self:
         self._thread.start()

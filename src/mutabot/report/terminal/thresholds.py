@@ -10,7 +10,13 @@ from rich.text import Text
 
 from mutabot.errors import plural
 from mutabot.report.sections import Section
-from mutabot.thresholds.thresholds import Thresholds, amount, describe_violations, line_of, rounds_left_out
+from mutabot.thresholds.thresholds import (
+    Thresholds,
+    describe_violations,
+    ladder_line,
+    magnitude_text,
+    rounds_left_out,
+)
 
 from .console import print_section
 
@@ -36,8 +42,8 @@ def print_thresholds(console: Console, thresholds: Thresholds) -> None:
 
 
 def _row(ladder: Ladder) -> tuple[str, ...]:
-    none = amount(ladder.none_up_to, ladder.unit) if ladder.none_up_to else "–"
-    every = amount(ladder.all_from, ladder.unit) if ladder.all_from in ladder.sizes else "–"
+    none = magnitude_text(ladder.none_up_to, ladder.unit) if ladder.none_up_to else "–"
+    every = magnitude_text(ladder.all_from, ladder.unit) if ladder.all_from in ladder.sizes else "–"
     return f"{ladder.place} {ladder.name}", none, bar(ladder), every, _noticed_by(ladder)
 
 
@@ -59,7 +65,7 @@ def _noticed_by(ladder: Ladder) -> str:
     )
     rounds = len(ladder.counted)
     counts = [f"{name} in {count} of {plural(rounds, 'round')}" for name, count in by.most_common()]
-    return ", ".join(counts) or line_of(ladder)
+    return ", ".join(counts) or ladder_line(ladder)
 
 
 def _sections(thresholds: Thresholds) -> dict[str, list[str]]:

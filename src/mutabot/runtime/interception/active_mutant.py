@@ -12,7 +12,7 @@ from random import Random
 from traceback import walk_tb
 from typing import Any
 
-from mutabot.errors import OperatorError, PathError, in_words
+from mutabot.errors import OperatorError, PathError, error_text
 from mutabot.languages.registry import front_end_of
 from mutabot.model import Call, Middleware, Moment, Mutant, Operation, Proceed, Reply, Span
 from mutabot.model.answer import restore
@@ -91,7 +91,7 @@ class RefusedCalls:
         if self.on_refused is None:
             return
         self._watched.pop(made.call.operation.target, None)
-        refused = refused_of(made.call)
+        refused = possible_refusals(made.call)
         if any(refusal.topic is not None for refusal in refused):
             call = Call(made.call.operation, made.call.pattern)  # nothing of the program's is kept
             self._watched[made.call.operation.target] = (replace(made, call=call), refused)
@@ -113,7 +113,7 @@ def _name(span: Span, text: str, occurrence: int) -> _SiteName:
     return span.file, span.function, text, occurrence
 
 
-def refused_of(call: Call) -> tuple[Refused, ...]:
+def possible_refusals(call: Call) -> tuple[Refused, ...]:
     """Return the ways in which the robot can refuse this command."""
     own = call.pattern.refused if call.pattern is not None else ()
     return own or call.operation.refused
@@ -121,7 +121,7 @@ def refused_of(call: Call) -> tuple[Refused, ...]:
 
 def answered(call: Call, result: Any) -> str | None:
     """Return the text with which the answer to a command refuses it; None if it does not."""
-    for refused in refused_of(call):
+    for refused in possible_refusals(call):
         if refused.topic is None:
             found = _found(refused, result)
             if found is not None:
@@ -249,7 +249,7 @@ class MutatedSite:
 
     def _fails(self, error: BaseException, how: str = "") -> None:
         """Report that the operator or the vocabulary failed, not the robot or the program."""
-        text = f"operator {self.mutant.operator}{how}: {in_words(error)}"
+        text = f"operator {self.mutant.operator}{how}: {error_text(error)}"
         self.evidence.failure = self.evidence.failure or text
 
     def is_here(self, site: CallPlace, call: Call) -> bool:
@@ -363,13 +363,13 @@ class MutatedSite:
 
     def count(self, call: Call) -> None:
         """Count one more command that the mutated call gives to the robot."""
-        self._told_by = refused_of(call)
+        self._told_by = possible_refusals(call)
         self._commands += 1
 
     def refused_as(self, text: str | None) -> None:
         """Note the text with which the robot refused a mutated call; None if it did not."""
-        if text is not None and self.evidence.said is None:
-            self.evidence.said = text
+        if text is not None and self.evidence.refusing_answer is None:
+            self.evidence.refusing_answer = text
 
     def _subject(self) -> Subject:
         mutant = self.mutant
@@ -479,7 +479,7 @@ class _MutatedCall:
         mutant.count(call)
         if is_changed:
             mutant.on_call(True)
-            mutant.watched = () if self._is_usual else refused_of(call)
+            mutant.watched = () if self._is_usual else possible_refusals(call)
         try:
             result = await self._perform(call)
         except BaseException as error:

@@ -20,7 +20,7 @@ from inspect import Parameter, Signature
 from types import CoroutineType
 from typing import Any, Protocol
 
-from mutabot.errors import PathError, StrangeValueError, in_words
+from mutabot.errors import PathError, StrangeValueError, error_text
 from mutabot.model import Call, Operation, Path, Pattern, Quantity, Reply, Unchanged, Vocabulary
 from mutabot.model.answer import keep, restore
 from mutabot.model.data import UNKNOWN, is_of_numpy
@@ -567,7 +567,7 @@ def _names(invocation: Invocation, argument: str) -> tuple[str, ...]:
 def _unread(quantity: Quantity, error: Exception) -> PathError:
     if isinstance(error, PathError):
         return error
-    return PathError(f"{quantity.path or 'the result'} cannot be read: {in_words(error)}")
+    return PathError(f"{quantity.path or 'the result'} cannot be read: {error_text(error)}")
 
 
 def _strange_value_error(quantity: Quantity, found: Any) -> StrangeValueError:

@@ -15,7 +15,7 @@ from importlib import import_module
 from threading import get_ident
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from mutabot.errors import ExtensionError, in_words
+from mutabot.errors import ExtensionError, error_text
 
 if TYPE_CHECKING:
     from mutabot.errors import PathError
@@ -126,7 +126,7 @@ class OperationGuard:
                 found = (guard.why_not(call, unread) for guard in self.guards.guards)
                 return next((why for why in found if why is not None), None)
             except Exception as error:  # what cannot say that a call is harmless does not let it pass
-                return f"the guard fails: {in_words(error)}"
+                return f"the guard fails: {error_text(error)}"
             finally:
                 self._unread.pop(get_ident(), None)
 

@@ -23,7 +23,7 @@ from itertools import islice
 from types import FunctionType
 from typing import TYPE_CHECKING, Any
 
-from mutabot.errors import in_words, nearest_name, text_of
+from mutabot.errors import error_text, nearest_name, text_of
 from mutabot.evidence import recorder as recorders
 from mutabot.evidence.recording import RecordedCall, to_text
 from mutabot.model.clocks import monotonic, thread_time
@@ -77,7 +77,7 @@ def take(probes: tuple[Probe, ...], instances: Instances) -> Reading:
         except UnreadableError as error:
             reading.unread[probe.target] = str(error)
         except Exception as error:  # as above
-            reading.unread[probe.target] = in_words(error)
+            reading.unread[probe.target] = error_text(error)
     return reading
 
 
@@ -260,7 +260,7 @@ class Along:
             self.step *= 2
 
 
-def rehearse(read: Callable[[], Reading]) -> Reading:
+def first_reading(read: Callable[[], Reading]) -> Reading:
     """Read the probes, and note why they cannot be read along the way as well, if so."""
     first = read()
     if not first.values:
@@ -305,7 +305,7 @@ _AS_TEXT = (complex, range, slice)
 _ACCIDENTS = re.compile(r"0x[0-9a-fA-F]{6,}|pytest-\d+")
 
 
-def plain(value: Any) -> Any:
+def json_data(value: Any) -> Any:
     """Return the value as JSON-like data.
 
     What is no plain data becomes ``{"opaque": type}``, so that two of them are equal whatever they hold. A
@@ -441,6 +441,6 @@ class TestRecording:
         try:
             return to_text(recording)
         except (TypeError, ValueError, RecursionError) as error:  # values of the user's may be anything
-            recorder.problem(f"the calls of a test cannot be recorded: {in_words(error)}")
+            recorder.problem(f"the calls of a test cannot be recorded: {error_text(error)}")
             recording.calls = []
             return to_text(recording)

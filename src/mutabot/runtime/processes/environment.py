@@ -60,7 +60,7 @@ FORKINGS = ("os.fork", "os.forkpty")
 _folder = ""
 
 
-def carry(folder: str) -> None:
+def export_folder(folder: str) -> None:
     """Let every process that is started from now on find the folder of this campaign's processes."""
     global _folder  # noqa: PLW0603  # a copy of a fork server has a folder of its own
     if not _folder:

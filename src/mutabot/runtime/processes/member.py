@@ -25,7 +25,7 @@ from mutabot.model.job import Job, read_job
 from mutabot.runtime import FOLDER as OURS
 from mutabot.runtime.event_file import EventFile
 from mutabot.runtime.evidence import Evidence, Meter, TimeExceeded, failure_in, is_due_to, leaves
-from mutabot.runtime.processes.environment import STARTS, Now, carry, listen, starts_a_killer
+from mutabot.runtime.processes.environment import STARTS, Now, export_folder, listen, starts_a_killer
 from mutabot.runtime.program_text.instrument import SessionText
 from mutabot.runtime.program_text.loading import hook_script
 from mutabot.runtime.program_text.text_mutant import TextMutant
@@ -153,7 +153,7 @@ class Member:
 
     def begin(self) -> None:
         """Start the session."""
-        carry(self._folder)
+        export_folder(self._folder)
         self.session.install()
         hook_script()
         self._attend()
@@ -191,9 +191,9 @@ class Member:
             self.file.send(events.Called(site, written, read, answer, monotonic()))
 
         def heard(hear: Callable[[str, Any], None], name: str, message: Any) -> None:
-            before = session.evidence.said
+            before = session.evidence.refusing_answer
             hear(name, message)
-            if session.evidence.said != before:
+            if session.evidence.refusing_answer != before:
                 self.poll()
 
         session.recorder.on_hit, session.dispatcher.turn = hit, self.turn
@@ -267,7 +267,7 @@ class Member:
 
     def _did(self, before: Evidence, now: Evidence) -> events.Did:
         away = {why: count - before.away.get(why, 0) for why, count in now.away.items()}
-        is_refused = now.refusals != before.refusals or now.said != before.said
+        is_refused = now.refusals != before.refusals or now.refusing_answer != before.refusing_answer
         return events.Did(
             self.session.test,
             hits=now.hits - before.hits,
@@ -276,7 +276,7 @@ class Member:
             example=now.example if before.example is None else None,
             failure=now.failure if before.failure is None else None,
             refused=now.refusal if is_refused and not now.is_of_text else None,
-            is_final=now.said is not None,
+            is_final=now.refusing_answer is not None,
         )
 
     def _use(self) -> None:

@@ -13,7 +13,7 @@ from mutabot.model.activation import Activation
 from mutabot.model.event_file import FOLDER
 from mutabot.model.fold import ChildRecord, Children, FactsOfTest, calls_of, fold, is_alive
 from mutabot.model.source_units import AS_TEXT, WHOLE, Executed, together
-from mutabot.runtime.processes.environment import Announced, ProcessWatch, carry, write_wake
+from mutabot.runtime.processes.environment import Announced, ProcessWatch, export_folder, write_wake
 
 if TYPE_CHECKING:
     from mutabot.model.job import Job
@@ -48,7 +48,7 @@ class Members:
         self._unseen: set[str] = set()
         self._read: set[str] = set()
         self._acted = has_acted
-        carry(self.folder)
+        export_folder(self.folder)
         self._watch = ProcessWatch(self._report_unseen)
 
     def start_test(self, test: str) -> None:

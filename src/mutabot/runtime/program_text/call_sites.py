@@ -30,7 +30,7 @@ from mutabot.model.mutant import Extent
 from mutabot.model.source_units import FunctionNode
 from mutabot.runtime.program_text import loading
 from mutabot.runtime.program_text.compiling import SourceStep
-from mutabot.runtime.program_text.instrument import declare_global, is_ours
+from mutabot.runtime.program_text.instrument import declare_global, is_instrumentation
 from mutabot.runtime.program_text.returns import is_translated
 from mutabot.runtime.targets.target import CallPlace
 from mutabot.runtime.targets.wrapper import WRAPPERS, unbound
@@ -44,7 +44,7 @@ def is_passed_on(node: ast.expr) -> bool:
 
 
 def _place(node: ast.AST) -> ast.expr | None:
-    if isinstance(node, ast.Call) and not is_ours(node.func):
+    if isinstance(node, ast.Call) and not is_instrumentation(node.func):
         return node
     return getattr(node, _PLACE, None)
 
@@ -52,7 +52,7 @@ def _place(node: ast.AST) -> ast.expr | None:
 def _parts(node: ast.AST) -> Iterator[ast.expr]:
     match node:
         case ast.Call():
-            if hasattr(node, _PLACE) or not is_ours(node.func):
+            if hasattr(node, _PLACE) or not is_instrumentation(node.func):
                 yield from (*node.args, *(keyword.value for keyword in node.keywords))
         case ast.Assign(targets=[ast.Name(id=name), *_]) if name.startswith("@"):  # pytest's own
             return
@@ -370,7 +370,7 @@ class _Writer(ast.NodeTransformer):
         function = node.func
         self.generic_visit(node)
         read = self._read.get(function.id, function) if isinstance(function, ast.Name) else function
-        if is_ours(read):
+        if is_instrumentation(read):
             return node
         if isinstance(read, ast.Attribute) and read.attr in self.names:
             if read is function:
@@ -388,7 +388,7 @@ class _Writer(ast.NodeTransformer):
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:  # as above
         self.generic_visit(node)
         is_asked = is_passed_on(node) or (self.are_read and isinstance(node.ctx, ast.Load))
-        if is_asked and node.attr in self.names and not is_ours(node):
+        if is_asked and node.attr in self.names and not is_instrumentation(node):
             number = self.number(node, node.attr, "handed_attribute")
             return self._question(number, node, [node.value])
         return node

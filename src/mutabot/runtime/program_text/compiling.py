@@ -142,7 +142,7 @@ def _compile(
         return tree if is_parsed else compile_tree(tree, path, flags, optimize)
 
     is_own = request is not None and path == request.path
-    data = request.data if request is not None and is_own else text_of(path)
+    data = request.data if request is not None and is_own else content_of(path)
     is_whole = not is_tree and _is_same(source, data)
     text = data if is_tree or is_whole else _bytes_of(source)
     is_plain = is_whole and not is_parsed
@@ -206,7 +206,7 @@ def _is_kept() -> bool:
     return False
 
 
-def text_of(path: str) -> bytes:
+def content_of(path: str) -> bytes:
     """Return the content of a file; empty if it cannot be read."""
     try:
         with open(path, "rb") as file:

@@ -31,7 +31,7 @@ from mutabot.runtime.event_file import EventWriter, Held
 from mutabot.runtime.evidence import Evidence
 from mutabot.runtime.processes.environment import listen
 from mutabot.runtime.program_text import compiling, loading
-from mutabot.runtime.program_text.compiling import text_of
+from mutabot.runtime.program_text.compiling import content_of
 from mutabot.runtime.program_text.prediction import Forms, PredictedForm
 from mutabot.runtime.program_text.switches import Alternatives, Sightings
 
@@ -260,7 +260,7 @@ def _moved(made: _Node, node: ast.AST) -> _Node:
     return made
 
 
-def is_ours(function: ast.expr) -> bool:
+def is_instrumentation(function: ast.expr) -> bool:
     """Return whether a function is part of the instrumentation."""
     while isinstance(function, ast.Attribute | ast.Subscript):
         function = function.value
@@ -365,7 +365,7 @@ class SessionText:
         text = self._text_of(path)
         assert text is not None
         if digest(source) != text.digest:
-            raise _ChangedError(_CHANGED if digest(text_of(path)) != text.digest else _OTHER)
+            raise _ChangedError(_CHANGED if digest(content_of(path)) != text.digest else _OTHER)
         record = self.sightings is not None
         instrumented(tree, text.places, record=record, originals=self._originals)
         self.imported.append(text.file)

@@ -20,7 +20,7 @@ from importlib.util import spec_from_file_location
 from types import CodeType, ModuleType
 from typing import Any
 
-from mutabot.errors import in_words
+from mutabot.errors import error_text
 from mutabot.languages.python import head_size
 from mutabot.runtime.program_text import compiling
 from mutabot.runtime.program_text.compiling import LoaderRequest, SourceStep, is_wanted
@@ -62,7 +62,7 @@ def _loaded_code(loader: Any, request: LoaderRequest) -> tuple[CodeType, str | N
             raise
         request.is_off = True  # the loader may well take the text as it stands
         code = loader.source_to_code(request.data, request.path)
-        why = f"its loader fails with instrumented text: {in_words(error)}"
+        why = f"its loader fails with instrumented text: {error_text(error)}"
     finally:
         compiling.requests.open.pop()
     return code, why if why is not None or request.is_met else UNSEEN

@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Any
 from mutabot.languages.python import placed
 from mutabot.model import Role
 from mutabot.model.source_units import FunctionNode
-from mutabot.runtime.observation.probes import plain, text_of_error
+from mutabot.runtime.observation.probes import json_data, text_of_error
 from mutabot.runtime.program_text import loading
 
 if TYPE_CHECKING:
@@ -101,7 +101,7 @@ class Returns:
             function = sys._getframe(1)
             around = function.f_back
             if around is not None and around.f_code.co_filename not in self._own and self._leaves(around):
-                self._note(function, lambda: [plain(value)])
+                self._note(function, lambda: [json_data(value)])
         return value
 
     def _raised(self) -> None:
