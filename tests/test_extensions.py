@@ -12,7 +12,7 @@ import pytest
 
 from mutabot import extensions
 from mutabot.languages.registry import languages_of
-from mutabot.runtime.evidence import failure_in
+from mutabot.runtime.exceptions import failure_in
 
 #: prints what is brought
 ASK = """

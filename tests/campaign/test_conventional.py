@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.campaign.preparation import PlannedCampaign, check, plan_only
+from mutabot.campaign.checking import PlannedCampaign, check, plan_only
 from mutabot.campaign.run import run_campaign
 from mutabot.campaign.verdict import Run, _ruling
 from mutabot.errors import NothingToDoError

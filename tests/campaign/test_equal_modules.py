@@ -7,7 +7,7 @@ from textwrap import dedent
 
 import pytest
 
-from mutabot.campaign.preparation import plan_only
+from mutabot.campaign.checking import plan_only
 from mutabot.model import Mutant, Verdict
 from tests.campaign.project import Quiet, by_forks, request_for, write_project
 

@@ -10,7 +10,7 @@ from textwrap import dedent
 import pytest
 
 from mutabot import extensions
-from mutabot.campaign.preparation import plan_only
+from mutabot.campaign.checking import plan_only
 from mutabot.errors import OperatorError
 from mutabot.model import Outcome, Verdict
 from mutabot.operators import registry

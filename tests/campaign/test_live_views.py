@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.preparation import plan_only
+from mutabot.campaign.checking import plan_only
 from mutabot.model import Outcome, Verdict
 from tests.campaign.project import Quiet, by_forks, request_for, write_project
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.campaign.preparation import check, plan_only
+from mutabot.campaign.checking import check, plan_only
 from mutabot.campaign.run import run_campaign
 from mutabot.errors import ExitCode, NothingToDoError
 from mutabot.journal.journal import Journal

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.preparation import check
+from mutabot.campaign.checking import check
 from mutabot.model import Verdict
 from tests.campaign.project import Quiet, by_forks, request_for, write_project
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from mutabot.campaign.preparation import plan_only
+from mutabot.campaign.checking import plan_only
 from mutabot.model import Verdict
 from tests.campaign.project import Quiet, by_forks, request_for, write_project
 

@@ -26,7 +26,8 @@ from mutabot.model.operation import Form
 from mutabot.runtime.interception.active_mutant import MutatedSite
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.session import Session
-from mutabot.runtime.targets.target import Messages, MiddlewareControls, Where
+from mutabot.runtime.targets.messages import Messages
+from mutabot.runtime.targets.target import MiddlewareControls, Where
 from tests.runtime.stage import take_away
 
 from .stage import ListPipe

@@ -6,7 +6,7 @@ import pytest
 
 from mutabot.model.events import Acted, Problem
 from mutabot.operators.command import FatalFault
-from mutabot.runtime.evidence import Meter, TimeExceeded
+from mutabot.runtime.meter import Meter, TimeExceeded
 from tests.runtime.stage import Make
 
 ROBOT = """

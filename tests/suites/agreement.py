@@ -12,7 +12,7 @@ from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Any
 
-from mutabot.campaign.preparation import plan_only
+from mutabot.campaign.checking import plan_only
 from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.run import run_campaign
 from mutabot.config.configuration import load_configuration

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from mutabot.campaign import preparation
+from mutabot.campaign import checking
 from mutabot.campaign.partial_runs import replay_one
 from mutabot.campaign.plan import listed_rules
 from mutabot.campaign.request import Request
@@ -38,7 +38,7 @@ def operators(context: CommandContext, family: options.Families = None, json: bo
 def check(context: CommandContext, request: Annotated[Request, options.Setting], json: bool = False) -> None:
     """Try the set-up without running mutants."""
     with context.progress() as progress:
-        report = preparation.check(request, progress)
+        report = checking.check(request, progress)
     context.print_json(report.data) if json else context.print("\n".join(report.lines))
 
 
@@ -50,7 +50,7 @@ def list_(
 ) -> None:
     """List the mutants that would run."""
     with context.progress() as progress:
-        planned = preparation.plan_only(request, progress)
+        planned = checking.plan_only(request, progress)
     if json:
         data = plan_data(planned.mutants, planned.left_out, planned.untested)
         context.print_json({**data, "runs": planned.duration.runs, "seconds": planned.duration.seconds})

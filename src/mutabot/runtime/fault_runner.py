@@ -21,7 +21,8 @@ from mutabot.model import Mutant
 from mutabot.model.activation import Activation, Key
 from mutabot.operators.command import FatalFault
 from mutabot.runtime.active_fault import ActiveFault, FatalControl, FaultContext
-from mutabot.runtime.evidence import Evidence, Refusal, everything
+from mutabot.runtime.evidence import Evidence
+from mutabot.runtime.exceptions import Refusal, everything
 from mutabot.runtime.interception.active_mutant import with_refusal
 
 if TYPE_CHECKING:

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 from mutabot.errors import StrangeValueError
 from mutabot.model.events import Event, Problem, Remark
 from mutabot.runtime.targets.callables import Callables, not_imported
-from mutabot.runtime.targets.target import Finding, Messages, NotFoundError, resolve
+from mutabot.runtime.targets.messages import Messages
+from mutabot.runtime.targets.target import Finding, NotFoundError, resolve
 
 if TYPE_CHECKING:
     from mutabot.errors import PathError

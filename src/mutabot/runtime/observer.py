@@ -30,7 +30,8 @@ from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.processes.environment import export_folder, write_wake
 from mutabot.runtime.program_text.call_sites import NOTHING, CallSite, CallSites
 from mutabot.runtime.program_text.loading import hook_script
-from mutabot.runtime.targets.target import NOWHERE, CallPlace, Handler, Messages, Where
+from mutabot.runtime.targets.messages import Messages
+from mutabot.runtime.targets.target import NOWHERE, CallPlace, Handler, Where
 
 #: forms of what passes under a name; all others only set something up
 _PASSING = MAIN | {Form.FEEDBACK, Form.RESULT}

@@ -15,7 +15,6 @@ from mutabot.model.activation import CALL_FAULT, at_text
 from mutabot.model.events import Acted, Called, CallsAsked, Event, KnownLater, Noted, SiteSeen, TextsSeen
 from mutabot.model.job import Idle
 from mutabot.model.operation import owner_of
-from mutabot.runtime.evidence import Evidence, Meter
 from mutabot.runtime.fault_runner import FaultRunner
 from mutabot.runtime.inspection import Inspection
 from mutabot.runtime.interception.active_mutant import is_refusal
@@ -23,6 +22,7 @@ from mutabot.runtime.interception.adapter import Adapter, SiteCall, handles_of
 from mutabot.runtime.interception.dispatcher import Dispatcher, Untracked
 from mutabot.runtime.interception.guarding import CallGuards, OperationGuard
 from mutabot.runtime.interception.trace import Answers, Locator, Recorder, seen_by
+from mutabot.runtime.meter import Meter
 from mutabot.runtime.observation.clock import ClockReader, Instances, ProgramTime
 from mutabot.runtime.observation.probes import Along, Reading, TestRecording, first_reading, take
 from mutabot.runtime.program_text.call_sites import CallSites
@@ -31,7 +31,8 @@ from mutabot.runtime.program_text.instrument import SessionText
 from mutabot.runtime.reached_keys import ReachedKeys
 from mutabot.runtime.seeds import derive
 from mutabot.runtime.targets.callables import Callables
-from mutabot.runtime.targets.target import Finding, Handler, Messages
+from mutabot.runtime.targets.messages import Messages
+from mutabot.runtime.targets.target import Finding, Handler
 
 if TYPE_CHECKING:  # processes below the tests fork for nobody
     from mutabot.model import Moment, Mutant, Operation, Probe
@@ -39,6 +40,7 @@ if TYPE_CHECKING:  # processes below the tests fork for nobody
     from mutabot.model.job import Job
     from mutabot.model.quantity import Value
     from mutabot.runtime.event_file import EventWriter
+    from mutabot.runtime.evidence import Evidence
     from mutabot.runtime.interception.active_mutant import MutatedSite
     from mutabot.runtime.isolation.files import PrivateFiles
     from mutabot.runtime.isolation.fork_parent import ForkParent

@@ -21,13 +21,13 @@ from mutabot.model.job import Job, read_job
 from mutabot.operators.registry import preload
 from mutabot.runtime import seeds
 from mutabot.runtime.event_file import EventFile, Held
-from mutabot.runtime.evidence import limit_memory
 from mutabot.runtime.interception.frames import is_ours
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.isolation.files import LOG, PrivateFiles
 from mutabot.runtime.isolation.fork_parent import ForkParent
 from mutabot.runtime.isolation.forkable import track_event_loops
 from mutabot.runtime.isolation.namespaces import die_with_parent
+from mutabot.runtime.meter import limit_memory
 from mutabot.runtime.observation.checks import Checks
 from mutabot.runtime.processes.member import watch_forks
 from mutabot.runtime.processes.members import Members

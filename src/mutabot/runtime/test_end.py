@@ -17,12 +17,14 @@ from mutabot.model import By, Role, Vocabulary
 from mutabot.model.events import TestEnd
 from mutabot.model.path import class_name
 from mutabot.runtime import FOLDER, real_path
-from mutabot.runtime.evidence import Evidence, TimeExceeded, failure_in, is_due_to, leaves
+from mutabot.runtime.exceptions import failure_in, is_due_to, leaves
+from mutabot.runtime.meter import TimeExceeded
 from mutabot.runtime.targets.target import is_named
 
 if TYPE_CHECKING:
     import doctest
 
+    from mutabot.runtime.evidence import Evidence
     from mutabot.runtime.interception.trace import Locator
 
 #: where an object lies in memory differs from run to run and says nothing

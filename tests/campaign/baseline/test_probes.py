@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.preparation import begin, check, locked_executor
+from mutabot.campaign.checking import check
+from mutabot.campaign.preparation import begin, locked_executor
 from mutabot.campaign.run import run_campaign
 from mutabot.errors import ConfigurationError
 from mutabot.model import Outcome, Verdict

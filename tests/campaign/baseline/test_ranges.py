@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.preparation import check, plan_only
+from mutabot.campaign.checking import check, plan_only
 from mutabot.campaign.run import run_campaign
 from mutabot.model import Outcome, Verdict
 from tests.campaign.project import CONFIGURATION, REPLAY, Quiet, outcomes, request_for, write_project

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.preparation import check
+from mutabot.campaign.checking import check
 from mutabot.config.configuration import load_configuration
 from mutabot.errors import VocabularyError
 from tests.campaign.project import Quiet, request_for, write_project

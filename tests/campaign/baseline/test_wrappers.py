@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from mutabot.campaign.baseline.wrappers import passed_on
-from mutabot.campaign.preparation import check
+from mutabot.campaign.checking import check
 from tests.campaign.project import Quiet, request_for, write_project
 
 

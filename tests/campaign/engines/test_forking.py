@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.campaign.preparation import check
+from mutabot.campaign.checking import check
 from mutabot.campaign.run import run_campaign
 from mutabot.execution.task import Result
 from mutabot.model import Outcome, Verdict

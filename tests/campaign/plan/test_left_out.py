@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.preparation import check, plan_only
+from mutabot.campaign.checking import check, plan_only
 from mutabot.errors import NothingToDoError
 from mutabot.model import LeftOut, Moment
 from mutabot.model.left_out import by_heading

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.preparation import plan_only
+from mutabot.campaign.checking import plan_only
 from mutabot.families import CATALOGUE, GRADED, ROBOT
 from tests.campaign.project import CONFIGURATION, Quiet, request_for, write_project
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.campaign.preparation import check, plan_only
+from mutabot.campaign.checking import check, plan_only
 from mutabot.campaign.reuse import parts
 from mutabot.campaign.run import run_campaign
 from mutabot.errors import BaselineError, ControlError, JournalError

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.preparation import plan_only
+from mutabot.campaign.checking import plan_only
 from mutabot.campaign.run import run_campaign
 from mutabot.campaign.sharding.shards import merge
 from mutabot.config.options import Shard

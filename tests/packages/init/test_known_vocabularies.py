@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.preparation import check
+from mutabot.campaign.checking import check
 from mutabot.config.configuration import load_configuration
 from mutabot.config.vocabulary import load_vocabulary
 from mutabot_init.propose import propose

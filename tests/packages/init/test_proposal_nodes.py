@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.campaign.preparation import check
+from mutabot.campaign.checking import check
 from mutabot.config.vocabulary import load_vocabulary
 from mutabot.model import Kind
 from mutabot_init.observations import WatchedCallable

@@ -21,9 +21,11 @@ from hypothesis import strategies
 
 from mutabot.model import By, Vocabulary
 from mutabot.model.events import TestEnd
-from mutabot.runtime.evidence import Evidence, KnownError, Refusal, TimeExceeded, is_due_to, leaves
+from mutabot.runtime.evidence import Evidence
+from mutabot.runtime.exceptions import KnownError, Refusal, is_due_to, leaves
 from mutabot.runtime.interception.active_mutant import with_refusal
 from mutabot.runtime.interception.trace import Locator
+from mutabot.runtime.meter import TimeExceeded
 from mutabot.runtime.test_end import classify
 
 

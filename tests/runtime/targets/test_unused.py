@@ -7,7 +7,7 @@ import pytest
 from mutabot import extensions
 from mutabot.extensions import Extension
 from mutabot.model.operation import Form, Named, Refused
-from mutabot.runtime.targets.target import Messages, unheard, unused
+from mutabot.runtime.targets.messages import Messages, unheard, unused
 
 
 def said(wanted: str, *used: str) -> list[str]:

@@ -25,7 +25,8 @@ from mutabot.operators import Need, Subject, operator
 from mutabot.operators.command import FatalFault
 from mutabot.operators.middleware import CallRecord, Carried, run_middleware
 from mutabot.operators.operator import subject_of
-from mutabot.runtime.evidence import REFUSALS, Evidence, KnownError, Refusal, leaves
+from mutabot.runtime.evidence import REFUSALS, Evidence
+from mutabot.runtime.exceptions import KnownError, Refusal, leaves
 from mutabot.runtime.interception import call_faults
 from mutabot.runtime.interception.adapter import Adapter, SiteCall, call_context, snapshot
 from mutabot.runtime.interception.live import HandedCopies, copied, is_live

@@ -24,12 +24,12 @@ from mutabot.model.activation import Activation, Key
 from mutabot.model.operation import Form
 from mutabot.model.quantity import Value
 from mutabot.operators.middleware import Carried, run
-from mutabot.runtime.evidence import Meter
 from mutabot.runtime.interception.active_mutant import MutatedSite, RefusedCalls
 from mutabot.runtime.interception.adapter import Adapter, Caller, Invocation, SiteCall, is_mock
 from mutabot.runtime.interception.frames import ModuleCache, border, borders, without_ours
 from mutabot.runtime.interception.live import is_live
 from mutabot.runtime.interception.trace import Locator, Recorder
+from mutabot.runtime.meter import Meter
 from mutabot.runtime.observation.clock import Instances
 from mutabot.runtime.observation.probes import Along
 from mutabot.runtime.targets.target import NOWHERE, CallPlace, Handler, Where

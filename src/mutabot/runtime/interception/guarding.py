@@ -20,8 +20,8 @@ from mutabot.errors import ExtensionError, error_text
 if TYPE_CHECKING:
     from mutabot.errors import PathError
     from mutabot.model import Call
-    from mutabot.runtime.evidence import Meter
     from mutabot.runtime.interception.adapter import Adapter, Invocation
+    from mutabot.runtime.meter import Meter
 
 
 class GuardedCall(BaseException):  # it is no error of the program's

@@ -28,8 +28,8 @@ from mutabot.errors import PathError
 from mutabot.model import Clock, Path, Vocabulary
 from mutabot.model.signature import ANYTHING, signature_of
 from mutabot.model.units import convert
-from mutabot.runtime.evidence import Meter
 from mutabot.runtime.interception.adapter import Invocation
+from mutabot.runtime.meter import Meter
 from mutabot.runtime.targets.target import NotFoundError, resolve
 from mutabot.runtime.targets.wrapper import bound
 

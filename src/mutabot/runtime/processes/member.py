@@ -24,7 +24,9 @@ from mutabot.model.event_file import ANYBODY
 from mutabot.model.job import Job, read_job
 from mutabot.runtime import FOLDER as OURS
 from mutabot.runtime.event_file import EventFile
-from mutabot.runtime.evidence import Evidence, Meter, TimeExceeded, failure_in, is_due_to, leaves
+from mutabot.runtime.evidence import Evidence
+from mutabot.runtime.exceptions import failure_in, is_due_to, leaves
+from mutabot.runtime.meter import Meter, TimeExceeded
 from mutabot.runtime.processes.environment import STARTS, Now, export_folder, listen, starts_a_killer
 from mutabot.runtime.program_text.instrument import SessionText
 from mutabot.runtime.program_text.loading import hook_script
