@@ -69,11 +69,7 @@ class Frame:
         a, b, c = vector
         # v + 2w (q × v) + 2 q × (q × v)
         d, e, f = 2 * (y * c - z * b), 2 * (z * a - x * c), 2 * (x * b - y * a)
-        return (
-            a + w * d + y * f - z * e,
-            b + w * e + z * d - x * f,
-            c + w * f + x * e - y * d,
-        )
+        return (a + w * d + y * f - z * e, b + w * e + z * d - x * f, c + w * f + x * e - y * d)
 
     def euler(self) -> tuple[float, float, float]:
         """Euler angles z, y, x in degrees, as ``of_euler`` takes them."""

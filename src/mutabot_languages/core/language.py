@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
@@ -95,16 +95,8 @@ class RobotLanguage:
     def names(self, source: str) -> Mapping[TextSpan, tuple[str, int]]:
         """Names of all statements, calls and readings in a file."""
         parsed = self.read("", source)
-        found: dict[TextSpan, tuple[str, int]] = {}
-        counts: dict[tuple[str, str], int] = {}
-        for node, routine in sites(parsed.tree):
-            extent = parsed.source.extent(node.start, node.end)
-            if extent in found:
-                continue
-            text = site_text(node, source)
-            counts[routine, text] = counts.get((routine, text), 0) + 1
-            found[extent] = text, counts[routine, text]
-        return found
+        found = occurrences_in(parsed.tree, source, STATEMENTS | _EXPRESSIONS)
+        return {parsed.source.extent(*at): (text, number) for at, (_, text, number) in found.items()}
 
     def file_of(self, frame: FrameType) -> str | None:
         """The file that the machine carries out in its call of the cell; None for all other frames."""
@@ -119,17 +111,26 @@ class RobotLanguage:
         return site.extent, site.routine
 
 
-def sites(tree: ProgramNode) -> Iterator[tuple[ProgramNode, str]]:
-    """Nodes that may be a site, with the name of the routine they stand in."""
+#: routine, text and number of each node among those with this text in this routine, by start and end
+Occurrences = dict[tuple[int, int], tuple[str, str, int]]
+
+
+def occurrences_in(tree: ProgramNode, text: str, kinds: frozenset[str] | None = None) -> Occurrences:
+    """The nodes of a tree, or those of some kinds, that may be a site."""
+    counts: dict[tuple[str, str], int] = {}
+    found: Occurrences = {}
     waiting: list[tuple[ProgramNode, str]] = [(tree, "<module>")]
     while waiting:
         node, routine = waiting.pop()
-        if node.kind in STATEMENTS or node.kind in _EXPRESSIONS:
-            yield node, routine
+        if (node.start, node.end) not in found and (kinds is None or node.kind in kinds):
+            shown = site_text(node, text)
+            counts[routine, shown] = counts.get((routine, shown), 0) + 1
+            found[node.start, node.end] = routine, shown, counts[routine, shown]
         inner = node.name if node.kind == "routine" else routine
-        for body in reversed(node.bodies):
-            waiting.extend((inner_node, inner) for inner_node in reversed(body))
-        waiting.extend((part, routine) for part in reversed(node.parts))
+        below = [(part, routine) for part in node.parts]
+        below += [(statement, inner) for body in node.bodies for statement in body]
+        waiting.extend(sorted(below, key=lambda place: place[0].start, reverse=True))
+    return found
 
 
 def site_text(node: ProgramNode, text: str) -> str:

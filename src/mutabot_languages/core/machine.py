@@ -15,7 +15,7 @@ from mutabot_languages.errors import LanguageError, ProgramError, UnsupportedErr
 
 from .interrupts import Interrupts
 from .scope import ControlFlow, ProgramUnit, Routine, RoutineScope, Steps, TaskOperation, Variable
-from .station import TICK, ProgramPlace, Station
+from .station import TICK, ArmMotion, ProgramPlace, Station
 from .tree import ProgramNode, in_short
 
 #: statements that a program may carry out in all
@@ -39,16 +39,21 @@ class Dialect:
 
     Class attributes:
         first: the number of the first element of an array.
+        has_none: whether a variable may get what a routine without a value returns.
         constants: values by name.
+
+    Args:
         functions: what a name that is called means: it gets the task, the node and the scope, and returns a
             value or a generator of operations that does.
         ignored: what is accepted without an effect, and noted.
     """
 
     first: ClassVar[int] = 0
+    has_none: ClassVar[bool] = False
     constants: ClassVar[Mapping[str, Any]] = {}
-    functions: Mapping[str, Callable[..., Any]] = {}
-    ignored: frozenset[str] = frozenset()
+
+    def __init__(self, functions: Mapping[str, Callable[..., Any]], ignored: frozenset[str]) -> None:
+        self.functions, self.ignored = functions, ignored
 
     def declare(self, task: Evaluation, node: ProgramNode, scope: RoutineScope, *, is_global: bool) -> Steps:
         """Make the variable of a declaration."""
@@ -196,6 +201,10 @@ class Evaluation:
         line = source.line_of(node.start)
         return UnsupportedError(f"unsupported: {what or node.name} at line {line} of {source.name}{why}")
 
+    def note_without_effect(self, node: ProgramNode, scope: RoutineScope) -> None:
+        """Note that what a node calls has no effect here."""
+        self.station.note(f"{node.name} at line {scope.unit.source.line_of(node.start)} has no effect here")
+
     def error(self, node: ProgramNode, scope: RoutineScope, text: str) -> ProgramError:
         """An error of the program at a node."""
         return ProgramError(f"{self.place(node, scope)}: {text} (in {scope.routine})")
@@ -212,7 +221,7 @@ class Evaluation:
         if kind == "group":
             return (yield from self.value(node.parts[0], scope))
         if kind == "call":
-            return (yield from self.call(node, scope))
+            return (yield from self._called(node, scope))
         if kind == "binary":
             return (yield from self._binary(node, scope))
         if kind == "unary":
@@ -227,6 +236,15 @@ class Evaluation:
         if kind in ("list", "pose", "aggregate", "enum", "method", "option"):
             return (yield from self.dialect.literal(self, node, scope))
         raise self.unsupported(node, scope, node.name or kind)
+
+    def _called(self, node: ProgramNode, scope: RoutineScope) -> Steps:
+        """The value that a call has where one is needed."""
+        found = yield from self.call(node, scope)
+        if found is None and node.name in self.dialect.ignored:
+            raise self.unsupported(node, scope, f"the value of {node.name}")
+        if found is None:
+            raise self.error(node, scope, f"{node.name} has no value: it returns none")
+        return found
 
     def _name(self, node: ProgramNode, scope: RoutineScope) -> Any:
         found = self.find(node.name, scope)
@@ -289,20 +307,16 @@ class Evaluation:
 
     def find(self, name: str, scope: RoutineScope, *, of_globals: bool = False) -> Variable | None:
         """A variable, from the inside out; None if there is none."""
-        inner: RoutineScope | None = None if of_globals else scope
-        while inner is not None:
+        for inner in () if of_globals else scope.chain():
             if name in inner.names:
                 return inner.names[name]
-            inner = inner.outer
         return scope.unit.names.get(name) or self.machine.globals.get(name)
 
     def find_routine(self, name: str, scope: RoutineScope) -> Routine | None:
         """A routine, from the inside out; None if there is none."""
-        inner: RoutineScope | None = scope
-        while inner is not None:
+        for inner in scope.chain():
             if name in inner.routines:
                 return inner.routines[name]
-            inner = inner.outer
         own = scope.unit.tree.value or {}
         return own.get(name) or self.machine.routines.get(name)
 
@@ -319,9 +333,7 @@ class Evaluation:
             found = function(self, node, scope)
             return (yield from found) if isinstance(found, Generator) else found
         if node.name in self.dialect.ignored:
-            self.station.note(
-                f"{node.name} at line {scope.unit.source.line_of(node.start)} has no effect here"
-            )
+            self.note_without_effect(node, scope)
             return None
         raise self.unsupported(node, scope)
 
@@ -332,12 +344,7 @@ class Evaluation:
         return entry.get("result", True)
 
     def call_routine(
-        self,
-        routine: Routine,
-        arguments: Sequence[ProgramNode],
-        node: ProgramNode,
-        scope: RoutineScope,
-        outer: RoutineScope | None = None,
+        self, routine: Routine, arguments: Sequence[ProgramNode], node: ProgramNode, scope: RoutineScope
     ) -> Steps:
         """Call a routine of the program; what it returns."""
         if self.depth >= _DEEPEST_CALLS:
@@ -345,19 +352,21 @@ class Evaluation:
         inner = RoutineScope(routine.unit, routine.node.name, self._outer(routine, scope))
         back = yield from self._bind(routine.node, arguments, node, scope, inner)
         self.depth += 1
+        result = None
         try:
             yield from self.body(routine, inner)
         except ControlFlow as leave:
             if leave.kind != "return":
                 raise
-            return leave.value
+            result = leave.value
+        else:
+            if isinstance(routine.node.value, dict) and routine.node.value["type"]:
+                raise self.error(node, scope, f"{routine.node.name} ended without RETURN, and has no value")
         finally:
             self.depth -= 1
-        if isinstance(routine.node.value, dict) and routine.node.value["type"]:
-            raise self.error(node, scope, f"{routine.node.name} ended without RETURN, and has no value")
         for target, name in back:
             yield from self.store(target, inner.names[name].value, scope)
-        return None
+        return result
 
     def body(self, routine: Routine, inner: RoutineScope) -> Steps:
         """Carry out the body of a routine."""
@@ -365,12 +374,8 @@ class Evaluation:
         yield from self.run(routine.node.bodies[0], inner)
 
     def _outer(self, routine: Routine, scope: RoutineScope) -> RoutineScope | None:
-        inner: RoutineScope | None = scope
-        while inner is not None:
-            if inner.routines.get(routine.node.name) is routine:
-                return inner
-            inner = inner.outer
-        return None
+        found = (inner for inner in scope.chain() if inner.routines.get(routine.node.name) is routine)
+        return next(found, None)
 
     def _bind(
         self,
@@ -424,18 +429,14 @@ class Evaluation:
         self,
         node: ProgramNode,
         scope: RoutineScope,
-        motion: tuple[str, tuple[Any, ...], float],
+        motion: ArmMotion,
         watch: Callable[[], None] | None = None,
     ) -> Steps:
         """Carry out a motion; ``watch`` is called in each of its ticks."""
         yield TaskOperation("move", self.site(node, scope), motion=motion, watch=watch)
 
     def until(
-        self,
-        node: ProgramNode,
-        scope: RoutineScope,
-        holds: Callable[[], Steps],
-        seconds: float = 0.0,
+        self, node: ProgramNode, scope: RoutineScope, holds: Callable[[], Steps], seconds: float = 0.0
     ) -> Steps:
         """Wait until a condition holds; returns whether it does, or the seconds (if any) are over."""
         began = self.station.time

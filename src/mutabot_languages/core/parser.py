@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -61,6 +62,10 @@ class StatementParser:
         unary: the binding of its unary ones.
         keywords: words of the language, which reports mark.
         terminators: words that end the block around a statement that cannot be read.
+        ends_with_line: whether a statement does.
+        openers: words that stand between the beginning of a block and its statements.
+        brackets: what an index stands in.
+        callable: kinds of expressions that parentheses behind them call.
     """
 
     lexis: ClassVar[Lexis]
@@ -69,6 +74,9 @@ class StatementParser:
     keywords: ClassVar[frozenset[str]] = frozenset()
     terminators: ClassVar[frozenset[str]] = frozenset()
     ends_with_line: ClassVar[bool] = True
+    openers: ClassVar[Mapping[str, str]] = {}
+    brackets: ClassVar[tuple[str, str]] = ("[", "]")
+    callable: ClassVar[frozenset[str]] = frozenset({"name"})
 
     def __init__(self, source: SourceText) -> None:
         self.source = source
@@ -93,6 +101,15 @@ class StatementParser:
 
     # what a language says
 
+    @contextmanager
+    def inside(self, what: str) -> Iterator[None]:
+        """Let diagnostics name what is being read, such as ``PROC main``."""
+        outer, self.within = self.within, what
+        try:
+            yield
+        finally:
+            self.within = outer
+
     def statement(self) -> ProgramNode | None:
         """Read a statement; None for an empty one. Raises Unexpected."""
         raise NotImplementedError
@@ -100,6 +117,22 @@ class StatementParser:
     def primary(self) -> ProgramNode:
         """Read an expression without operators. Raises Unexpected."""
         raise NotImplementedError
+
+    def argument(self) -> ProgramNode:
+        """Read an argument of a call. Raises Unexpected."""
+        return self.expression()
+
+    def arguments(self) -> list[ProgramNode]:
+        """Read the arguments of a call, behind its opening parenthesis. Raises Unexpected."""
+        return self.sequence(")", self.argument)
+
+    def index(self) -> ProgramNode:
+        """Read an index. Raises Unexpected."""
+        return self.expression()
+
+    def number_of(self, word: str) -> int | float:
+        """The value of a number as it is written."""
+        return int(word) if word.isdecimal() else float(word)
 
     # blocks and recovery
 
@@ -218,7 +251,103 @@ class StatementParser:
         """A node from an offset to the end of the last token that was read."""
         return ProgramNode(kind, name, start, self.ends[self.at - 1], parts, bodies, value)
 
+    # statements that languages have in common, behind their first word
+
+    def opened(self, word: str) -> None:
+        """Read what stands between the beginning of a block and its statements. Raises Unexpected."""
+        if word in self.openers:
+            self.expect(self.openers[word])
+
+    def branches(self, start: int, first: ProgramNode, closes: str, other: str = "else") -> ProgramNode:
+        """Read the blocks of IF behind its first condition, and a word for others. Raises Unexpected."""
+        until = frozenset({other, "else", closes})
+        conditions, bodies = [first], [self.block(until)]
+        while other != "else" and self.accept(other):
+            conditions.append(self.expression())
+            self.opened("if")
+            bodies.append(self.block(until))
+        if self.accept("else"):
+            self.opened("else")
+            bodies.append(self.block(until))
+        self.close(closes, start)
+        return self.node("if", "", start, conditions, bodies)
+
+    def while_loop(self, start: int, closes: str) -> ProgramNode:
+        """Read a loop with a condition. Raises Unexpected."""
+        condition = self.expression()
+        self.opened("while")
+        body = self.block(frozenset({closes}))
+        self.close(closes, start)
+        return self.node("while", "", start, [condition], [body])
+
+    def for_loop(self, start: int, begins: str, value: object = None) -> ProgramNode:
+        """Read a loop with a counter, and a word or sign before its first value. Raises Unexpected."""
+        name = self.identifier("a counter")
+        self.expect(begins)
+        parts = [self.expression()]
+        self.expect("to")
+        parts.append(self.expression())
+        if self.accept("step"):
+            parts.append(self.expression())
+        self.opened("for")
+        body = self.block(frozenset({"endfor"}))
+        self.close("endfor", start)
+        return self.node("for", name, start, parts, [body], value=value)
+
+    def word(self, start: int, kind: str = "") -> ProgramNode:
+        """Read a statement that is a word alone, and of that kind by default."""
+        word = self.words[self.at - 1]
+        return self.node(kind or word, word, start)
+
+    def leave(self, start: int, kind: str = "return") -> ProgramNode:
+        """Read a word, such as RETURN, and the value behind it, if there is one. Raises Unexpected."""
+        word = self.words[self.at]
+        is_over = self.kinds[self.at] in ("newline", "end") or word == ";" or word in self.terminators
+        return self.node(kind, "", start, [] if is_over else [self.expression()])
+
+    def jump(self, start: int) -> ProgramNode:
+        """Read GOTO and its label. Raises Unexpected."""
+        return self.node("goto", self.identifier("a label"), start)
+
     # expressions
+
+    def literal(self) -> ProgramNode | None:
+        """Read a number, a text, or what stands in parentheses; None if none is next. Raises Unexpected."""
+        kind, word, start = self.kinds[self.at], self.words[self.at], self.starts[self.at]
+        if kind == "number":
+            self.at += 1
+            return ProgramNode("number", word, start, self.ends[self.at - 1], value=self.number_of(word))
+        if kind == "text":
+            self.at += 1
+            return self.node(
+                "text", word, start, value=self.source.text[start + 1 : self.ends[self.at - 1] - 1]
+            )
+        if word != "(":
+            return None
+        self.at += 1
+        inner = self.expression()
+        self.expect(")")
+        return self.after(self.node("group", "", start, [inner]), start)
+
+    def after(self, found: ProgramNode, start: int) -> ProgramNode:
+        """Read calls, indexes and components behind an expression. Raises Unexpected."""
+        opens, closes = self.brackets
+        while self.kinds[self.at] == "sign":
+            word = self.words[self.at]
+            if word == "(" and found.kind in self.callable:
+                self.at += 1
+                kind = "method" if found.kind == "field" else "call"
+                found = self.node(kind, found.name, start, [*found.parts, *self.arguments()])
+            elif word == opens:
+                self.at += 1
+                indexes = self.sequence(closes, self.index)
+                found = self.node("index", "", start, [found, *indexes]) if indexes else found
+            elif word == "." and self.kinds[self.at + 1] == "name":
+                self.at += 2
+                found = self.node("field", self.words[self.at - 1], start, [found])
+            else:
+                break
+        return found
 
     def expression(self, least: int = 1) -> ProgramNode:
         """Read an expression whose operators bind at least so tightly. Raises Unexpected."""

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable, Generator, Mapping
+from collections.abc import Callable, Generator, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from .station import ProgramPlace
+from .station import ArmMotion, ProgramPlace
 from .text import SourceText
 from .tree import ProgramNode
 
@@ -19,14 +19,14 @@ class TaskOperation:
     Attributes:
         kind: ``move`` or ``wait``.
         site: the part of the program.
-        motion: of a motion: the arm's method, its arguments and a part of its speed.
+        motion: of a motion.
         seconds: of a wait.
         watch: of a motion: called in each of its ticks.
     """
 
     kind: str
     site: ProgramPlace
-    motion: tuple[str, tuple[Any, ...], float] | None = None
+    motion: ArmMotion | None = None
     seconds: float = 0.0
     watch: Callable[[], None] | None = None
 
@@ -110,6 +110,12 @@ class RoutineScope:
         self.routines: dict[str, Routine] = {}
         self.retry = 0
 
+    def chain(self) -> Iterator[RoutineScope]:
+        """This and those around it."""
+        yield self
+        if self.outer is not None:
+            yield from self.outer.chain()
+
 
 class ControlFlow(Exception):  # noqa: N818  (never leaves the machine)
     """Ends a loop, a routine or the program."""
@@ -125,3 +131,4 @@ class ProgramRaised(Exception):  # noqa: N818  (as above)
     def __init__(self, number: Any, text: str) -> None:
         super().__init__(text)
         self.number = number
+        self.handled: RoutineScope | None = None  # whose handler has raised it, for the caller

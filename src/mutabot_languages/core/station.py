@@ -19,6 +19,8 @@ from .signals import CellMap, InputReader, signal_name
 
 T = TypeVar("T")
 TICK = 0.01
+#: a motion: the method of the cell's arm, its arguments, and a part of its speed
+ArmMotion = tuple[str, tuple[Any, ...], float]
 #: segments of a full circle
 _SEGMENTS = 48
 
@@ -54,18 +56,12 @@ class Station:
 
     Attributes:
         tool: the program's tool on its flange.
-        base: the frame that targets are given in.
         errors: those of the cell, which are no errors of a program.
         outputs: the last value of each output.
         notes: what was accepted without an effect, each once.
     """
 
-    def __init__(
-        self,
-        cell: Any,
-        signals: CellMap,
-        inputs: Mapping[str, Any],
-    ) -> None:
+    def __init__(self, cell: Any, signals: CellMap, inputs: Mapping[str, Any]) -> None:
         self.cell = cell
         package = sys.modules[type(cell).__module__.partition(".")[0]]
         self.errors: tuple[type[Exception], ...] = getattr(package, "CellError", ())
@@ -77,7 +73,6 @@ class Station:
         system = next(iter(cell.robots.values()))
         self.model: Any = system.robot.model
         self.tool = IDENTITY
-        self.base = IDENTITY
         self.outputs: dict[str, Any] = {}
         self.notes: dict[str, None] = {}
 
@@ -154,18 +149,18 @@ class Station:
 
     # motions: each returns the function of the cell and its arguments
 
-    def line(self, target: Frame, speed: float) -> tuple[str, tuple[Any, ...], float]:
+    def line(self, target: Frame, speed: float) -> ArmMotion:
         """A straight motion of the tool point to a pose, at a speed in m/s."""
         at = self.to_cell(target)
         z, y, x = at.euler()
         pose = self._pose_type(*at.position, x, y, z)
         return "move_to", (pose,), _part(speed / self.model.tool_limits.speed)
 
-    def joint_move(self, angles: list[float], part: float) -> tuple[str, tuple[Any, ...], float]:
+    def joint_move(self, angles: list[float], part: float) -> ArmMotion:
         """A motion of all joints to angles in degrees, at a part of their speed."""
         return "move_joints", (tuple(self._all_joints(angles)),), _part(part)
 
-    def joint_move_to(self, target: Frame, part: float) -> tuple[str, tuple[Any, ...], float]:
+    def joint_move_to(self, target: Frame, part: float) -> ArmMotion:
         """A motion of all joints to a pose, at a part of their speed.
 
         Where no joint angles reach it, a straight one, whose refusal the cell words: a refusal is a call's.
@@ -181,9 +176,7 @@ class Station:
         now = [math.degrees(angle) for angle in self.cell.arm.setpoint]
         return [*angles, *now[len(angles) :]][: self.joints]
 
-    def arc(
-        self, start: Frame, via: Frame, end: Frame, speed: float
-    ) -> list[tuple[str, tuple[Any, ...], float]]:
+    def arc(self, start: Frame, via: Frame, end: Frame, speed: float) -> list[ArmMotion]:
         """A circular motion through ``via``, in short straight ones."""
         return [self.line(point, speed) for point in arc_points(start, via, end)]
 

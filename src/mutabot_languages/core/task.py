@@ -54,7 +54,7 @@ class ProgramTask(Evaluation):
             if handler is not None:
                 yield from handler(self, node, scope)
             else:
-                yield from self.value(node, scope)
+                yield from self.call(node, scope) if node.kind == "call" else self.value(node, scope)
         except (TypeError, ValueError, ZeroDivisionError, OverflowError) as error:
             if isinstance(error, self.station.errors):
                 raise
@@ -67,8 +67,12 @@ class ProgramTask(Evaluation):
 
     def _assign(self, node: ProgramNode, scope: RoutineScope) -> Steps:
         target, value = node.parts
-        found = yield from self.value(value, scope)
-        yield from self.store(target, found, scope, node.name)
+        yield from self.store(target, (yield from self._result(value, scope)), scope, node.name)
+
+    def _result(self, node: ProgramNode, scope: RoutineScope) -> Steps:
+        """The value of an expression that is assigned or returned."""
+        may_be_none = node.kind == "call" and self.dialect.has_none
+        return (yield from (self.call if may_be_none else self.value)(node, scope))
 
     def store(self, target: ProgramNode, value: Any, scope: RoutineScope, how: str = "") -> Steps:
         """Give a variable, a component or an element a value."""
@@ -199,7 +203,7 @@ class ProgramTask(Evaluation):
                 raise
 
     def _return(self, node: ProgramNode, scope: RoutineScope) -> Steps:
-        raise ControlFlow("return", (yield from self.value(node.parts[0], scope)) if node.parts else None)
+        raise ControlFlow("return", (yield from self._result(node.parts[0], scope)) if node.parts else None)
 
     def _leave(self, node: ProgramNode, scope: RoutineScope) -> Steps:
         raise ControlFlow(node.kind, node.name)
@@ -294,6 +298,17 @@ _STATEMENTS: dict[str, Callable[[ProgramTask, ProgramNode, RoutineScope], Steps]
     "label": ProgramTask._nothing,
     "opaque": ProgramTask._opaque,
 }
+
+
+def pause(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    """What an instruction means that waits for the seconds of its last argument."""
+    values, _ = yield from task.arguments(node, scope)
+    yield from task.wait(node, scope, float(values[-1]) if values else 0.0)
+
+
+def end_program(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
+    """What an instruction means that ends the program."""
+    raise ControlFlow("exit")
 
 
 def of_values(function: Callable[..., Any]) -> Callable[..., Steps]:

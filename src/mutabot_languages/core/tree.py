@@ -51,6 +51,16 @@ class ProgramNode:
         self.bodies: Sequence[list[ProgramNode]] = bodies if bodies is not None else ()
         self.value = value
 
+    @property
+    def plain(self) -> list[ProgramNode]:
+        """The parts that are no options, in their order."""
+        return [part for part in self.parts if part.kind != "option"]
+
+    @property
+    def options(self) -> dict[str, ProgramNode]:
+        """The options among the parts, by their names."""
+        return {part.name: part for part in self.parts if part.kind == "option"}
+
     def walk(self) -> Iterator[ProgramNode]:
         """This node and all below it, in the order of the text as far as it is one."""
         waiting = [self]

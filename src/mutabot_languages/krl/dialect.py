@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Callable, Mapping
 from typing import Any, ClassVar
 
 from mutabot_languages.core.frames import Frame
@@ -32,10 +31,6 @@ class KrlDialect(Dialect):
 
     first: ClassVar = 1
 
-    def __init__(self, functions: Mapping[str, Callable[..., Any]], ignored: frozenset[str]) -> None:
-        self.functions = functions
-        self.ignored = ignored
-
     def declare(self, task: Evaluation, node: ProgramNode, scope: RoutineScope, *, is_global: bool) -> Steps:
         """Make the variable of a declaration; in a data file it keeps its value."""
         type = node.value["type"]
@@ -57,8 +52,7 @@ class KrlDialect(Dialect):
 
     def name(self, task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Any:
         """A system variable, or a signal."""
-        machine = task.machine
-        assert isinstance(machine, KrlMachine)
+        machine = machine_of(task)
         name = node.name
         if name in machine.signals:
             found = machine.signals[name]
@@ -146,6 +140,12 @@ class KrlMachine(Machine):
         self.triggers: list[tuple[ProgramNode, RoutineScope]] = []
 
 
+def machine_of(task: Evaluation) -> KrlMachine:
+    """The run that a task belongs to."""
+    assert isinstance(task.machine, KrlMachine)
+    return task.machine
+
+
 def beginning(type: str, sizes: list[int]) -> Any:
     """The value that a variable of a type begins with."""
     if sizes and type != "char":
@@ -193,12 +193,16 @@ def _calculated(operator: str, left: Any, right: Any) -> Any:
     return int(value) if operator == "/" and are_whole else value
 
 
-def _element(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
-    machine = task.machine
-    assert isinstance(machine, KrlMachine)
-    name = node.parts[0].name
+def _indexed(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
+    """The indexes of an element of a system variable, and its name."""
     indexes = [int(index) for index in (yield from task.values(node.parts[1:], scope))]
-    signal = f"{name}[{','.join(map(str, indexes))}]"
+    return indexes, f"{node.parts[0].name}[{','.join(map(str, indexes))}]"
+
+
+def _element(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
+    machine = machine_of(task)
+    name = node.parts[0].name
+    indexes, signal = yield from _indexed(task, node, scope)
     if name in ("$in", "$anin", "$digin", "$sen_pint"):
         return task.station.read(task.site(node, scope), signal)
     if name in ("$out", "$anout"):
@@ -223,8 +227,7 @@ def assign_system(task: Evaluation, target: ProgramNode, value: Any, scope: Rout
     while base.kind in ("index", "field"):
         base = base.parts[0]
     name = base.name
-    machine = task.machine
-    assert isinstance(machine, KrlMachine)
+    machine = machine_of(task)
     found = task.find(name, scope)
     if found is not None and isinstance(found.value, str) and target.kind == "index":
         found.value = value  # texts are kept whole
@@ -265,11 +268,9 @@ def _write(task: Evaluation, node: ProgramNode, scope: RoutineScope, signal: str
 
 
 def _set_element(task: Evaluation, target: ProgramNode, value: Any, scope: RoutineScope) -> Steps:
-    machine = task.machine
-    assert isinstance(machine, KrlMachine)
+    machine = machine_of(task)
     name = target.parts[0].name
-    indexes = [int(index) for index in (yield from task.values(target.parts[1:], scope))]
-    signal = f"{name}[{','.join(map(str, indexes))}]"
+    indexes, signal = yield from _indexed(task, target, scope)
     if name in ("$out", "$anout"):
         _write(task, target, scope, signal, value)
         return
@@ -282,8 +283,7 @@ def _set_element(task: Evaluation, target: ProgramNode, value: Any, scope: Routi
 
 
 def _set_component(task: Evaluation, target: ProgramNode, value: Any, scope: RoutineScope) -> Steps | None:
-    machine = task.machine
-    assert isinstance(machine, KrlMachine)
+    machine = machine_of(task)
     owner = target.parts[0]
     if owner.kind != "name":
         if owner.kind == "index" and owner.parts[0].kind == "name":
@@ -303,10 +303,6 @@ def _set_component(task: Evaluation, target: ProgramNode, value: Any, scope: Rou
 
 
 def _set_indexed_component(task: Evaluation, target: ProgramNode, value: Any, scope: RoutineScope) -> Steps:
-    machine = task.machine
-    assert isinstance(machine, KrlMachine)
-    owner = target.parts[0]
-    indexes = [int(index) for index in (yield from task.values(owner.parts[1:], scope))]
-    signal = f"{owner.parts[0].name}[{','.join(map(str, indexes))}]"
-    record = machine.system.setdefault(signal, of_frame(Frame(), "frame"))
+    _, signal = yield from _indexed(task, target.parts[0], scope)
+    record = machine_of(task).system.setdefault(signal, of_frame(Frame(), "frame"))
     record[target.name] = value

@@ -10,13 +10,13 @@ from typing import Any
 from mutabot_languages.core.frames import Frame
 from mutabot_languages.core.interrupts import HANDLERS, Interrupt
 from mutabot_languages.core.names import name_set
-from mutabot_languages.core.scope import ControlFlow, RoutineScope, Steps, Structure
+from mutabot_languages.core.scope import RoutineScope, Steps, Structure
 from mutabot_languages.core.station import ProgramPlace
-from mutabot_languages.core.task import OF_DEGREES, ProgramTask, of_values
+from mutabot_languages.core.task import OF_DEGREES, ProgramTask, end_program, of_values, pause
 from mutabot_languages.core.tree import ProgramNode
 from mutabot_languages.errors import UnreachableError
 
-from .dialect import KrlMachine, frame_of, of_axes, of_frame, set_frame
+from .dialect import frame_of, machine_of, of_axes, of_frame, set_frame
 
 #: what has no effect in the cell, and is noted
 IGNORED = name_set(
@@ -30,13 +30,6 @@ IGNORED = name_set(
 #: what INVERSE says where no axes reach a position: anything but 0 is an error
 _NO_AXES = 3
 _AXES = ("a1", "a2", "a3", "a4", "a5", "a6", "e1")
-
-
-def machine_of(task: ProgramTask) -> KrlMachine:
-    """The run that a task belongs to."""
-    machine = task.machine
-    assert isinstance(machine, KrlMachine)
-    return machine
 
 
 def _angles(task: ProgramTask, value: Any) -> list[float]:
@@ -64,8 +57,8 @@ def _move(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
     """PTP, LIN, CIRC, their splines, and all of them relative."""
     yield from _with(task, node, scope)
     machine, station, site = machine_of(task), task.station, task.site(node, scope)
-    targets = yield from task.values([part for part in node.parts if part.kind != "option"], scope)
-    options = {part.name: part for part in node.parts if part.kind == "option"}
+    targets = yield from task.values(node.plain, scope)
+    options = node.options
     name = node.name
     kind = name.removesuffix("_rel").lstrip("s") if name not in ("spl", "spl_rel") else "lin"
     kind = "ptp" if kind in ("tp", "async_ptp") else kind
@@ -131,10 +124,6 @@ def _fire(task: ProgramTask) -> Steps:
         yield from task.statement(action, scope)
 
 
-def _wait_seconds(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-    yield from task.wait(node, scope, float((yield from task.value(node.parts[0], scope))))
-
-
 def _wait_for(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
     yield from task.until(node, scope, lambda: task.value(node.parts[0], scope))
 
@@ -171,14 +160,14 @@ def _interrupt(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Ste
     for interrupt in chosen:
         interrupt.is_awake = node.name in ("interrupt on", "interrupt enable")
     if is_inert or not chosen:
-        task.station.note(f"{node.name} at line {scope.unit.source.line_of(node.start)} has no effect here")
+        task.note_without_effect(node, scope)
 
 
 def _stop(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> None:
     """BRAKE and RESUME of an interrupt's routine are not carried out; elsewhere they have no effect."""
     if task.name == HANDLERS:
         raise task.unsupported(node, scope, node.name.upper())
-    task.station.note(f"{node.name} at line {scope.unit.source.line_of(node.start)} has no effect here")
+    task.note_without_effect(node, scope)
 
 
 def _bas(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
@@ -256,15 +245,11 @@ def _inverse_position(value: Any) -> Structure:
     return of_frame(frame_of(value).inverse(), "frame")
 
 
-def _end(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> None:
-    raise ControlFlow("exit")
-
-
 _MOVES = """ptp lin circ ptp_rel lin_rel circ_rel sptp slin scirc spl sptp_rel slin_rel scirc_rel spl_rel"""
 
 FUNCTIONS: dict[str, Callable[..., Any]] = {
-    **dict.fromkeys(_MOVES.split(), _move), "wait sec": _wait_seconds, "wait for": _wait_for, "halt": _halt,
-    "brake": _stop, "resume": _stop, "pulse": _pulse, "trigger": _trigger, "bas": _bas, "cancel": _end,
+    **dict.fromkeys(_MOVES.split(), _move), "wait sec": pause, "wait for": _wait_for, "halt": _halt,
+    "brake": _stop, "resume": _stop, "pulse": _pulse, "trigger": _trigger, "bas": _bas, "cancel": end_program,
     **dict.fromkeys(
         ("interrupt decl", "interrupt on", "interrupt off", "interrupt enable", "interrupt disable"),
         _interrupt

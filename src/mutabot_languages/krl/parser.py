@@ -46,6 +46,7 @@ class KrlParser(StatementParser):
         "<=": 5, ">=": 5, "+": 6, "-": 6, "*": 7, "/": 7, ":": 8,
     }  # fmt: skip
     unary: ClassVar = {"not": 4, "b_not": 4, "-": 9, "+": 9}
+    openers: ClassVar = {"if": "then"}
     keywords: ClassVar = RESERVED | MOTIONS | {"true", "false"}
     terminators: ClassVar = name_set(
         """end endfct enddat endif else endfor endwhile until endloop case default endswitch endspline def
@@ -65,7 +66,11 @@ class KrlParser(StatementParser):
             is_blank = self.at < 2 or self.kinds[self.at - 2] == "newline"
             return self.node("empty", "", start) if is_blank else None
         reader = _READERS.get(word) if kind == "name" else None
-        found = reader(self, start) if reader is not None and not self._is_assigned() else self._simple(start)
+        if reader is None or self._is_assigned():
+            found = self._simple(start)
+        else:
+            self.at += 1
+            found = reader(self, start)
         self._end_of_line()
         return found
 
@@ -79,25 +84,24 @@ class KrlParser(StatementParser):
     # routines and declarations
 
     def _global(self, start: int) -> ProgramNode:
-        self.at += 1
         word = self.words[self.at]
         if word in ("def", "deffct"):
+            self.at += 1
             return self._routine(start, scope="global")
-        if word in _READERS and word in ("interrupt", "decl", "struc", "enum", "signal", "const"):
+        if word in ("interrupt", "decl", "struc", "enum", "signal", "const"):
+            self.at += 1
             return _READERS[word](self, start)
         return self._declaration(start)
 
     def _routine(self, start: int, scope: str = "") -> ProgramNode:
-        kind = self.words[self.at]
-        self.at += 1
+        kind = self.words[self.at - 1]
         type = ""
         if kind == "deffct":
             type = self.identifier("the type of a function")
             if self.accept("["):
-                self.sequence("]", self._size)
+                self.sequence("]", self.index)
         name = self.identifier("the name of a routine")
-        outer, self.within = self.within, f"{kind.upper()} {name}"
-        try:
+        with self.inside(f"{kind.upper()} {name}"):
             parameters: list[ProgramNode] = []
             if kind == "defdat":
                 self.accept("public")
@@ -105,8 +109,6 @@ class KrlParser(StatementParser):
                 parameters = self.sequence(")", self._parameter)
             body = self.block(frozenset({_ENDS[kind]}))
             self.close(_ENDS[kind], start)
-        finally:
-            self.within = outer
         if kind == "defdat":
             return self.node("module", name, start, bodies=[body], value="data")
         value = {"kind": kind, "type": type, "scope": scope}
@@ -116,35 +118,33 @@ class KrlParser(StatementParser):
         start = self.starts[self.at]
         name = self.identifier("a parameter")
         if self.accept("["):
-            self.sequence("]", self._size)
+            self.sequence("]", self.index)
         mode = "out"
         if self.accept(":"):
             mode = self.identifier("IN or OUT")
         return self.node("parameter", name, start, value={"mode": mode, "type": "", "optional": False})
 
-    def _size(self) -> ProgramNode:
+    def index(self) -> ProgramNode:
+        """Read an index or a size, which may be left out."""
         if self.words[self.at] in (",", "]"):
             return self.node("omitted", "", self.starts[self.at])
         return self.expression()
-
-    def _decl(self, start: int) -> ProgramNode:
-        self.at += 1
-        return self._declaration(start)
 
     def _declaration(self, start: int) -> ProgramNode:
         """DECL TYPE name[2]=value, name …, or the words before it."""
         while self.words[self.at] in ("global", "const", "decl", "public"):
             self.at += 1
         if self.words[self.at] in ("struc", "enum", "signal"):
-            return _READERS[self.words[self.at]](self, start)
+            self.at += 1
+            return _READERS[self.words[self.at - 1]](self, start)
         type = self.identifier("a type")
         if self.accept("["):
-            self.sequence("]", self._size)
+            self.sequence("]", self.index)
         found: list[ProgramNode] = []
         while True:
             at = self.starts[self.at]
             name = self.identifier("the name of a variable")
-            sizes = self.sequence("]", self._size) if self.accept("[") else []
+            sizes = self.sequence("]", self.index) if self.accept("[") else []
             initial = [self.expression()] if self.accept("=") else []
             found.append(self.node("declare", name, at, initial, value={"type": type, "sizes": sizes}))
             if not self.accept(","):
@@ -155,7 +155,6 @@ class KrlParser(StatementParser):
         return self.node("declarations", type, start, bodies=[found])
 
     def _struc(self, start: int) -> ProgramNode:
-        self.at += 1
         name = self.identifier("the name of a structure")
         components: list[tuple[str, str]] = []
         type = ""
@@ -165,21 +164,19 @@ class KrlParser(StatementParser):
                 type = word
                 word = self.identifier()
             if self.accept("["):
-                self.sequence("]", self._size)
+                self.sequence("]", self.index)
             components.append((word, type))
             if not self.accept(","):
                 break
         return self.node("record", name, start, value=components)
 
     def _enum(self, start: int) -> ProgramNode:
-        self.at += 1
         name = self.identifier("the name of an enumeration")
         while self.kinds[self.at] == "name" or self.words[self.at] == ",":
             self.at += 1
         return self.node("record", name, start, value=[])
 
     def _signal(self, start: int) -> ProgramNode:
-        self.at += 1
         name = self.identifier("the name of a signal")
         parts = [self.primary()]
         if self.accept("to"):
@@ -188,7 +185,7 @@ class KrlParser(StatementParser):
 
     def _to_line_end(self, start: int) -> ProgramNode:
         """What is read and has no meaning here: EXT, IMPORT."""
-        word = self.words[self.at]
+        word = self.words[self.at - 1]
         while self.kinds[self.at] not in ("newline", "end"):
             self.at += 1
         return self.node("record", word, start, value=[])
@@ -196,49 +193,21 @@ class KrlParser(StatementParser):
     # statements
 
     def _if(self, start: int) -> ProgramNode:
-        self.at += 1
         condition = self.expression()
-        self.expect("then")
-        bodies = [self.block(frozenset({"else", "endif"}))]
-        if self.accept("else"):
-            bodies.append(self.block(frozenset({"endif"})))
-        self.close("endif", start)
-        return self.node("if", "", start, [condition], bodies)
-
-    def _for(self, start: int) -> ProgramNode:
-        self.at += 1
-        name = self.identifier("a counter")
-        self.expect("=")
-        parts = [self.expression()]
-        self.expect("to")
-        parts.append(self.expression())
-        if self.accept("step"):
-            parts.append(self.expression())
-        body = self.block(frozenset({"endfor"}))
-        self.close("endfor", start)
-        return self.node("for", name, start, parts, [body], 1)
-
-    def _while(self, start: int) -> ProgramNode:
-        self.at += 1
-        condition = self.expression()
-        body = self.block(frozenset({"endwhile"}))
-        self.close("endwhile", start)
-        return self.node("while", "", start, [condition], [body])
+        self.opened("if")
+        return self.branches(start, condition, "endif")
 
     def _repeat(self, start: int) -> ProgramNode:
-        self.at += 1
         body = self.block(frozenset({"until"}))
         self.expect("until")
         return self.node("repeat", "", start, [self.expression()], [body])
 
     def _loop(self, start: int) -> ProgramNode:
-        self.at += 1
         body = self.block(frozenset({"endloop"}))
         self.close("endloop", start)
         return self.node("loop", "", start, [], [body])
 
     def _switch(self, start: int) -> ProgramNode:
-        self.at += 1
         parts = [self.expression()]
         while self.kinds[self.at] == "newline":
             self.at += 1
@@ -246,29 +215,7 @@ class KrlParser(StatementParser):
         self.close("endswitch", start)
         return self.node("switch", "", start, parts, bodies, labels)
 
-    def _goto(self, start: int) -> ProgramNode:
-        self.at += 1
-        return self.node("goto", self.identifier("a label"), start)
-
-    def _return(self, start: int) -> ProgramNode:
-        self.at += 1
-        has_value = self.kinds[self.at] not in ("newline", "end")
-        return self.node("return", "", start, [self.expression()] if has_value else [])
-
-    def _exit(self, start: int) -> ProgramNode:
-        self.at += 1
-        return self.node("break", "exit", start)
-
-    def _halt(self, start: int) -> ProgramNode:
-        self.at += 1
-        return self.node("call", "halt", start)
-
-    def _continue(self, start: int) -> ProgramNode:
-        self.at += 1
-        return self.node("call", "continue", start)
-
     def _wait(self, start: int) -> ProgramNode:
-        self.at += 1
         word = self.words[self.at]
         if word not in ("sec", "for"):
             raise Unexpected("SEC or FOR")
@@ -276,7 +223,6 @@ class KrlParser(StatementParser):
         return self.node("call", f"wait {word}", start, [self.expression()])
 
     def _interrupt(self, start: int) -> ProgramNode:
-        self.at += 1
         if not self.accept("decl"):
             name = f"interrupt {self.identifier('ON, OFF, ENABLE or DISABLE')}"
             parts = [] if self.kinds[self.at] in ("newline", "end") else [self.expression()]
@@ -285,16 +231,10 @@ class KrlParser(StatementParser):
         self.expect("when")
         condition = self.expression()
         self.expect("do")
-        action = self._action()
+        action = self._simple(self.starts[self.at])
         return self.node("call", "interrupt decl", start, [number, condition], [[action]])
 
-    def _action(self) -> ProgramNode:
-        """What DO of an interrupt or a trigger does: a call, or an output that is set."""
-        start = self.starts[self.at]
-        return _READERS["pulse"](self, start) if self.words[self.at] == "pulse" else self._simple(start)
-
     def _trigger(self, start: int) -> ProgramNode:
-        self.at += 1
         self.expect("when")
         options: list[ProgramNode] = []
         while self.words[self.at] in ("distance", "path", "delay", "on_start", "onstart"):
@@ -303,7 +243,7 @@ class KrlParser(StatementParser):
             parts = [self.expression()] if self.accept("=") else []
             options.append(self.node("option", name, at, parts))
         self.expect("do")
-        action = self._action()
+        action = self._simple(self.starts[self.at])
         if self.kinds[self.at] == "name" and self.words[self.at] == "prio":
             self.at += 1
             self.expect("=")
@@ -311,8 +251,7 @@ class KrlParser(StatementParser):
         return self.node("call", "trigger", start, options, [[action]])
 
     def _spline(self, start: int) -> ProgramNode:
-        name = self.words[self.at]
-        self.at += 1
+        name = self.words[self.at - 1]
         options = self._after_target()
         body = self.block(frozenset({"endspline"}))
         self.close("endspline", start)
@@ -320,8 +259,7 @@ class KrlParser(StatementParser):
         return self.node("spline", name, start, options, [body])
 
     def _motion(self, start: int) -> ProgramNode:
-        word = self.words[self.at]
-        self.at += 1
+        word = self.words[self.at - 1]
         parts = [self.expression()]
         while self.accept(","):
             if self.words[self.at] == "ca":
@@ -364,6 +302,7 @@ class KrlParser(StatementParser):
             self.at += 2
             return self.node("label", word, start)
         if follows == ":" and word == "channel":
+            self.at += 1
             return self._to_line_end(start)
         if (self.kinds[self.at + 1] == "name" and not (word in _BARE and follows == "f")) or (
             word in TYPES and follows == "["
@@ -379,30 +318,21 @@ class KrlParser(StatementParser):
             return target
         raise Unexpected("'=' or '('")
 
-    def _argument(self) -> ProgramNode:
+    def argument(self) -> ProgramNode:
+        """Read an argument, which may be left out."""
         if self.words[self.at] in (",", ")"):
             return ProgramNode("omitted", "", self.starts[self.at], self.starts[self.at])
         return self.expression()
 
     def primary(self) -> ProgramNode:
         """Read a literal, a name, a call, or what stands in parentheses, with what follows it."""
+        found = self.literal()
+        if found is not None:
+            return found
         kind, word, start = self.kinds[self.at], self.words[self.at], self.starts[self.at]
-        if kind == "number":
-            self.at += 1
-            return self.node("number", word, start, value=_number(word))
-        if kind == "text":
-            self.at += 1
-            return self.node(
-                "text", word, start, value=self.source.text[start + 1 : self.ends[self.at - 1] - 1]
-            )
         if word == "#":
             self.at += 1
             return self.node("enum", self.identifier("a value of an enumeration"), start)
-        if word == "(":
-            self.at += 1
-            inner = self.expression()
-            self.expect(")")
-            return self._after(ProgramNode("group", "", start, self.ends[self.at - 1], [inner]), start)
         if word == "{":
             return self._aggregate(start)
         if word in ("!", "?"):  # an axis position that is to be taught
@@ -413,14 +343,7 @@ class KrlParser(StatementParser):
         self.at += 1
         if word in ("true", "false"):
             return self.node("constant", word, start, value=word == "true")
-        if self.words[self.at] == "(":
-            self.at += 1
-            arguments = [] if self.accept(")") else self._arguments()
-            return self._after(self.node("call", word, start, arguments), start)
-        return self._after(self.node("name", word, start), start)
-
-    def _arguments(self) -> list[ProgramNode]:
-        return self.sequence(")", self._argument)
+        return self.after(self.node("name", word, start), start)
 
     def _aggregate(self, start: int) -> ProgramNode:
         self.at += 1
@@ -435,42 +358,32 @@ class KrlParser(StatementParser):
         start = self.starts[self.at]
         name = self.identifier("a component")
         if self.accept("["):
-            self.sequence("]", self._size)
+            self.sequence("]", self.index)
         return self.node("pair", name, start, [self.expression()])
 
-    def _after(self, found: ProgramNode, start: int) -> ProgramNode:
-        while True:
-            if self.words[self.at] == "[" and self.kinds[self.at] == "sign":
-                self.at += 1
-                if self.accept("]"):  # the whole array
-                    continue
-                found = self.node("index", "", start, [found, *self.sequence("]", self._size)])
-            elif self.words[self.at] == "." and self.kinds[self.at + 1] == "name":
-                self.at += 2
-                found = self.node("field", self.words[self.at - 1], start, [found])
-            else:
-                return found
-
-
-def _number(word: str) -> int | float:
-    if word.startswith("'"):
-        return int(word[2:-1], 16 if word[1] in "hH" else 2)
-    return int(word) if word.isdecimal() else float(word)
+    def number_of(self, word: str) -> int | float:
+        """The value of a number, which may be of hexadecimal or binary digits."""
+        if word.startswith("'"):
+            return int(word[2:-1], 16 if word[1] in "hH" else 2)
+        return super().number_of(word)
 
 
 _READERS: dict[str, Callable[[KrlParser, int], ProgramNode]] = {
     "global": KrlParser._global, "def": KrlParser._routine, "deffct": KrlParser._routine,
-    "defdat": KrlParser._routine, "decl": KrlParser._decl, "const": KrlParser._declaration,
+    "defdat": KrlParser._routine, "decl": KrlParser._declaration, "const": KrlParser._declaration,
     "struc": KrlParser._struc, "enum": KrlParser._enum, "signal": KrlParser._signal,
     "ext": KrlParser._to_line_end, "extp": KrlParser._to_line_end, "extfctp": KrlParser._to_line_end,
     "extfct": KrlParser._to_line_end, "import": KrlParser._to_line_end,
-    "if": KrlParser._if, "for": KrlParser._for, "while": KrlParser._while, "repeat": KrlParser._repeat,
-    "loop": KrlParser._loop, "switch": KrlParser._switch, "goto": KrlParser._goto,
-    "return": KrlParser._return, "exit": KrlParser._exit, "halt": KrlParser._halt,
-    "continue": KrlParser._continue, "wait": KrlParser._wait, "interrupt": KrlParser._interrupt,
+    "if": KrlParser._if,
+    "for": lambda parser, start: parser.for_loop(start, "=", 1),
+    "while": lambda parser, start: parser.while_loop(start, "endwhile"), "repeat": KrlParser._repeat,
+    "loop": KrlParser._loop, "switch": KrlParser._switch, "goto": KrlParser.jump,
+    "return": KrlParser.leave, "exit": lambda parser, start: parser.word(start, "break"),
+    **dict.fromkeys(("halt", "continue"), lambda parser, start: parser.word(start, "call")),
+    "wait": KrlParser._wait, "interrupt": KrlParser._interrupt,
     "trigger": KrlParser._trigger, "spline": KrlParser._spline, "ptp_spline": KrlParser._spline,
     "cp_spline": KrlParser._spline,
-    "pulse": KrlParser._simple, **dict.fromkeys(MOTIONS, KrlParser._motion),
+    **dict.fromkeys(MOTIONS, KrlParser._motion),
 }  # fmt: skip
 
 

@@ -10,15 +10,9 @@ from typing import ClassVar
 from mutabot_languages.core.names import name_set
 from mutabot_languages.core.tree import ProgramNode
 from mutabot_languages.edits import Edit
+from mutabot_languages.mutation.conventional import Wording
 from mutabot_languages.mutation.differences import TextChange
-from mutabot_languages.mutation.rewriting import (
-    NO_BLENDING,
-    NO_CONFIGURATION,
-    ORDERS,
-    Rewriter,
-    named_number,
-    signed_number,
-)
+from mutabot_languages.mutation.rewriting import Rewriter, named_number, signed_number
 
 from .parser import MOTIONS
 
@@ -28,13 +22,22 @@ _OF_ROBOT = name_set("pulse trigger") | {"wait sec", "wait for"} | MOTIONS
 #: what inline forms write before a motion, and files of the maker
 _FORMS = name_set("$bwdstart pdat_act fdat_act ldat_act basisteck")
 _MAKERS = name_set("bas bas.src ir_stopm ir_stopm.src sps sps.sub h50 h70 a10 a20 msglib p00 userspot")
+_COORDINATE = re.compile(r"[xyzabc]|[ae][1-6]")
 _STALE = "the comment of its inline form is stale now"
 
 
 class KrlRewriter(Rewriter):
     """The rewriter of KRL."""
 
-    relations: ClassVar = {**ORDERS, "==": ("<>",), "<>": ("==",)}
+    wording: ClassVar = Wording(
+        ("==", "<>"), ("AND", "OR", "EXOR"), ("TRUE", "FALSE"), "NOT ({})", "ABS({})", "WAIT SEC 1/0",
+        bits=("B_AND", "B_OR", "B_EXOR"),
+    )  # fmt: skip
+    known_types: ClassVar = {
+        **dict.fromkeys(("$in", "$out", "$flag", "$cycflag"), "truth[]"),
+        **dict.fromkeys(("$anin", "$anout", "$timer"), "number[]"),
+        "$pos_act": "e6pos",
+    }
 
     @cached_property
     def _folds(self) -> list[tuple[int, int, str]]:
@@ -56,6 +59,17 @@ class KrlRewriter(Rewriter):
         """What signals stand for, such as ``$in``, by name."""
         signals = (node for node in self.all_nodes() if node.kind == "signal")
         return {node.name: self._base_name(node.parts[0]) for node in signals}
+
+    def note_type(self, node: ProgramNode) -> None:
+        """A signal has the type of what it stands for."""
+        if node.kind == "signal":
+            self.add_type(node.name, self.kind_of(node.parts[0]))
+        super().note_type(node)
+
+    def is_amount(self, node: ProgramNode, parents: tuple[ProgramNode, ...]) -> bool:
+        """Components that are no coordinates and no angles say which, such as ``S`` and ``T``."""
+        pairs = [outer.name for outer in parents if outer.kind == "pair"]
+        return all(_COORDINATE.fullmatch(name) for name in pairs[-1:])
 
     def _meant(self, node: ProgramNode) -> str:
         """The system variable that a node is of, or that its signal stands for."""
@@ -124,13 +138,13 @@ class KrlRewriter(Rewriter):
         written = self.text[node.start : node.start + len(node.name)]
         if node.name in _SWAPS and not self._is_axes(target):
             edits = [Edit(node.start, node.start + len(written), _SWAPS[node.name])]
-            chosen = (part for part in node.parts if part.kind == "option" and part.name in _APPROXIMATIONS)
+            chosen = (option for name, option in node.options.items() if name in _APPROXIMATIONS)
             edits += [Edit(option.start, option.end, _APPROXIMATIONS[option.name]) for option in chosen]
             note = _STALE if self._is_in_form(node) else ""
             yield TextChange("swap-motion", node, tuple(edits), note=note)
-        for option in node.parts:
-            if option.kind == "option" and option.name.startswith("c_"):
-                yield TextChange("change-blend", node, self.put(option, ""), reason=NO_BLENDING)
+        for option in node.options.values():
+            if option.name.startswith("c_"):
+                yield TextChange("change-blend", node, self.put(option, ""))
 
     def _is_in_form(self, node: ProgramNode) -> bool:
         return any(start <= node.start < end for start, end, _ in self._folds)
@@ -193,12 +207,12 @@ class KrlRewriter(Rewriter):
                 yield TextChange(operator, node, edits, note=_STALE)
 
     def _point(self, node: ProgramNode, literal: ProgramNode) -> Iterator[TextChange]:
-        yield from self.sized("shift-point", node, literal, self._literal, self.sizes.shifts, "mm", 0.001)
+        yield from self.sized("shift-point", node, literal, self._literal)
         for pair in literal.parts if literal.kind == "aggregate" else ():
             value = signed_number(pair.parts[0])
             if pair.name == "s" and value is not None:
                 edits = self.put(pair.parts[0], f"{int(value) ^ 1}")
-                yield TextChange("wrong-configuration", node, edits, reason=NO_CONFIGURATION)
+                yield TextChange("wrong-configuration", node, edits)
 
     @staticmethod
     def _pair(literal: ProgramNode, name: str) -> ProgramNode | None:
@@ -217,17 +231,14 @@ class KrlRewriter(Rewriter):
     def _is_axes(self, target: ProgramNode) -> bool:
         if target.kind == "aggregate":
             return any(part.name == "a1" for part in target.parts)
-        type = self.declared_types.get(target.name, "")
-        return type in ("e6axis", "axis") or target.name.startswith("$axis")
+        return self.kind_of(target) in ("e6axis", "axis") or target.name.startswith("$axis")
 
     def _is_position(self, target: ProgramNode) -> bool:
         if target.kind == "aggregate":
             return not self._is_axes(target) and self._pair(target, "x") is not None
         if target.kind == "binary":
             return target.name == ":"
-        return target.kind in ("name", "index") and (
-            self.declared_types.get(self._base_name(target)) in _POSITIONS or target.name == "$pos_act"
-        )
+        return self.kind_of(target) in _POSITIONS
 
     def shifted(self, target: ProgramNode, axis: int, metres: float) -> tuple[Edit, ...] | None:
         """A component of a literal, or a geometric operator behind the target."""

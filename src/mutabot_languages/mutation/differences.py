@@ -13,6 +13,10 @@ from mutabot_languages.edits import Edit, applied
 
 #: what stands where a statement is missing
 MISSING = ("", ";", "pass")
+_UNOBSERVABLE = {
+    "change-blend": "corners are not rounded here, so that it cannot be observed",
+    "wrong-configuration": "the arm takes the nearest configuration here, so that it cannot be observed",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +30,6 @@ class TextChange:
         variant: which of several of the operator here; with sizes, the direction alone.
         magnitude, unit: of a fault with sizes.
         note: what an engineer should know of the changed program.
-        reason: why it is left out; None if it is planted.
     """
 
     operator: str
@@ -36,7 +39,11 @@ class TextChange:
     magnitude: float | None = None
     unit: str | None = None
     note: str = ""
-    reason: str | None = None
+
+    @property
+    def reason(self) -> str | None:
+        """Why it is left out; None if it is planted."""
+        return _UNOBSERVABLE.get(self.operator)
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +67,7 @@ class ProgramFile:
     text: str
     parsed: ParsedFile
     others: list[ProgramFile] = field(default_factory=list)
+    _mistakes: dict[tuple[int, int], int] = field(default_factory=dict)
 
     def shown(self, difference: TextChange) -> str:
         """How the difference reads: ``Offs(p,0,0,100) → Offs(p,0,0,-100)``, the statement in short."""
@@ -71,12 +79,15 @@ class ProgramFile:
         return f"{before} → {after}"
 
     def _statement(self, difference: TextChange) -> tuple[str, str]:
-        start, end = difference.node.start, difference.node.end
-        for edit in difference.edits:
-            start, end = min(start, edit.start), max(end, edit.end)
+        starts = [difference.node.start, *(edit.start for edit in difference.edits)]
+        ends = [difference.node.end, *(edit.end for edit in difference.edits)]
+        before, after = self._part(min(starts), max(ends), difference)
+        return " ".join(before.split()), " ".join(after.split())
+
+    def _part(self, start: int, end: int, difference: TextChange) -> tuple[str, str]:
+        """A part of the text, as it is and as a mutant."""
         inside = [Edit(edit.start - start, edit.end - start, edit.text) for edit in difference.edits]
-        part = self.text[start:end]
-        return _line(part), _line(applied(part, inside))
+        return self.text[start:end], applied(self.text[start:end], inside)
 
     def changed(self, difference: TextChange) -> str:
         """The text of the file as a mutant."""
@@ -89,15 +100,12 @@ class ProgramFile:
 
     def is_sound(self, difference: TextChange) -> bool:
         """Whether the changed text differs and still reads as well as the original does."""
-        around = self._around(difference)
-        start, end = around
-        part = self.text[start:end]
-        inside = [Edit(edit.start - start, edit.end - start, edit.text) for edit in difference.edits]
-        changed = applied(part, inside)
-        if changed == part:
-            return False
-        before = self.language.read("", part).diagnostics
-        return len(self.language.read("", changed).diagnostics) <= len(before)
+        start, end = self._around(difference)
+        before, after = self._part(start, end, difference)
+        if (start, end) not in self._mistakes:
+            self._mistakes[start, end] = len(self.language.read("", before).diagnostics)
+        is_changed = before != after
+        return is_changed and len(self.language.read("", after).diagnostics) <= self._mistakes[start, end]
 
     def _around(self, difference: TextChange) -> tuple[int, int]:
         """The smallest routine, or statement of the file, that holds all edits."""
@@ -116,10 +124,6 @@ def outer_nodes(tree: ProgramNode) -> Iterator[ProgramNode]:
             yield from outer_nodes(node)
         else:
             yield node
-
-
-def _line(text: str) -> str:
-    return " ".join(text.split())
 
 
 def _shorter(before: str, after: str, most: int = 70) -> tuple[str, str]:

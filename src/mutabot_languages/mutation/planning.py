@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mutabot.api.faults import Site
-from mutabot_languages.core.language import site_text
+from mutabot_languages.core.language import Occurrences, occurrences_in
 from mutabot_languages.core.text import decode
 from mutabot_languages.core.tree import ProgramNode
 from mutabot_languages.registry import language_for, rewriter_of
@@ -56,7 +56,7 @@ def read_program(
 
 def mutants_of(program: ProgramFile, sizes: Sizes | None = None) -> Iterator[PlannedText]:
     """The mutants of a file, in the order of its text."""
-    occurrences = _occurrences(program)
+    occurrences = occurrences_in(program.parsed.tree, program.text)
     rewriter = rewriter_of(program.language)(program, sizes)
     made = sorted(rewriter.differences(), key=lambda change: (change.node.start, change.node.end))
     seen: set[tuple[str, tuple[object, ...]]] = set()
@@ -76,29 +76,7 @@ def planned_texts(root: Path, files: list[str]) -> Iterator[PlannedText]:
         yield from mutants_of(program)
 
 
-_NodeKey = tuple[int, int]
-
-
-def _occurrences(program: ProgramFile) -> dict[_NodeKey, tuple[str, str, int]]:
-    """Routine, text and number of each node among those with this text in this routine."""
-    counts: dict[tuple[str, str], int] = {}
-    found: dict[_NodeKey, tuple[str, str, int]] = {}
-    waiting: list[tuple[ProgramNode, str]] = [(program.parsed.tree, "<module>")]
-    while waiting:
-        node, routine = waiting.pop()
-        if (node.start, node.end) not in found:
-            text = site_text(node, program.text)
-            counts[routine, text] = counts.get((routine, text), 0) + 1
-            found[node.start, node.end] = routine, text, counts[routine, text]
-        inner = node.name if node.kind == "routine" else routine
-        below = [(part, routine) for part in node.parts] + [
-            (statement, inner) for body in node.bodies for statement in body
-        ]
-        waiting.extend(sorted(below, key=lambda place: place[0].start, reverse=True))
-    return found
-
-
-def _site(program: ProgramFile, node: ProgramNode, occurrences: dict[_NodeKey, tuple[str, str, int]]) -> Site:
+def _site(program: ProgramFile, node: ProgramNode, occurrences: Occurrences) -> Site:
     routine, text, number = occurrences[node.start, node.end]
     extent = program.parsed.source.extent(node.start, node.end)
     return Site.in_program(program.file, extent, routine, text, number)

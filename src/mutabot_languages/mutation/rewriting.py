@@ -2,24 +2,34 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import ClassVar
 
 from mutabot_languages.core.tree import ProgramNode
 from mutabot_languages.edits import Edit
 
+from .conventional import ConventionalOperators, Wording
 from .differences import ProgramFile, TextChange
 
 #: the usual magnitudes of a shifted point, mm, and of a turned one, degrees
 SHIFTS = (1.0, 5.0, 20.0, 50.0)
 TURNS = (2.0, 10.0, 45.0)
 AXES = ("x", "y", "z")
-#: what stands for a comparison by order, in all languages
-ORDERS = {"<": ("<=", ">="), "<=": ("<", ">"), ">": (">=", "<="), ">=": (">", "<")}
-NO_BLENDING = "corners are not rounded here, so that it cannot be observed"
-NO_CONFIGURATION = "the arm takes the nearest configuration here, so that it cannot be observed"
+#: what functions of all languages return
+_OF_NUMBERS = (
+    "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sqrt", "abs", "norm", "round", "trunc", "floor",
+    "ceil", "pow", "min", "max", "d2r", "r2d", "to_num", "length", "clkread", "distance",
+)  # fmt: skip
+_PLAIN_TYPES = {
+    "num": "number", "dnum": "number", "int": "number", "real": "number", "bool": "truth", "string": "text",
+    "char": "text",
+}  # fmt: skip
+_OF_TRUTH = frozenset(("<", "<=", ">", ">=", "=", "==", "<>", "!=", "and", "or", "xor", "exor", "not"))
+_COMPONENT = re.compile(r"[xyzabc]|[ae][1-6]|q[1-4]|rax_[1-6]|eax_[a-f]|cp")
+#: the edits that change a pose along or about an axis by an amount; None if nobody knows how
+_PoseChange = Callable[[ProgramNode, int, float], tuple[Edit, ...] | None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,42 +49,85 @@ class Rewriter:
     """Makes the differences of a file.
 
     Class attributes:
-        arithmetic, relations, logic: operators that stand for each other.
-        negation: how a condition is negated, around ``{}``.
+        wording: how the language writes what conventional operators put into a program.
         nothing: what stands for a statement that is missing.
         opposites: values of signals, in small letters, and their contraries.
-        ignores_case: whether operators may be written in capital letters.
+        known_types: of names that the language brings, as ``types`` has them.
+
+    Attributes:
+        types: by name, ``number``, ``truth``, ``text``, or the type that the program declares; with ``()`` of
+            what a function returns, with ``[]`` of an array of these; empty if there are several.
     """
 
-    arithmetic: ClassVar[tuple[str, ...]] = ("+", "-", "*", "/")
-    relations: ClassVar[Mapping[str, tuple[str, ...]]]
-    logic: ClassVar[Mapping[str, str]] = {"and": "OR", "or": "AND"}
-    negation: ClassVar[str] = "NOT ({})"
+    wording: ClassVar[Wording]
     nothing: ClassVar[str] = ""
     opposites: ClassVar[Mapping[str, str]] = {"true": "FALSE", "false": "TRUE"}
-    ignores_case: ClassVar[bool] = True
+    known_types: ClassVar[Mapping[str, str]] = {}
 
     def __init__(self, program: ProgramFile, sizes: Sizes | None = None) -> None:
         self.program, self.text = program, program.text
         self.sizes = sizes or Sizes()
+        self.types = {**{f"{name}()": "number" for name in _OF_NUMBERS}, **self.known_types}
+        for node in self.all_nodes():
+            self.note_type(node)
+
+    def note_type(self, node: ProgramNode) -> None:
+        """Note the type of what a node declares."""
+        if node.kind in ("declare", "parameter", "routine") and isinstance(node.value, dict):
+            type: str = node.value["type"]
+            suffix = "[]" if node.value.get("sizes") else ""
+            if type:
+                name = f"{node.name}()" if node.kind == "routine" else node.name
+                self.add_type(name, _PLAIN_TYPES.get(type, type) + suffix)
+        elif node.kind == "for":
+            self.add_type(node.name, "number")
+
+    def add_type(self, name: str, type: str) -> None:
+        """Add the type of a name; of two, none is known."""
+        self.types[name] = type if self.types.get(name, type) == type else ""
+
+    def kind_of(self, node: ProgramNode) -> str:
+        """The type of an expression, as ``types`` has it; empty if the program does not say."""
+        kind, name = node.kind, node.name
+        if kind in ("number", "text"):
+            return kind
+        if kind == "constant":
+            return "truth" if isinstance(node.value, bool) else ""
+        if kind == "group":
+            return self.kind_of(node.parts[0])
+        if kind in ("unary", "binary"):
+            if name in _OF_TRUTH:
+                return "truth"
+            kinds = {self.kind_of(part) for part in node.parts}
+            return kinds.pop() if len(kinds) == 1 else ""
+        if kind == "index":
+            of = self.kind_of(node.parts[0])
+            return "number" if of == "pose" else of.removesuffix("[]")
+        if kind == "field":
+            return "number" if _COMPONENT.fullmatch(name) else ""
+        return self.types.get(f"{name}()" if kind == "call" else name, "") if kind in ("name", "call") else ""
+
+    def has_value(self, name: str, node: ProgramNode) -> bool:
+        """Whether a variable that a routine names has a value at a node."""
+        return True
+
+    def is_amount(self, node: ProgramNode, parents: tuple[ProgramNode, ...]) -> bool:
+        """Whether a number says how much, how far or where, rather than which."""
+        return True
 
     def differences(self) -> Iterator[TextChange]:
         """All of the file, in the order of its text as far as that is one."""
+        conventional = ConventionalOperators(self, self.wording)
         for node, parents in self._nodes():
             if self.is_generated(node, parents):
                 continue
             yield from self.of_node(node, parents)
-            yield from self.conventional(node, parents)
+            yield from conventional.of_node(node, parents)
 
     def all_nodes(self) -> Iterator[ProgramNode]:
         """The nodes of all files of the program, this one's last."""
         for file in (*self.program.others, self.program):
             yield from file.parsed.tree.walk()
-
-    @cached_property
-    def declared_types(self) -> dict[str, str]:
-        """The types of all data that the program declares, by name."""
-        return {node.name: node.value["type"] for node in self.all_nodes() if node.kind == "declare"}
 
     def _nodes(self) -> Iterator[tuple[ProgramNode, tuple[ProgramNode, ...]]]:
         waiting: list[tuple[ProgramNode, tuple[ProgramNode, ...]]] = [(self.program.parsed.tree, ())]
@@ -128,27 +181,22 @@ class Rewriter:
         return (Edit(node.start, node.end, self.nothing),)
 
     def sized(
-        self,
-        operator: str,
-        node: ProgramNode,
-        subject: ProgramNode,
-        change: Callable[[ProgramNode, int, float], tuple[Edit, ...] | None],
-        sizes: Sequence[float],
-        unit: str,
-        factor: float,
+        self, operator: str, node: ProgramNode, subject: ProgramNode, change: _PoseChange
     ) -> Iterator[TextChange]:
-        """A fault with sizes, along each axis, both ways."""
+        """A fault with sizes, along or about each axis, both ways."""
+        is_turn = operator == "turn-target"
+        sizes, unit = (self.sizes.turns, "deg") if is_turn else (self.sizes.shifts, "mm")
         for axis, name in enumerate(AXES):
             for sign in ("+", "-"):
                 for size in sizes:
-                    edits = change(subject, axis, float(f"{sign}{size * factor:.9g}"))
+                    edits = change(subject, axis, float(f"{sign}{size * (1 if is_turn else 0.001):.9g}"))
                     if edits is not None:
                         yield TextChange(operator, node, edits, f"{name}{sign}", size, unit)
 
     def moved(self, node: ProgramNode, target: ProgramNode) -> Iterator[TextChange]:
         """The differences of a motion's target."""
-        yield from self.sized("shift-target", node, target, self.shifted, self.sizes.shifts, "mm", 0.001)
-        yield from self.sized("turn-target", node, target, self.turned, self.sizes.turns, "deg", 1.0)
+        yield from self.sized("shift-target", node, target, self.shifted)
+        yield from self.sized("turn-target", node, target, self.turned)
 
     def reversed(self, node: ProgramNode, amounts: Sequence[ProgramNode]) -> Iterator[TextChange]:
         """Offsets along x, y and z that go the other way."""
@@ -173,20 +221,6 @@ class Rewriter:
             text = f"{float(number.value) * factor:.6g}"
             yield TextChange(operator, node, self.put(number, text), f"×{factor:g}")
 
-    def conventional(self, node: ProgramNode, parents: tuple[ProgramNode, ...]) -> Iterator[TextChange]:
-        """The differences of conventional operators that are about a node."""
-        if node.kind == "binary":
-            yield from self._operators(node)
-        if node.kind in ("if", "while", "repeat"):
-            for index, condition in enumerate(node.parts):
-                text = self.negation.format(self.written(condition))
-                yield TextChange("negate-condition", condition, self.put(condition, text), str(index or ""))
-        if node.kind == "number" and self.is_plain_number(node, parents):
-            yield from self._numbers(node)
-        is_dropped = node.kind in ("assign", "return", "break", "continue", "goto", "call")
-        if is_dropped and self.is_statement(node, parents) and not self.is_of_robot(node):
-            yield TextChange("drop-any", node, self.without(node))
-
     def is_statement(self, node: ProgramNode, parents: tuple[ProgramNode, ...]) -> bool:
         """Whether a node stands by itself."""
         if parents[-1].kind == "if" and parents[-1].name == "compact":  # it has to have one
@@ -200,31 +234,6 @@ class Rewriter:
     def is_plain_number(self, node: ProgramNode, parents: tuple[ProgramNode, ...]) -> bool:
         """Whether a number is one of a calculation, a comparison or an assignment."""
         return parents[-1].kind in ("binary", "assign", "for")
-
-    def _operators(self, node: ProgramNode) -> Iterator[TextChange]:
-        left, right = node.parts
-        between = self.text[left.end : right.start]
-        start = (between.lower() if self.ignores_case else between).find(node.name)
-        if start < 0:
-            return
-        for operator, others in (
-            ("replace-arithmetic", self.arithmetic if node.name in self.arithmetic else ()),
-            ("replace-relation", self.relations.get(node.name, ())),
-            ("replace-logic", (self.logic[node.name],) if node.name in self.logic else ()),
-        ):
-            for other in others:
-                if other != node.name and not self._is_text(node):
-                    edit = Edit(left.end + start, left.end + start + len(node.name), other)
-                    yield TextChange(operator, node, (edit,), other)
-
-    def _is_text(self, node: ProgramNode) -> bool:
-        return any(part.kind == "text" for part in node.walk())
-
-    def _numbers(self, node: ProgramNode) -> Iterator[TextChange]:
-        texts = {"0": "0", "plus": f"{node.value + 1:g}"} if isinstance(node.value, (int, float)) else {}
-        for variant, text in texts.items():
-            if float(text) != float(node.value):
-                yield TextChange("replace-number", node, self.put(node, text), variant)
 
 
 def signed_number(node: ProgramNode) -> float | None:

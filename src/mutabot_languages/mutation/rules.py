@@ -190,71 +190,128 @@ class ChangeBlend(_TextRule):
     name = "change-blend"
 
 
-class ReplaceArithmetic(_TextRule):
-    """An arithmetic operator becomes another one (AOR).
-
-    Where: calculations with numbers.
-    """
-
-    name = "replace-arithmetic"
+class _ConventionalRule(Rule):
     family = CONVENTIONAL
 
 
-class ReplaceRelation(_TextRule):
-    """A comparison becomes another one (ROR).
+class AbsoluteValue(_ConventionalRule):
+    """A number becomes its absolute value, the negative of that, or an error if it is zero (ABS).
+
+    Where: variables, components, calls and calculations whose values are numbers.
+    """
+
+    name = "absolute-value"
+
+
+class ReplaceArithmetic(_ConventionalRule):
+    """An arithmetic operator becomes another one, or the calculation one of its operands (AOR).
+
+    Where: calculations with numbers; sums and differences of points and texts too.
+    """
+
+    name = "replace-arithmetic"
+
+
+class ReplaceRelation(_ConventionalRule):
+    """A comparison becomes another one, or always holds, or never (ROR).
 
     Where: comparisons.
     """
 
     name = "replace-relation"
-    family = CONVENTIONAL
 
 
-class ReplaceLogic(_TextRule):
-    """``AND`` becomes ``OR``, and the other way about (COR).
+class ReplaceLogic(_ConventionalRule):
+    """A logical operator becomes another one, or the condition one of its operands, true or false (COR).
 
     Where: conditions.
     """
 
     name = "replace-logic"
-    family = CONVENTIONAL
 
 
-class NegateCondition(_TextRule):
-    """A condition is negated (COI).
+class ReplaceShift(_ConventionalRule):
+    """A shift of bits goes the other way (SOR).
 
-    Where: branches and loops.
+    Where: ``BitLSh`` and ``BitRSh``; KRL and URScript have no shift.
     """
 
-    name = "negate-condition"
-    family = CONVENTIONAL
+    name = "replace-shift"
 
 
-class ReplaceNumber(_TextRule):
+class ReplaceBitwise(_ConventionalRule):
+    """An operator on bits becomes another one, or the operation one of its operands (LOR).
+
+    Where: ``B_AND``, ``B_OR`` and ``B_EXOR``; ``BitAnd``, ``BitOr`` and ``BitXOr``.
+    """
+
+    name = "replace-bitwise"
+
+
+class ReplaceAssignment(_ConventionalRule):
+    """A number is counted down instead of up, and the other way about (ASR).
+
+    Where: ``Incr`` and ``Decr``; KRL and URScript have no augmented assignment.
+    """
+
+    name = "replace-assignment"
+
+
+class InsertUnary(_ConventionalRule):
+    """A number gets a minus, a condition a logical not (UOI, COI).
+
+    Where: numbers that are not 0, and what has a number or a truth value; conditions of branches and loops.
+    """
+
+    name = "insert-unary"
+
+
+class DeleteUnary(_ConventionalRule):
+    """A sign or a logical not is left out (UOD).
+
+    Where: signs and ``NOT``.
+    """
+
+    name = "delete-unary"
+
+
+class ReplaceVariable(_ConventionalRule):
+    """A variable becomes another one of its type that the routine names, of at most four (SVR).
+
+    Where: variables that are read, also points, tools and frames.
+    """
+
+    name = "replace-variable"
+
+
+class ReplaceStatement(_ConventionalRule):
+    """A statement becomes one that stops the program with an error, a division by zero (BSR).
+
+    Where: assignments, calls and jumps; the conditions of branches and loops.
+    """
+
+    name = "replace-statement"
+
+
+class ReplaceNumber(_ConventionalRule):
     """A number becomes 0, or one more (CRP).
 
     Where: numbers of calculations, comparisons and assignments.
     """
 
     name = "replace-number"
-    family = CONVENTIONAL
 
 
-class DropAny(_TextRule):
+class DropAny(_ConventionalRule):
     """A statement is missing (SDL).
 
     Where: assignments, calls and jumps.
     """
 
     name = "drop-any"
-    family = CONVENTIONAL
 
 
-RULES: tuple[Rule, ...] = (
-    ShiftTarget(), ShiftPoint(), ReverseOffset(), TurnTarget(), SwapMotion(), DropStatement(),
-    InvertOutput(), InvertInput(),
-    OtherInput(), ForgetWait(), ScaleWait(), ScaleSpeed(), OtherTool(), OtherFrame(), WrongConfiguration(),
-    ChangeBlend(), ReplaceArithmetic(), ReplaceRelation(), ReplaceLogic(), NegateCondition(), ReplaceNumber(),
-    DropAny(),
-)  # fmt: skip
+RULES: tuple[Rule, ...] = tuple(
+    kind() for base in (_TextRule, _ConventionalRule) for kind in base.__subclasses__()
+)
 BY_NAME = {rule.name: rule for rule in RULES}

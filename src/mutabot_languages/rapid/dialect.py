@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Mapping
 from typing import Any, ClassVar
 
-from mutabot_languages.core.machine import OF_NUMBERS, OF_VALUES, Dialect, Evaluation, Machine
+from mutabot_languages.core.machine import OF_NUMBERS, OF_VALUES, Dialect, Evaluation
 from mutabot_languages.core.scope import (
     ControlFlow,
     ProgramRaised,
@@ -33,8 +33,7 @@ class RapidDialect(Dialect):
     first: ClassVar = 1
 
     def __init__(self, functions: Mapping[str, Callable[..., Any]], ignored: frozenset[str]) -> None:
-        self.functions = functions
-        self.ignored = ignored
+        super().__init__(functions, ignored)
         self.structures: dict[str, Components] = dict(STRUCTURES)
         self.aliases: dict[str, str] = {}
 
@@ -104,13 +103,15 @@ class RapidTask(ProgramTask):
 
     def statement(self, node: ProgramNode, scope: RoutineScope) -> Steps:
         """Carry out a statement; an error goes to the handler of its routine."""
-        if node.bodies or (node.kind in ("raise", "retry", "trynext") and scope.retry):
+        if scope.retry and (node.bodies or node.kind in ("raise", "retry", "trynext")):
             yield from self._plain(node, scope)
             return
         for _ in range(_RETRIES):
             try:
                 yield from self._plain(node, scope)
             except ProgramRaised as error:
+                if error.handled is scope:
+                    raise
                 handler = self._handler(scope)
                 if handler is None:
                     raise ProgramError(f"{self.place(node, scope)}: {error} (in {scope.routine})") from error
@@ -143,6 +144,9 @@ class RapidTask(ProgramTask):
         scope.retry += 1
         try:
             yield from self.run(handler, scope)
+        except ProgramRaised as raised:
+            raised.handled = scope
+            raise
         except ControlFlow as leave:
             if leave.kind not in ("retry", "trynext"):
                 raise
@@ -167,10 +171,6 @@ class RapidTask(ProgramTask):
 
 
 _RETRIES = 50
-
-
-class RapidMachine(Machine):
-    """A run of a RAPID program."""
 
 
 def predefined(name: str, structures: Mapping[str, Components]) -> Any:

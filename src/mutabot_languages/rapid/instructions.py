@@ -10,13 +10,13 @@ from typing import Any
 
 from mutabot_languages.core.frames import IDENTITY, Frame, cross
 from mutabot_languages.core.names import name_set
-from mutabot_languages.core.scope import ControlFlow, ProgramRaised, RoutineScope, Steps, Structure, Variable
+from mutabot_languages.core.scope import ProgramRaised, RoutineScope, Steps, Structure, Variable
 from mutabot_languages.core.station import matrix_frame
-from mutabot_languages.core.task import OF_DEGREES, ProgramTask, of_values
+from mutabot_languages.core.task import OF_DEGREES, ProgramTask, end_program, of_values, pause
 from mutabot_languages.core.tree import ProgramNode
 from mutabot_languages.errors import UnreachableError
 
-from .interrupts import INTERRUPTS, arguments_of, trigger_watch
+from .interrupts import INTERRUPTS, trigger_watch
 from .types import STRUCTURES, frame_of, put_frame, shaped
 
 #: what has no effect in the cell, and is noted
@@ -109,7 +109,7 @@ def _seventh(task: ProgramTask, target: Any) -> list[float]:
 
 def _at_end(task: ProgramTask, node: ProgramNode, scope: RoutineScope, name: str, values: list[Any]) -> Steps:
     if name.endswith(("do", "ao", "go")) and len(values) > 5:
-        signals = [part for part in node.parts if part.kind != "option"]
+        signals = node.plain
         signal = signals[-2].name
         task.station.write(task.site(node, scope), signal, values[-1])
     elif name.endswith("sync") and values and isinstance(values[-1], str):
@@ -119,7 +119,7 @@ def _at_end(task: ProgramTask, node: ProgramNode, scope: RoutineScope, name: str
 def _given(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Any:
     """The arguments of a motion; signals are not read."""
     values, named = list[Any](), dict[str, Any]()
-    plain = [argument for argument in node.parts if argument.kind != "option"]
+    plain = node.plain
     skipped = plain[-2:-1] if node.name.endswith(("do", "ao", "go")) and len(plain) > 5 else []
     for part in node.parts:
         if part.kind == "option":
@@ -153,7 +153,7 @@ def _set(value: int) -> Callable[..., Any]:
 
 def _set_to(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
     """SetDO, SetGO, SetAO, with a delay."""
-    parts = [part for part in node.parts if part.kind != "option"]
+    parts = node.plain
     value = yield from task.value(parts[1], scope)
     for option in node.parts:
         if option.kind == "option" and option.name == "sdelay" and option.parts:
@@ -162,7 +162,7 @@ def _set_to(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
 
 
 def _pulse(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-    parts, named = arguments_of(node)
+    parts, named = node.plain, node.options
     seconds = 0.2
     if "plength" in named:
         seconds = float((yield from task.value(named["plength"].parts[0], scope)))
@@ -198,13 +198,8 @@ def _output(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Any:
 # waits
 
 
-def _wait_time(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-    values, _ = yield from task.arguments(node, scope)
-    yield from task.wait(node, scope, float(values[-1]) if values else 0.0)
-
-
 def _options(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Any:
-    _, named = arguments_of(node)
+    named = node.options
     seconds = 0.0
     if "maxtime" in named:
         seconds = float((yield from task.value(named["maxtime"].parts[0], scope)))
@@ -212,7 +207,7 @@ def _options(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Any:
 
 
 def _wait_signal(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-    parts = [part for part in node.parts if part.kind != "option"]
+    parts = node.plain
     wanted = yield from task.value(parts[1], scope)
     signal = _signal(task, node, scope, parts[0])
     site = task.site(node, scope)
@@ -303,7 +298,7 @@ def _calc_joints(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> S
             raise ProgramRaised(number, str(error)) from error
         angles = task.station.angles(task.site(node, scope))
     if "errornumber" in named:
-        yield from task.store(arguments_of(node)[1]["errornumber"].parts[0], number, scope)
+        yield from task.store(node.options["errornumber"].parts[0], number, scope)
     return _joint_target(task, angles)
 
 
@@ -382,10 +377,6 @@ def _unit(vector: Any) -> Any:
 
 
 # program flow
-
-
-def _exit_cycle(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> None:
-    raise ControlFlow("exit")
 
 
 def _late(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
@@ -507,14 +498,14 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
     "invertdo": _invert, "testdi": _test, "dinput": _number_in, "ginput": _number_in,
     "ginputdnum": _number_in, "ainput": _number_in,
     "doutput": _output, "goutput": _output, "aoutput": _output,
-    "waittime": _wait_time, "waitrob": lambda task, node, scope: None, "waituntil": _wait_until,
+    "waittime": pause, "waitrob": lambda task, node, scope: None, "waituntil": _wait_until,
     **dict.fromkeys(["waitdi", "waitdo", "waitgi", "waitgo", "waitai", "waitao"], _wait_signal),
     "offs": _offs, "reltool": _rel_tool, "crobt": _here, "cpos": _here, "cjointt": _joints,
     "calcjointt": _calc_joints, "calcrobt": _calc_target, "pdispset": _displace, "pdispoff": _displace,
     "orientzyx": of_values(_orient_zyx), "eulerzyx": _euler, "posemult": _of_poses(operator.mul),
     "poseinv": _of_poses(Frame.inverse),
     "posevect": _pose_vect, "defframe": _def_frame,
-    "%": _late, "callbyvar": _call_by_var, "present": _present, "exitcycle": _exit_cycle,
+    "%": _late, "callbyvar": _call_by_var, "present": _present, "exitcycle": end_program,
     "incr": _change(lambda now, by: now + 1), "decr": _change(lambda now, by: now - 1),
     "add": _change(lambda now, by: now + by), "clear": _change(lambda now, by: 0),
     **dict.fromkeys(["clkreset", "clkstart", "clkstop", "clkread"], _clock), "dim": _dim,

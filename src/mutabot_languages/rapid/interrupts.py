@@ -14,12 +14,6 @@ from mutabot_languages.core.task import ProgramTask
 from mutabot_languages.core.tree import ProgramNode
 
 
-def arguments_of(node: ProgramNode) -> tuple[list[ProgramNode], dict[str, ProgramNode]]:
-    """The arguments of an instruction in their order, and its options by their names."""
-    options = {part.name: part for part in node.parts if part.kind == "option"}
-    return [part for part in node.parts if part.kind != "option"], options
-
-
 def _number(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Hashable:
     """What tells the interrupt of a variable: the variable itself, or how an element is written."""
     found = task.find(node.name, scope) if node.kind == "name" else None
@@ -52,7 +46,7 @@ def _connect(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> None:
 def _order(
     task: ProgramTask, node: ProgramNode, scope: RoutineScope, value: Callable[[], Steps], wanted: Any
 ) -> None:
-    parts, options = arguments_of(node)
+    parts, options = node.plain, node.options
     number = _number(task, parts[-1], scope)
     if number not in _traps(task):
         raise ProgramRaised("err_unkino", f"the interrupt {parts[-1].name} is connected to no trap")
@@ -65,7 +59,7 @@ def _order(
 
 def _on_signal(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
     """ISignalDI and ISignalDO: when a signal becomes 0 or 1, or changes."""
-    parts, _ = arguments_of(node)
+    parts = node.plain
     station, name, site = task.station, parts[0].name, task.site(node, scope)
     wanted = float((yield from task.value(parts[1], scope)))
 
@@ -78,7 +72,7 @@ def _on_signal(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Ste
 
 
 def _timer(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-    parts, _ = arguments_of(node)
+    parts = node.plain
     seconds = float((yield from task.value(parts[0], scope)))
     if seconds <= 0:
         raise task.error(node, scope, f"a timer of {seconds:g} s")
@@ -114,7 +108,7 @@ def _stop_move(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Non
     """In a trap it stops a motion, which is not carried out; anywhere else there is none to stop."""
     if task.name == HANDLERS:
         raise task.unsupported(node, scope, f"{node.name} in a trap")
-    task.station.note(f"{node.name} at line {scope.unit.source.line_of(node.start)} has no effect here")
+    task.note_without_effect(node, scope)
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,7 +128,7 @@ class TriggerPoint:
 
 def _trigger(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
     """TriggIO and TriggEquip: what a later motion does where."""
-    parts, options = arguments_of(node)
+    parts, options = node.plain, node.options
     distance = float((yield from task.value(parts[1], scope))) / 1000
     variable = task.find(parts[0].name, scope)
     if variable is None or "time" in options:

@@ -8,7 +8,7 @@ from mutabot_languages.core.scope import ProgramUnit, Routine, RoutineScope, Ste
 from mutabot_languages.core.task import ProgramTask, call_main, declare_data
 from mutabot_languages.core.tree import ProgramNode
 
-from .dialect import RapidDialect, RapidMachine, RapidTask
+from .dialect import RapidDialect, RapidTask
 from .instructions import FUNCTIONS, IGNORED
 from .parser import RapidParser
 
@@ -73,7 +73,6 @@ RAPID = RobotLanguage(
     lambda: RapidDialect(FUNCTIONS, IGNORED),
     _prepare,
     _main,
-    machine=RapidMachine,
     task=RapidTask,
     share=_share,
 )

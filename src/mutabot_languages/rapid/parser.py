@@ -51,6 +51,8 @@ class RapidParser(StatementParser):
         undo proc func trap endrecord"""
     )
     ends_with_line: ClassVar = False
+    openers: ClassVar = {"if": "then", "while": "do", "for": "do"}
+    brackets: ClassVar = ("{", "}")
 
     def begins_statement(self) -> bool:
         """Whether a routine begins here and may: it does not stand in another one."""
@@ -71,6 +73,7 @@ class RapidParser(StatementParser):
             return self.node("empty", "placeholder", start)
         reader = _READERS.get(word) if kind == "name" else None
         if reader is not None:
+            self.at += 1
             return reader(self, start)
         if word == "%":
             return self._late(start)
@@ -84,38 +87,31 @@ class RapidParser(StatementParser):
     # modules and routines
 
     def _module(self, start: int) -> ProgramNode:
-        self.at += 1
         name = self.identifier("the name of a module")
         if self.accept("("):
             while not self.accept(")"):
                 if self.kinds[self.at] == "end":
                     raise Unexpected("')'")
                 self.at += 1
-        outer, self.within = self.within, f"MODULE {name}"
-        body = self.block(frozenset({"endmodule"}))
-        self.within = outer
+        with self.inside(f"MODULE {name}"):
+            body = self.block(frozenset({"endmodule"}))
         self.close("endmodule", start)
         return self.node("module", name, start, bodies=[body])
 
     def _scoped(self, start: int) -> ProgramNode:
-        scope = self.words[self.at]
+        scope, word = self.words[self.at - 1 : self.at + 1]
+        if word not in {*_ROUTINES, *_DATA, "record", "alias"}:
+            raise Unexpected("a declaration")
         self.at += 1
-        word = self.words[self.at]
         if word in _ROUTINES:
             return self._routine(start, scope)
-        if word in ("record", "alias"):
-            return _READERS[word](self, start)
-        if word in _DATA:
-            return self._data(start, scope)
-        raise Unexpected("a declaration")
+        return self._data(start, scope) if word in _DATA else _READERS[word](self, start)
 
     def _routine(self, start: int, scope: str = "") -> ProgramNode:
-        kind = self.words[self.at]
-        self.at += 1
+        kind = self.words[self.at - 1]
         type = self.identifier("the type of a function") if kind == "func" else ""
         name = self.identifier("the name of a routine")
-        outer, self.within = self.within, f"{kind.upper()} {name}"
-        try:
+        with self.inside(f"{kind.upper()} {name}"):
             parameters = self._parameters() if kind != "trap" else []
             until = frozenset({_ROUTINES[kind], *_SECTIONS})
             body = self.block(until)
@@ -127,8 +123,6 @@ class RapidParser(StatementParser):
                     self.sequence(")", self.expression)
                 sections[section] = self.block(until)
             self.close(_ROUTINES[kind], start)
-        finally:
-            self.within = outer
         value: dict[str, Any] = {"kind": kind, "type": type, "scope": scope, "sections": [*sections]}
         return self.node("routine", name, start, parameters, [body, *sections.values()], value)
 
@@ -164,7 +158,6 @@ class RapidParser(StatementParser):
         return self.node("omitted", "*", start)
 
     def _record(self, start: int) -> ProgramNode:
-        self.at += 1
         name = self.identifier("the name of a record")
         components: list[tuple[str, str]] = []
         while (
@@ -179,7 +172,6 @@ class RapidParser(StatementParser):
         return self.node("record", name, start, value=components)
 
     def _alias(self, start: int) -> ProgramNode:
-        self.at += 1
         type = self.identifier("a type")
         name = self.identifier("a name")
         node = self.node("record", name, start, value=type)
@@ -187,8 +179,7 @@ class RapidParser(StatementParser):
         return node
 
     def _data(self, start: int, scope: str = "") -> ProgramNode:
-        kind = self.words[self.at]
-        self.at += 1
+        kind = self.words[self.at - 1]
         type = self.identifier("a type")
         if self.kinds[self.at] == "placeholder":
             self.at += 1
@@ -207,77 +198,25 @@ class RapidParser(StatementParser):
     # statements
 
     def _if(self, start: int) -> ProgramNode:
-        self.at += 1
-        conditions = [self.expression()]
-        if not self.accept("then"):
-            inner = self.statement()
-            return self.node("if", "compact", start, conditions, [[inner] if inner is not None else []])
-        until = frozenset({"elseif", "else", "endif"})
-        bodies = [self.block(until)]
-        while self.accept("elseif"):
-            conditions.append(self.expression())
-            self.expect("then")
-            bodies.append(self.block(until))
-        if self.accept("else"):
-            bodies.append(self.block(until))
-        self._close_block("endif", start)
-        return self.node("if", "", start, conditions, bodies)
+        condition = self.expression()
+        if self.accept("then"):
+            return self.branches(start, condition, "endif", "elseif")
+        inner = self.statement()
+        return self.node("if", "compact", start, [condition], [[inner] if inner is not None else []])
 
-    def _close_block(self, word: str, start: int) -> None:
-        self.close(word, start)
+    def close(self, word: str, opened: int) -> None:
+        """Read the end of a block, and a semicolon that may stand behind it."""
+        super().close(word, opened)
         self.accept(";")
 
-    def _for(self, start: int) -> ProgramNode:
-        self.at += 1
-        name = self.identifier("a counter")
-        self.expect("from")
-        parts = [self.expression()]
-        self.expect("to")
-        parts.append(self.expression())
-        if self.accept("step"):
-            parts.append(self.expression())
-        self.expect("do")
-        body = self.block(frozenset({"endfor"}))
-        self._close_block("endfor", start)
-        return self.node("for", name, start, parts, [body])
-
-    def _while(self, start: int) -> ProgramNode:
-        self.at += 1
-        condition = self.expression()
-        self.expect("do")
-        body = self.block(frozenset({"endwhile"}))
-        self._close_block("endwhile", start)
-        return self.node("while", "", start, [condition], [body])
-
     def _test(self, start: int) -> ProgramNode:
-        self.at += 1
         parts = [self.expression()]
         self.accept(";")
         labels, bodies = self.cases("endtest", lambda: self.expect(":"))
-        self._close_block("endtest", start)
+        self.close("endtest", start)
         return self.node("switch", "", start, parts, bodies, labels)
 
-    def _goto(self, start: int) -> ProgramNode:
-        self.at += 1
-        return self._ended(self.node("goto", self.identifier("a label"), start))
-
-    def _return(self, start: int) -> ProgramNode:
-        self.at += 1
-        value = [] if self.words[self.at] == ";" else [self.expression()]
-        return self._ended(self.node("return", "", start, value))
-
-    def _raise(self, start: int) -> ProgramNode:
-        self.at += 1
-        value = [] if self.words[self.at] == ";" else [self.expression()]
-        return self._ended(self.node("raise", "raise", start, value))
-
-    def _word(self, start: int) -> ProgramNode:
-        word = self.words[self.at]
-        self.at += 1
-        return self._ended(self.node("exit" if word == "exit" else word, word, start))
-
     def _connect(self, start: int) -> ProgramNode:
-        self.at += 1
         target = self.expression()
         self.expect("with")
         trap = self.node("name", self.identifier("a trap"), start)
@@ -287,7 +226,7 @@ class RapidParser(StatementParser):
         self.at += 1
         name = self.expression()
         self.expect("%")
-        arguments = [] if self.words[self.at] == ";" else self._instruction_arguments()
+        arguments = [] if self.words[self.at] == ";" else self._arguments(";")
         return self._ended(self.node("call", "%", start, [name, *arguments], value="late"))
 
     def _ended(self, node: ProgramNode) -> ProgramNode:
@@ -304,23 +243,26 @@ class RapidParser(StatementParser):
                 raise Unexpected("':='")
             return self._ended(self.node("assign", "", start, [target, self.expression()]))
         self.at += 1
-        arguments = [] if follows == ";" else self._instruction_arguments()
+        arguments = [] if follows == ";" else self._arguments(";")
         return self._ended(self.node("call", word, start, arguments))
 
-    def _instruction_arguments(self) -> list[ProgramNode]:
+    def arguments(self) -> list[ProgramNode]:
+        """Read the arguments and options of a function, behind its opening parenthesis."""
+        found = self._arguments(")")
+        self.expect(")")
+        return found
+
+    def _arguments(self, closes: str) -> list[ProgramNode]:
         found: list[ProgramNode] = []
         while True:
             options = self._options()
             found += options
             if options and self.accept(","):
                 continue
-            if self.words[self.at] == ";":
+            if self.words[self.at] == closes:
                 return found
-            found.append(self._argument())
-            found += self._options()
+            found += [self.expression(), *self._options()]
             if not self.accept(","):
-                if self.words[self.at] == "\\":
-                    continue
                 return found
 
     def _options(self) -> list[ProgramNode]:
@@ -332,7 +274,7 @@ class RapidParser(StatementParser):
             value: object = None
             parts: list[ProgramNode] = []
             if self.accept(":="):
-                parts = [self._argument()]
+                parts = [self.expression()]
             elif self.accept("?"):
                 parts, value = [self.primary()], "conditional"
             found.append(self.node("option", name, start, parts, value=value))
@@ -340,86 +282,46 @@ class RapidParser(StatementParser):
                 self.at += 1
         return found
 
-    def _argument(self) -> ProgramNode:
-        start = self.starts[self.at]
-        if self.kinds[self.at] == "placeholder":
-            self.at += 1
-            return self.node("omitted", "", start)
-        return self.expression()
-
     def primary(self) -> ProgramNode:
         """Read a literal, a name, a call, or what stands in parentheses, with what follows it."""
+        found = self.literal()
+        if found is not None:
+            if found.kind == "text":
+                found.value = found.value.replace('""', '"')
+            return found
         kind, word, start = self.kinds[self.at], self.words[self.at], self.starts[self.at]
-        if kind == "number":
-            self.at += 1
-            return ProgramNode("number", word, start, self.ends[self.at - 1], None, None, _number(word))
-        if kind == "text":
-            self.at += 1
-            written = self.source.text[start + 1 : self.ends[self.at - 1] - 1]
-            return self.node("text", word, start, value=written.replace('""', '"'))
         if kind == "placeholder":
             self.at += 1
             return self.node("omitted", "", start)
-        if word == "(":
-            self.at += 1
-            inner = self.expression()
-            self.expect(")")
-            return self._after(ProgramNode("group", "", start, self.ends[self.at - 1], [inner]), start)
         if word == "[":
             self.at += 1
-            return self._after(self.node("list", "", start, self.sequence("]", self._argument)), start)
+            return self.after(self.node("list", "", start, self.sequence("]", self.expression)), start)
         if kind != "name" or word in RESERVED:
             raise Unexpected("an expression")
         self.at += 1
         if word in ("true", "false"):
             return self.node("constant", word, start, value=word == "true")
-        if self.words[self.at] == "(":
-            self.at += 1
-            return self._after(self.node("call", word, start, self._call_arguments()), start)
-        return self._after(self.node("name", word, start), start)
+        return self.after(self.node("name", word, start), start)
 
-    def _call_arguments(self) -> list[ProgramNode]:
-        found: list[ProgramNode] = []
-        while True:
-            options = self._options()
-            found += options
-            if options and self.accept(","):
-                continue
-            if self.accept(")"):
-                return found
-            found.append(self._argument())
-            found += self._options()
-            if self.accept(")"):
-                return found
-            self.expect(",")
-
-    def _after(self, found: ProgramNode, start: int) -> ProgramNode:
-        while True:
-            if self.words[self.at] == "{" and self.kinds[self.at] == "sign":
-                self.at += 1
-                found = self.node("index", "", start, [found, *self.sequence("}", self._index)])
-            elif self.words[self.at] == "." and self.kinds[self.at + 1] == "name":
-                self.at += 2
-                found = self.node("field", self.words[self.at - 1], start, [found])
-            else:
-                return found
-
-    def _index(self) -> ProgramNode:
+    def index(self) -> ProgramNode:
+        """Read an index; a star stands for a whole dimension."""
         return self._star() if self.words[self.at] == "*" else self.expression()
 
-
-def _number(word: str) -> int | float:
-    if word.isdecimal():
-        return int(word)
-    return int(word, 0) if word[1:2] in ("x", "b", "o") else float(word)
+    def number_of(self, word: str) -> int | float:
+        """The value of a number, which may be of hexadecimal, binary or octal digits."""
+        return int(word, 0) if word[1:2] in ("x", "b", "o") else super().number_of(word)
 
 
 _READERS: dict[str, Callable[[RapidParser, int], ProgramNode]] = {
     "module": RapidParser._module, "local": RapidParser._scoped, "task": RapidParser._scoped,
     "proc": RapidParser._routine, "func": RapidParser._routine, "trap": RapidParser._routine,
     "record": RapidParser._record, "alias": RapidParser._alias, "var": RapidParser._data,
-    "pers": RapidParser._data, "const": RapidParser._data, "if": RapidParser._if, "for": RapidParser._for,
-    "while": RapidParser._while, "test": RapidParser._test, "goto": RapidParser._goto,
-    "return": RapidParser._return, "raise": RapidParser._raise, "exit": RapidParser._word,
-    "retry": RapidParser._word, "trynext": RapidParser._word, "connect": RapidParser._connect,
+    "pers": RapidParser._data, "const": RapidParser._data, "if": RapidParser._if, "test": RapidParser._test,
+    "for": lambda parser, start: parser.for_loop(start, "from"),
+    "while": lambda parser, start: parser.while_loop(start, "endwhile"),
+    "goto": lambda parser, start: parser._ended(parser.jump(start)),
+    "return": lambda parser, start: parser._ended(parser.leave(start)),
+    "raise": lambda parser, start: parser._ended(parser.leave(start, "raise")),
+    **dict.fromkeys(("exit", "retry", "trynext"), lambda parser, start: parser._ended(parser.word(start))),
+    "connect": RapidParser._connect,
 }  # fmt: skip

@@ -4,21 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from functools import cached_property
 from typing import ClassVar
 
 from mutabot_languages.core.names import name_set
 from mutabot_languages.core.tree import ProgramNode
 from mutabot_languages.edits import Edit
+from mutabot_languages.mutation.conventional import Wording
 from mutabot_languages.mutation.differences import TextChange
-from mutabot_languages.mutation.rewriting import (
-    NO_BLENDING,
-    NO_CONFIGURATION,
-    ORDERS,
-    Rewriter,
-    named_number,
-    signed_number,
-)
+from mutabot_languages.mutation.rewriting import Rewriter, named_number, signed_number
 
 _MOTION = re.compile(r"move(?:j|l|c|absj)(?:do|ao|go|sync)?")
 _SPEEDS = (
@@ -30,26 +23,38 @@ _OF_ROBOT = name_set(
 )
 _WAITS = name_set("waitdi waitdo waitgi waitgo waitai waitao waituntil")
 _OPPOSITE = {"set": "Reset", "reset": "Set"}
-_TARGETS = name_set("offs reltool crobt calcrobt")
-_SECONDS = 0.001
 
 
 class RapidRewriter(Rewriter):
     """The rewriter of RAPID."""
 
-    relations: ClassVar = {**ORDERS, "=": ("<>",), "<>": ("=",)}
+    wording: ClassVar = Wording(
+        ("=", "<>"), ("AND", "OR", "XOR"), ("TRUE", "FALSE"), "NOT ({})", "Abs({})", "WaitTime 1/0",
+        arithmetic=("+", "-", "*", "/", "DIV", "MOD"),
+        functions={
+            "replace-bitwise": ("BitAnd", "BitOr", "BitXOr"), "replace-shift": ("BitLSh", "BitRSh"),
+            "replace-assignment": ("Incr", "Decr"),
+        },
+    )  # fmt: skip
+    known_types: ClassVar = {
+        "testdi()": "truth", "dinput()": "number", "doutput()": "number",
+        **dict.fromkeys(("offs()", "reltool()", "crobt()", "calcrobt()"), "robtarget"),
+    }  # fmt: skip
     opposites: ClassVar = {
         "0": "1", "1": "0", "high": "low", "low": "high", "true": "FALSE", "false": "TRUE",
     }  # fmt: skip
 
-    @cached_property
-    def _types(self) -> dict[str, str]:
-        parameters = (node for node in self.all_nodes() if node.kind == "parameter")
-        return {node.name: node.value["type"] for node in parameters} | self.declared_types
-
     def is_of_robot(self, node: ProgramNode) -> bool:
         """Motions, outputs, waits and displacements."""
         return node.kind == "call" and (node.name in _OF_ROBOT or bool(_MOTION.fullmatch(node.name)))
+
+    def is_amount(self, node: ProgramNode, parents: tuple[ProgramNode, ...]) -> bool:
+        """Of literals of points, what says where they are; nothing of tools, work objects and the like."""
+        lists = [outer for outer in parents if outer.kind == "list"]
+        if len(lists) < 2:
+            return not lists or node.kind != "constant"
+        first, second = lists[:2]
+        return len(first.parts) == 2 or (len(first.parts) == 4 and second in first.parts[:2])
 
     def is_plain_number(self, node: ProgramNode, parents: tuple[ProgramNode, ...]) -> bool:
         """Numbers of declarations count as well, but not those of structures."""
@@ -68,7 +73,7 @@ class RapidRewriter(Rewriter):
             yield from self._compared(node)
 
     def _call(self, node: ProgramNode) -> Iterator[TextChange]:
-        plain = [part for part in node.parts if part.kind != "option"]
+        plain = node.plain
         if _MOTION.fullmatch(node.name):
             yield from self._motion(node, plain)
         elif node.name == "setdo" and len(plain) == 2:
@@ -84,17 +89,16 @@ class RapidRewriter(Rewriter):
             yield from self.scaled("scale-wait", node, plain[-1], (0.1, 10.0))
         elif node.name in ("offs", "reltool"):
             yield from self.reversed(node, plain[1:])
-            if node.name == "reltool":
+            if node.name == "reltool" and not node.options:
                 edits = (Edit(node.start, node.start + len(node.name), "Offs"),)
-                if not any(part.kind == "option" for part in node.parts):
-                    yield TextChange("other-frame", node, edits)
+                yield TextChange("other-frame", node, edits)
         if node.name in _WAITS:
             yield TextChange("forget-wait", node, self.put(node, "WaitTime 0"))
 
     def _compared(self, node: ProgramNode) -> Iterator[TextChange]:
         """A signal that is compared with 0 or 1: a name that nobody declares, or DInput."""
         signal, value = node.parts
-        is_name = signal.kind == "name" and signal.name not in self._types
+        is_name = signal.kind == "name" and signal.name not in self.types
         is_function = signal.kind == "call" and signal.name in ("dinput", "doutput")
         if is_name or is_function:
             yield from self.opposite("invert-input", node, value)
@@ -115,10 +119,10 @@ class RapidRewriter(Rewriter):
         yield from self._zone(node, zone)
         if len(plain) > first + 3 and self.written(plain[first + 3]).lower() != "tool0":
             yield TextChange("other-tool", node, self.put(plain[first + 3], "tool0"))
-        for option in (part for part in node.parts if part.kind == "option" and part.name == "wobj"):
-            is_named = option.value is None and option.parts
-            if is_named and self.written(option.parts[0]).lower() != "wobj0":
-                yield TextChange("other-frame", node, self.put(option.parts[0], "wobj0"))
+        option = node.options.get("wobj")
+        if option is not None and option.value is None:
+            for frame in option.parts if self.written(option.parts[0]).lower() != "wobj0" else ():
+                yield TextChange("other-frame", node, self.put(frame, "wobj0"))
 
     def _speed(self, node: ProgramNode, speed: ProgramNode) -> Iterator[TextChange]:
         found = re.fullmatch(r"v(\d+)", self.written(speed).lower())
@@ -134,17 +138,15 @@ class RapidRewriter(Rewriter):
         written = self.written(zone).lower()
         if written == "fine" or re.fullmatch(r"z\d+", written):
             edits = self.put(zone, "z50" if written == "fine" else "fine")
-            yield TextChange("change-blend", node, edits, reason=NO_BLENDING)
+            yield TextChange("change-blend", node, edits)
 
     def _point(self, node: ProgramNode, literal: ProgramNode) -> Iterator[TextChange]:
         if self._is_target(literal):
-            yield from self.sized(
-                "shift-point", node, literal, self._literal, self.sizes.shifts, "mm", _SECONDS
-            )
+            yield from self.sized("shift-point", node, literal, self._literal)
             configuration = literal.parts[2].parts
             if configuration and (value := signed_number(configuration[0])) is not None:
                 edits = self.put(configuration[0], named_number(value + 1))
-                yield TextChange("wrong-configuration", node, edits, reason=NO_CONFIGURATION)
+                yield TextChange("wrong-configuration", node, edits)
 
     @staticmethod
     def _is_target(node: ProgramNode) -> bool:
@@ -154,14 +156,7 @@ class RapidRewriter(Rewriter):
     def _is_pose(self, target: ProgramNode) -> bool:
         if target.kind == "list":
             return self._is_target(target)
-        if target.kind == "call":
-            return target.name in _TARGETS
-        base = target
-        while base.kind in ("index", "field"):
-            base = base.parts[0]
-        return base.kind == "name" and (target is base or target.kind == "index") and (
-            self._types.get(base.name) == "robtarget"
-        )  # fmt: skip
+        return self.kind_of(target) == "robtarget"
 
     def shifted(self, target: ProgramNode, axis: int, metres: float) -> tuple[Edit, ...] | None:
         """A number of a literal or of Offs, or an Offs around the target."""
@@ -169,7 +164,7 @@ class RapidRewriter(Rewriter):
             return None
         if target.kind == "list":
             return self._literal(target, axis, metres)
-        plain = [part for part in target.parts if part.kind != "option"]
+        plain = target.plain
         if target.kind == "call" and target.name == "offs" and len(plain) == 4:
             value = signed_number(plain[1 + axis])
             if value is not None:

@@ -36,7 +36,7 @@ def missing_data(files: Sequence[ParsedFile], language: str) -> tuple[str, str, 
 
 def _of_rapid(nodes: Sequence[ProgramNode]) -> Iterator[tuple[str, str]]:
     for node in nodes:
-        plain = [part for part in node.parts if part.kind != "option"]
+        plain = node.plain
         if node.kind == "option" and node.name in ("tool", "wobj"):
             yield from ((part.name, f"{node.name}data") for part in plain if part.kind == "name")
         elif node.kind == "call" and node.name.startswith(("move", "trigg")):

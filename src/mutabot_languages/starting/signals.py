@@ -108,7 +108,7 @@ def _of_rapid(nodes: list[ProgramNode]) -> Iterator[NamedSignal]:
 
 
 def _signal_parts(node: ProgramNode) -> list[ProgramNode]:
-    plain = [part for part in node.parts if part.kind != "option"]
+    plain = node.plain
     return plain[-2:-1] if node.name.startswith("move") else plain[:1]
 
 

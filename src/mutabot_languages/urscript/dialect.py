@@ -9,9 +9,9 @@ from typing import Any, ClassVar
 from mutabot_languages.core.frames import Frame
 from mutabot_languages.core.machine import OF_NUMBERS, OF_VALUES, Dialect, Evaluation
 from mutabot_languages.core.names import name_set
-from mutabot_languages.core.scope import ControlFlow, RoutineScope, Steps, Structure
+from mutabot_languages.core.scope import RoutineScope, Steps, Structure
 from mutabot_languages.core.station import ProgramPlace, Station
-from mutabot_languages.core.task import ProgramTask, of_values
+from mutabot_languages.core.task import ProgramTask, end_program, of_values, pause
 from mutabot_languages.core.tree import ProgramNode
 from mutabot_languages.errors import UnreachableError
 
@@ -56,14 +56,13 @@ IGNORED = name_set(
 class UrDialect(Dialect):
     """The dialect of URScript."""
 
-    first: ClassVar = 0
+    has_none: ClassVar = True
     constants: ClassVar = {
         "MATH_PI": math.pi, "pi": math.pi, "PI": math.pi, "NO": 0, "d_base": 0,
     }  # fmt: skip
-    ignored = IGNORED
 
     def __init__(self) -> None:
-        self.functions: Mapping[str, Callable[..., Any]] = FUNCTIONS
+        super().__init__(FUNCTIONS, IGNORED)
 
     def binary(self, operator: str, left: Any, right: Any) -> Any:
         """The value of a binary operation."""
@@ -194,11 +193,6 @@ def _movec(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
         yield from task.move(node, scope, motion)
 
 
-def _sleep(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
-    values, _ = yield from task.arguments(node, scope)
-    yield from task.wait(node, scope, float(values[0]))
-
-
 def _sync(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
     yield from task.wait(node, scope, 0.01)
 
@@ -299,10 +293,6 @@ def _struct(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
     return Structure.of("struct", named)
 
 
-def _halt(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Any:
-    raise ControlFlow("exit")
-
-
 def _pose_add(first: Any, second: Any, sign: int = 1) -> UrPose:
     a, b = frame_of(first), frame_of(second)
     x, y, z = (p + sign * q for p, q in zip(a.position, b.position, strict=True))
@@ -366,9 +356,9 @@ def _has_inverse(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> St
 FUNCTIONS: dict[str, Callable[..., Any]] = {
     "get_inverse_kin_has_solution": _has_inverse,
     "set_flag": _signal(Station.write, "flag"), "get_flag": _signal(_last, "flag"),
-    "movej": _move, "movel": _move, "movep": _move, "movec": _movec, "sleep": _sleep, "sync": _sync,
+    "movej": _move, "movel": _move, "movep": _move, "movec": _movec, "sleep": pause, "sync": _sync,
     "set_tcp": _set_tcp, "get_inverse_kin": _inverse, "get_forward_kin": _forward, "run": _run, "kill": _kill,
-    "join": _join, "halt": _halt, "struct": _struct, "get_actual_tcp_pose": _pose_now,
+    "join": _join, "halt": end_program, "struct": _struct, "get_actual_tcp_pose": _pose_now,
     "get_target_tcp_pose": _pose_now,
     "get_actual_tool_flange_pose": _pose_now, "get_actual_joint_positions": _joints_now,
     "get_target_joint_positions": _joints_now, "get_joint_positions": _joints_now, "force": _wrench,

@@ -12,7 +12,6 @@ from mutabot_languages.core.tree import ProgramNode
 
 _END = frozenset({"end"})
 _BRANCH = frozenset({"end", "elif", "else"})
-_CASE = frozenset({"end", "case", "default"})
 #: words that begin a line whatever brackets are still open
 _BEGINNINGS = name_set("def thread sec if elif else while end return global local break continue")
 _OPENING = frozenset("([{")
@@ -43,7 +42,8 @@ class URScriptParser(StatementParser):
     }  # fmt: skip
     unary: ClassVar = {"not": 3, "-": 6, "+": 6}
     keywords: ClassVar = KEYWORDS | CONSTANTS.keys()
-    terminators: ClassVar = frozenset({"end", "elif", "else"})
+    terminators: ClassVar = _BRANCH
+    callable: ClassVar = frozenset({"name", "field"})
 
     def __init__(self, source: SourceText) -> None:
         super().__init__(source)
@@ -79,32 +79,24 @@ class URScriptParser(StatementParser):
                 self.at += 1
             return None
         reader = getattr(self, f"_{word}", None) if word in KEYWORDS else None
-        found: ProgramNode = reader(start) if reader is not None else self._simple(start)
+        self.at += reader is not None
+        found: ProgramNode = (reader or self._simple)(start)
         self._end_of_line()
         return found
 
     def _end_of_line(self) -> None:
-        if self.kinds[self.at] not in ("newline", "end") and self.words[self.at] not in (
-            ";",
-            "end",
-            "elif",
-            "else",
-        ):
+        if self.kinds[self.at] not in ("newline", "end") and self.words[self.at] not in {";", *_BRANCH}:
             raise Unexpected("the end of the statement")
 
     def _def(self, start: int) -> ProgramNode:
-        kind = self.words[self.at]
-        self.at += 1
+        kind = self.words[self.at - 1]
         name = self.identifier("the name of a function")
-        outer, self.within = self.within, f"{kind} {name}"
-        try:
+        with self.inside(f"{kind} {name}"):
             self.expect("(")
             parameters = self.sequence(")", self._parameter)
             self.expect(":")
             body = self.block(_END)
             self.close("end", start)
-        finally:
-            self.within = outer
         return self.node("routine", name, start, parameters, [body], kind)
 
     _thread = _sec = _def
@@ -116,77 +108,40 @@ class URScriptParser(StatementParser):
         return self.node("parameter", name, start, default)
 
     def _if(self, start: int) -> ProgramNode:
-        self.at += 1
-        conditions, bodies = [self.expression()], list[list[ProgramNode]]()
-        self._colon()
-        bodies.append(self.block(_BRANCH))
-        while self.words[self.at] == "elif":
-            self.at += 1
-            conditions.append(self.expression())
-            self._colon()
-            bodies.append(self.block(_BRANCH))
-        if self.accept("else"):
-            self._colon()
-            bodies.append(self.block(_END))
-        self.close("end", start)
-        return self.node("if", "", start, conditions, bodies)
+        condition = self.expression()
+        self.opened("if")
+        return self.branches(start, condition, "end", "elif")
 
-    def _colon(self) -> None:
-        """Read the colon after a condition; without it the block is clear as well."""
+    def opened(self, word: str) -> None:
+        """Read the colon of a block; without it the block is clear as well."""
         if not self.accept(":"):
             self._note(Unexpected("':'"))
 
     def _while(self, start: int) -> ProgramNode:
-        self.at += 1
-        condition = self.expression()
-        self._colon()
-        body = self.block(_END)
-        self.close("end", start)
-        return self.node("while", "", start, [condition], [body])
+        return self.while_loop(start, "end")
 
     def _switch(self, start: int) -> ProgramNode:
-        self.at += 1
         subject = self.expression()
         self.expect(":")
-        labels: list[list[ProgramNode] | None] = []
-        bodies: list[list[ProgramNode]] = []
         while self.kinds[self.at] == "newline":
             self.at += 1
-        while self.words[self.at] in ("case", "default"):
-            is_case = self.words[self.at] == "case"
-            self.at += 1
-            labels.append([self.expression()] if is_case else None)
-            self.expect(":")
-            bodies.append(self.block(_CASE))
+        labels, bodies = self.cases("end", lambda: self.expect(":"))
         self.close("end", start)
         return self.node("switch", "", start, [subject], bodies, labels)
 
-    def _return(self, start: int) -> ProgramNode:
-        self.at += 1
-        has_value = self.kinds[self.at] not in ("newline", "end") and self.words[self.at] not in _BRANCH
-        return self.node("return", "", start, [self.expression()] if has_value else [])
-
-    def _break(self, start: int) -> ProgramNode:
-        self.at += 1
-        return self.node("break", "", start)
-
-    def _continue(self, start: int) -> ProgramNode:
-        self.at += 1
-        return self.node("continue", "", start)
-
     def _pass(self, start: int) -> ProgramNode:
-        self.at += 1
-        return self.node("empty", "pass", start)
+        return self.word(start, "empty")
+
+    _return = StatementParser.leave
+    _break = _continue = StatementParser.word
 
     def _halt(self, start: int) -> ProgramNode:
-        self.at += 1
         if self.accept("("):
             self.expect(")")
         return self.node("exit", "halt", start)
 
     def _global(self, start: int) -> ProgramNode:
-        scope = self.words[self.at]
-        self.at += 1
+        scope = self.words[self.at - 1]
         target = self.primary()
         if not self.accept("="):
             return self.node("empty", scope, start)
@@ -198,6 +153,7 @@ class URScriptParser(StatementParser):
         word = self.words[self.at]
         follows = self.words[self.at + 1] if self.kinds[self.at] != "end" else ""
         if word == "switch" and follows != "=":
+            self.at += 1
             return self._switch(start)
         if word in ("enter_critical", "exit_critical", "halt"):
             self.at += 1
@@ -216,7 +172,8 @@ class URScriptParser(StatementParser):
             return target
         raise Unexpected("'=' or '('")
 
-    def _argument(self) -> ProgramNode:
+    def argument(self) -> ProgramNode:
+        """Read an argument, which may have a name."""
         start = self.starts[self.at]
         if self.kinds[self.at] == "name" and self.words[self.at + 1] == "=":
             name = self.words[self.at]
@@ -226,22 +183,14 @@ class URScriptParser(StatementParser):
 
     def primary(self) -> ProgramNode:
         """Read a literal, a name, a call, or what stands in parentheses, with what follows it."""
+        found = self.literal()
+        if found is not None:
+            return found
         kind, word, start = self.kinds[self.at], self.words[self.at], self.starts[self.at]
-        if kind == "number":
-            self.at += 1
-            return self.node("number", word, start, value=number_of(word))
-        if kind == "text":
-            self.at += 1
-            return self.node("text", word, start, value=word[1:-1])
-        if word == "(":
-            self.at += 1
-            inner = self.expression()
-            self.expect(")")
-            return self._after(ProgramNode("group", "", start, self.ends[self.at - 1], [inner]), start)
         if word in ("[", "{"):
             self.at += 1
             closing = "]" if word == "[" else "}"
-            return self._after(self.node("list", "", start, self.sequence(closing, self._argument)), start)
+            return self.after(self.node("list", "", start, self.sequence(closing, self.argument)), start)
         if word == "run" and self.kinds[self.at + 1] == "name":
             self.at += 1
             return self.node("call", "run", start, [self.primary()])
@@ -252,32 +201,9 @@ class URScriptParser(StatementParser):
             return self.node("constant", word, start, value=CONSTANTS[word])
         if word == "p" and self.words[self.at] == "[":
             self.at += 1
-            return self._after(self.node("pose", "", start, self.sequence("]", self.expression)), start)
-        return self._after(self.node("name", word, start), start)
+            return self.after(self.node("pose", "", start, self.sequence("]", self.expression)), start)
+        return self.after(self.node("name", word, start), start)
 
-    def _after(self, found: ProgramNode, start: int) -> ProgramNode:
-        """Read calls, indexes and fields after a primary."""
-        while True:
-            word = self.words[self.at]
-            if word == "(" and found.kind in ("name", "field", "method"):
-                self.at += 1
-                arguments = self.sequence(")", self._argument)
-                if found.kind == "field":
-                    found = self.node("method", found.name, start, [found.parts[0], *arguments])
-                else:
-                    found = self.node("call", found.name, start, arguments)
-            elif word == "[":
-                self.at += 1
-                found = self.node("index", "", start, [found, *self.sequence("]", self.expression)])
-            elif word == "." and self.kinds[self.at + 1] == "name":
-                self.at += 2
-                found = self.node("field", self.words[self.at - 1], start, [found])
-            else:
-                return found
-
-
-def number_of(word: str) -> int | float:
-    """The value of a number as it is written."""
-    if word[:2].lower() in ("0x", "0b"):
-        return int(word, 0)
-    return int(word) if word.isdecimal() else float(word)
+    def number_of(self, word: str) -> int | float:
+        """The value of a number, which may be of hexadecimal or binary digits."""
+        return int(word, 0) if word[:2].lower() in ("0x", "0b") else super().number_of(word)

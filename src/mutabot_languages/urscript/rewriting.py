@@ -11,14 +11,9 @@ from typing import ClassVar
 from mutabot_languages.core.names import name_set
 from mutabot_languages.core.tree import ProgramNode
 from mutabot_languages.edits import Edit
+from mutabot_languages.mutation.conventional import Wording
 from mutabot_languages.mutation.differences import TextChange
-from mutabot_languages.mutation.rewriting import (
-    NO_BLENDING,
-    ORDERS,
-    Rewriter,
-    named_number,
-    signed_number,
-)
+from mutabot_languages.mutation.rewriting import Rewriter, named_number, signed_number
 
 _MOTIONS = name_set("movej movel movep movec")
 _POSES = name_set(
@@ -26,28 +21,54 @@ _POSES = name_set(
 )
 _OUTPUT = re.compile(r"set_\w*digital_out")
 _INPUT = re.compile(r"get_\w*digital_in")
+_SIGNAL = re.compile(r"[gs]et_\w*(?:digital|analog|flag)\w*")
 
 
 class UrRewriter(Rewriter):
     """The rewriter of URScript."""
 
-    relations: ClassVar = {**ORDERS, "==": ("!=",), "!=": ("==",)}
-    logic: ClassVar = {"and": "or", "or": "and"}
-    negation: ClassVar = "not ({})"
+    wording: ClassVar = Wording(
+        ("==", "!="), ("and", "or", "xor"), ("True", "False"), "not ({})", "norm({})", "sleep(1/0)",
+        arithmetic=("+", "-", "*", "/", "%"),
+    )  # fmt: skip
     nothing: ClassVar = "pass"
-    ignores_case: ClassVar = False
+    known_types: ClassVar = dict.fromkeys(
+        (f"get_{kind}_digital_in()" for kind in ("standard", "configurable", "tool")), "truth"
+    )
+
+    def note_type(self, node: ProgramNode) -> None:
+        """A variable has the type of what it is assigned."""
+        if node.kind == "assign" and node.parts[0].kind == "name":
+            self.add_type(node.parts[0].name, self.kind_of(node.parts[1]))
+        super().note_type(node)
+
+    def kind_of(self, node: ProgramNode) -> str:
+        """A list of numbers is an array."""
+        if node.kind == "pose" or (node.kind == "call" and node.name in _POSES):
+            return "pose"
+        if node.kind == "list" and node.parts and all(self.kind_of(part) == "number" for part in node.parts):
+            return "number[]"
+        return super().kind_of(node)
+
+    def is_amount(self, node: ProgramNode, parents: tuple[ProgramNode, ...]) -> bool:
+        """The first argument for a signal says which."""
+        call = parents[-1]
+        return not (_SIGNAL.fullmatch(call.name) and call.parts[0] is node)
+
+    def has_value(self, name: str, node: ProgramNode) -> bool:
+        """Whether an assignment stands before a node."""
+        return self._first_assigned.get(name, -1) < node.start
+
+    @cached_property
+    def _first_assigned(self) -> dict[str, int]:
+        nodes = [node for node in self.program.parsed.tree.walk() if node.kind == "assign"]
+        return {node.parts[0].name: node.end for node in reversed(nodes)}
 
     @cached_property
     def _first_label(self) -> int:
         """Where a program that PolyScope has written begins to be its user's."""
         nodes = self.program.parsed.tree.walk()
         return min((node.start for node in nodes if (node.kind, node.name) == ("empty", "label")), default=-1)
-
-    @cached_property
-    def _values(self) -> dict[str, ProgramNode]:
-        """The last value that is assigned to each name."""
-        assigned = (node.parts for node in self.all_nodes() if node.kind == "assign")
-        return {target.name: value for target, value in assigned if target.kind == "name"}
 
     def is_generated(self, node: ProgramNode, parents: tuple[ProgramNode, ...]) -> bool:
         """Functions of URCaps, and what PolyScope writes before the program."""
@@ -84,7 +105,7 @@ class UrRewriter(Rewriter):
                 yield from self.reversed(node, shift.parts if shift.kind == "pose" else ())
         elif node.kind == "assign" and node.parts[1].kind == "pose" and len(node.parts[1].parts) == 6:
             point = node.parts[1]
-            yield from self.sized("shift-point", node, point, self._literal, self.sizes.shifts, "mm", 0.001)
+            yield from self.sized("shift-point", node, point, self._literal)
         elif node.kind == "while" and self._only_waits(node):
             yield TextChange("forget-wait", node, self.put(node.parts[0], "False"))
 
@@ -102,25 +123,21 @@ class UrRewriter(Rewriter):
         yield from self.moved(node, target)
         if node.name in ("movej", "movel"):
             yield from self._swapped(node)
-        for position, part in enumerate(node.parts[1:], start=1):
-            if part.kind == "option" and part.name == "v":
-                yield from self.scaled("scale-speed", node, part.parts[0], (0.1, 2.0))
-            elif part.kind != "option" and position == 2 and node.name != "movec":
-                yield from self.scaled("scale-speed", node, part, (0.1, 2.0))
-            elif part.kind == "option" and part.name == "r" and part.parts[0].kind == "number":
-                edits = self.put(part.parts[0], "0" if part.parts[0].value else "0.05")
-                yield TextChange("change-blend", node, edits, reason=NO_BLENDING)
+        options = {name: option.parts[0] for name, option in node.options.items()}
+        speeds = [options["v"]] if "v" in options else [] if node.name == "movec" else node.plain[2:3]
+        for speed in speeds:
+            yield from self.scaled("scale-speed", node, speed, (0.1, 2.0))
+        if "r" in options and options["r"].kind == "number":
+            edits = self.put(options["r"], "0" if options["r"].value else "0.05")
+            yield TextChange("change-blend", node, edits)
 
     def _swapped(self, node: ProgramNode) -> Iterator[TextChange]:
         """The other motion, without acceleration and speed, whose units are others."""
         other = {"movej": "movel", "movel": "movej"}[node.name]
-        kept = [self.written(node.parts[0])]
-        kept += [
-            self.written(part) for part in node.parts[1:] if part.kind == "option" and part.name in ("r", "t")
-        ]
+        kept = [node.parts[0], *(option for name, option in node.options.items() if name in ("r", "t"))]
         edits = (
             Edit(node.start, node.start + len(node.name), other),
-            Edit(node.parts[0].start, node.parts[-1].end, ", ".join(kept)),
+            Edit(node.parts[0].start, node.parts[-1].end, ", ".join(map(self.written, kept))),
         )
         yield TextChange("swap-motion", node, edits)
 
@@ -144,13 +161,6 @@ class UrRewriter(Rewriter):
             for other in self.next_number(number, alike):
                 yield TextChange("other-input", node, self.put(number, other))
 
-    def is_pose(self, target: ProgramNode, depth: int = 0) -> bool:
-        """Whether an expression is a pose, by its last assignment."""
-        if target.kind == "pose" or (target.kind == "call" and target.name in _POSES):
-            return True
-        value = self._values.get(target.name) if target.kind == "name" else None
-        return value is not None and depth < 5 and self.is_pose(value, depth + 1)
-
     def shifted(self, target: ProgramNode, axis: int, metres: float) -> tuple[Edit, ...] | None:
         """A number of a literal, or a pose_trans around the target."""
         if target.kind == "pose":
@@ -162,7 +172,7 @@ class UrRewriter(Rewriter):
         return self._wrapped(target, axis + 3, math.radians(degrees))
 
     def _wrapped(self, target: ProgramNode, place: int, amount: float) -> tuple[Edit, ...] | None:
-        if not self.is_pose(target):
+        if self.kind_of(target) != "pose":
             return None
         amounts = ["0"] * 6
         amounts[place] = named_number(amount)
