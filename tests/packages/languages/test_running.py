@@ -273,6 +273,36 @@ def test_a_whole_target_of_krl_reads_no_pose_and_one_with_parts_does(tmp_path: P
             "a.script:5: b has no value: <module> was called without it, or nothing set it (in <module>)",
         ),
         (
+            "a.script",
+            "def f():\n  a = 1\nend\nsleep(f())\n",
+            "a.script:4: f has no value: it returns none (in <module>)",
+        ),
+        (
+            "a.script",
+            "def f():\n  return\nend\nb = 1 + f()\n",
+            "a.script:4: f has no value: it returns none (in <module>)",
+        ),
+        (
+            "a.script",
+            "def f():\n  a = 1\nend\nif f():\n  sleep(1)\nend\n",
+            "a.script:4: f has no value: it returns none (in <module>)",
+        ),
+        (
+            "a.script",
+            "movel(movej([0, 0, 0, 0, 0, 0]))\n",
+            "a.script:1: movej has no value: it returns none (in <module>)",
+        ),
+        (
+            "a.src",
+            "DEF a( )\nWAIT SEC f( )\nEND\nDEF f( )\nEND\n",
+            "a.src:2: f has no value: it returns none (in a)",
+        ),
+        (
+            "m.mod",
+            "MODULE M\nVAR num n;\nPROC main()\nn:=f()+1;\nENDPROC\nPROC f()\nENDPROC\nENDMODULE",
+            "m.mod:4: f has no value: it returns none (in main)",
+        ),
+        (
             "a.src",
             "DEF a( )\nDECL INT I\nPTP I\nEND\n",
             "a.src:3: PTP I: expected a position {X …} or axes {A1 …}, found 0 (in a)",
@@ -295,3 +325,50 @@ def test_the_mode_of_operation_of_krl_is_the_same_by_all_its_names(tmp_path: Pat
     condition = "$T1 AND ($MODE_OP==#T1) AND NOT ($T2 OR $AUT OR $EXT)"
     text = f"DEF a( )\nDECL INT N\nIF {condition} THEN\nN=1\nENDIF\nWAIT SEC N\nEND\n"
     assert run(tmp_path, "a.src", text)[1].seconds == pytest.approx(1.0)
+
+
+def test_the_value_of_what_is_not_carried_out_is_not_known(tmp_path: Path) -> None:
+    with pytest.raises(UnsupportedError, match=r"unsupported: the value of popup at line 1 of a\.script"):
+        run(tmp_path, "a.script", 'sleep(popup("go on?"))\n')
+
+
+def test_a_routine_of_krl_gives_back_elements_however_it_ends(tmp_path: Path) -> None:
+    text = (
+        "DEF a( )\nDECL INT N[2]\nf(N[1])\nWAIT SEC N[1]\nEND\nDEF f(X:OUT )\nDECL INT X\nX=2\nRETURN\nEND\n"
+    )
+    assert run(tmp_path, "a.src", text)[1].seconds == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize("begins", ["IF 1/n>0 THEN", "WHILE 1/n>2 DO", "FOR i FROM 1/n TO 0 DO", "TEST 1/n"])
+def test_an_error_where_a_block_begins_goes_to_the_handler_of_its_routine(
+    begins: str, tmp_path: Path
+) -> None:
+    ends = {"IF": "ENDIF", "WH": "ENDWHILE", "FO": "ENDFOR", "TE": "ENDTEST"}[begins[:2]]
+    text = (
+        f"MODULE M\nVAR num n;\nPROC main()\n{begins}\n{ends}\nWaitTime n;\n"
+        "ERROR\nn:=n+1;\nRETRY;\nENDPROC\nENDMODULE"
+    )
+    assert run(tmp_path, "m.mod", text)[1].seconds == pytest.approx(1.0)
+
+
+def test_an_error_that_a_handler_raises_in_a_block_goes_to_the_caller_s_once(tmp_path: Path) -> None:
+    text = """MODULE M
+VAR num n; VAR num handled;
+PROC main()
+  f;
+  WaitTime handled;
+ERROR
+  n:=1;
+  RETRY;
+ENDPROC
+PROC f()
+  IF TRUE THEN
+    handled:=handled+0/n;
+  ENDIF
+ERROR
+  handled:=handled+1;
+  RAISE;
+ENDPROC
+ENDMODULE
+"""
+    assert run(tmp_path, "m.mod", text)[1].seconds == pytest.approx(1.0)

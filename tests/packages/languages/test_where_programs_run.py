@@ -79,6 +79,16 @@ VERDICTS = {
     "count > 2 → NOT (count > 2)": "killed",
     "count > 2 → count >= 2": "survived",
     "count > 2 → count <= 2": "killed",
+    "count > 2 → count < 2": "killed",
+    "count > 2 → count = 2": "killed",
+    "count > 2 → count <> 2": "survived",
+    "count > 2 → TRUE": "survived",
+    "count > 2 → FALSE": "killed",
+    "count → (-count)": "killed",
+    "count + 4 → -(count + 4)": "killed",
+    "2 → (-2)": "survived",
+    "3 → -3": "killed",
+    "4 → (-4)": "killed",
 }
 
 
@@ -93,9 +103,7 @@ def verdicts(
         f'[tool.mutabot]\nprogram = ["pick.mod"]\nvocabulary = {vocabulary}\ntests = ["test_pick.py"]\n'
         'families = ["program-conventional"]\n'
     )
-    only = [
-        word for name in ("drop-any", "negate-condition", "replace-relation") for word in ("--only", name)
-    ]
+    only = [word for name in ("drop-any", "insert-unary", "replace-relation") for word in ("--only", name)]
     command = [sys.executable, "-m", "mutabot", "run", "--json", "--engine", engine, "-o", "repeats=false"]
     done = subprocess.run([*command, *only], cwd=folder, capture_output=True, text=True, check=False)
     assert done.stdout, done.stderr
@@ -181,9 +189,10 @@ def test_a_motion_that_the_mutants_text_asks_for_and_the_robot_refuses_is_no_kil
     far = motion.replace("FAR", "Offs(CRobT(),0,0,-9000)")
     program = FAR.replace("MoveL Offs(CRobT(),0,0,-9000),v200", far)
     found = ends(verdicts(tmp_path, suite, engine, '["cell"]', program))
-    assert found == {
+    expected = {
         "count := 3 deleted": verdict,
         "count > 2 → NOT (count > 2)": verdict,
         "count > 2 → count >= 2": "survived",
         "count > 2 → count <= 2": verdict,
     }
+    assert {text: found[text] for text in expected} == expected
