@@ -10,9 +10,9 @@ from typing import ClassVar
 from mutabot_languages.core.names import name_set
 from mutabot_languages.core.tree import ProgramNode
 from mutabot_languages.edits import Edit
-from mutabot_languages.mutation.conventional import Wording
 from mutabot_languages.mutation.differences import TextChange
 from mutabot_languages.mutation.rewriting import Rewriter, named_number, signed_number
+from mutabot_languages.mutation.wording import Wording
 
 from .parser import MOTIONS
 
@@ -191,7 +191,7 @@ class KrlRewriter(Rewriter):
         if number.kind == "number":
             alike = (
                 candidate.parts[1]
-                for candidate, _ in self._nodes()
+                for candidate in self.program.parsed.tree.walk()
                 if candidate.kind == node.kind == "index" and candidate.parts[0].name == node.parts[0].name
             )
             for text in self.next_number(number, alike):

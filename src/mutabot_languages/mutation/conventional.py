@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 from mutabot_languages.core.tree import ProgramNode
 from mutabot_languages.edits import Edit
 
 from .differences import TextChange
-
-if TYPE_CHECKING:
-    from .rewriting import Rewriter
+from .rewriting import Rewriter
 
 _Parents = tuple[ProgramNode, ...]
 ORDERS = ("<", "<=", ">", ">=")
@@ -27,46 +23,23 @@ _MOST_VARIABLES = 4
 _NO_NUMBER = 8e9
 
 
-@dataclass(frozen=True, slots=True)
-class Wording:
-    """How a language writes what these operators put into a program.
-
-    Attributes:
-        equality: its operators for equal and unequal.
-        logic: for and, or, and one of two.
-        truth: its words for true and false.
-        negation, absolute: a condition that does not hold, and a number without its sign, around ``{}``.
-        failing: a statement that stops the program with an error.
-        arithmetic: operators on numbers that stand for each other.
-        bits: operators on bits that do.
-        functions: those that stand for each other, by the operator that is about their calls.
-    """
-
-    equality: tuple[str, str]
-    logic: tuple[str, str, str]
-    truth: tuple[str, str]
-    negation: str
-    absolute: str
-    failing: str
-    arithmetic: tuple[str, ...] = ("+", "-", "*", "/")
-    bits: tuple[str, ...] = ()
-    functions: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-
-
 class ConventionalOperators:
     """Makes the differences of these operators in a file.
 
     Args:
         rewriter: of the file.
-        wording: of its language.
     """
 
-    def __init__(self, rewriter: Rewriter, wording: Wording) -> None:
-        self.rewriter, self.wording = rewriter, wording
+    def __init__(self, rewriter: Rewriter) -> None:
+        self.rewriter, self.wording = rewriter, rewriter.wording
         self._named: dict[int, dict[str, str]] = {}
 
-    def of_node(self, node: ProgramNode, parents: _Parents) -> Iterator[TextChange]:
-        """The differences that are about a node."""
+    def differences(self) -> Iterator[TextChange]:
+        """All of the file."""
+        for node, parents in self.rewriter.nodes():
+            yield from self._of_node(node, parents)
+
+    def _of_node(self, node: ProgramNode, parents: _Parents) -> Iterator[TextChange]:
         is_statement = self.rewriter.is_statement(node, parents)
         if node.kind == "binary":
             yield from self._operators(node)

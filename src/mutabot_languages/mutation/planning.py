@@ -12,6 +12,7 @@ from mutabot_languages.core.text import decode
 from mutabot_languages.core.tree import ProgramNode
 from mutabot_languages.registry import language_for, rewriter_of
 
+from .conventional import ConventionalOperators
 from .differences import ProgramFile, TextChange
 from .rewriting import Sizes
 
@@ -58,7 +59,8 @@ def mutants_of(program: ProgramFile, sizes: Sizes | None = None) -> Iterator[Pla
     """The mutants of a file, in the order of its text."""
     occurrences = occurrences_in(program.parsed.tree, program.text)
     rewriter = rewriter_of(program.language)(program, sizes)
-    made = sorted(rewriter.differences(), key=lambda change: (change.node.start, change.node.end))
+    made = [*rewriter.differences(), *ConventionalOperators(rewriter).differences()]
+    made.sort(key=lambda change: (change.node.start, change.node.end))
     seen: set[tuple[str, tuple[object, ...]]] = set()
     for change in made:
         key = (change.operator, change.edits)

@@ -10,8 +10,8 @@ from typing import ClassVar
 from mutabot_languages.core.tree import ProgramNode
 from mutabot_languages.edits import Edit
 
-from .conventional import ConventionalOperators, Wording
 from .differences import ProgramFile, TextChange
+from .wording import Wording
 
 #: the usual magnitudes of a shifted point, mm, and of a turned one, degrees
 SHIFTS = (1.0, 5.0, 20.0, 50.0)
@@ -116,24 +116,21 @@ class Rewriter:
         return True
 
     def differences(self) -> Iterator[TextChange]:
-        """All of the file, in the order of its text as far as that is one."""
-        conventional = ConventionalOperators(self, self.wording)
-        for node, parents in self._nodes():
-            if self.is_generated(node, parents):
-                continue
+        """Those of robot operators in the file."""
+        for node, parents in self.nodes():
             yield from self.of_node(node, parents)
-            yield from conventional.of_node(node, parents)
 
     def all_nodes(self) -> Iterator[ProgramNode]:
         """The nodes of all files of the program, this one's last."""
         for file in (*self.program.others, self.program):
             yield from file.parsed.tree.walk()
 
-    def _nodes(self) -> Iterator[tuple[ProgramNode, tuple[ProgramNode, ...]]]:
+    def nodes(self) -> Iterator[tuple[ProgramNode, tuple[ProgramNode, ...]]]:
+        """The nodes of the file that no tool has written, and those around each, in the order of the text."""
         waiting: list[tuple[ProgramNode, tuple[ProgramNode, ...]]] = [(self.program.parsed.tree, ())]
         while waiting:
             node, parents = waiting.pop()
-            if parents:
+            if parents and not self.is_generated(node, parents):
                 yield node, parents
             inner = (*parents, node)
             below = [*node.parts, *(statement for body in node.bodies for statement in body)]

@@ -9,9 +9,9 @@ from typing import ClassVar
 from mutabot_languages.core.names import name_set
 from mutabot_languages.core.tree import ProgramNode
 from mutabot_languages.edits import Edit
-from mutabot_languages.mutation.conventional import Wording
 from mutabot_languages.mutation.differences import TextChange
 from mutabot_languages.mutation.rewriting import Rewriter, named_number, signed_number
+from mutabot_languages.mutation.wording import Wording
 
 _MOTION = re.compile(r"move(?:j|l|c|absj)(?:do|ao|go|sync)?")
 _SPEEDS = (

@@ -11,9 +11,9 @@ from typing import ClassVar
 from mutabot_languages.core.names import name_set
 from mutabot_languages.core.tree import ProgramNode
 from mutabot_languages.edits import Edit
-from mutabot_languages.mutation.conventional import Wording
 from mutabot_languages.mutation.differences import TextChange
 from mutabot_languages.mutation.rewriting import Rewriter, named_number, signed_number
+from mutabot_languages.mutation.wording import Wording
 
 _MOTIONS = name_set("movej movel movep movec")
 _POSES = name_set(
@@ -156,7 +156,9 @@ class UrRewriter(Rewriter):
         number = node.parts[0]
         if number.kind == "number":
             alike = (
-                call.parts[0] for call, _ in self._nodes() if call.kind == "call" and call.name == node.name
+                call.parts[0]
+                for call in self.program.parsed.tree.walk()
+                if call.kind == "call" and call.name == node.name
             )
             for other in self.next_number(number, alike):
                 yield TextChange("other-input", node, self.put(number, other))
