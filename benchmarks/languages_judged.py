@@ -5,9 +5,9 @@ file, which have interrupts, two modules, data of their own and threads, run by 
 unified diff that ``mutabot diff`` shows is applied to a copy's file, line by line, and plain pytest runs the
 program's tests on that copy, without Mutabot's plug-in, with the seed of the round.
 
-Use: ``python benchmarks/languages_judged.py [--sample N] [--seed N] [--engine fork] [--only pick.mod …]``.
-The
-exit code is 1 if one verdict differs, or if there is nothing to compare.
+Use: ``python benchmarks/languages_judged.py [--sample N] [--seed N] [--engine fork] [--only pick.mod …]
+[--family program-conventional]``. The exit code is 1 if one verdict differs, or if there is nothing to
+compare.
 """
 
 from __future__ import annotations
@@ -28,8 +28,9 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests"))
 
 from mutabot_languages.core.text import decode  # noqa: E402
+from mutabot_languages.mutation.command import mutant_id  # noqa: E402
 from mutabot_languages.mutation.planning import PlannedText, planned_texts  # noqa: E402
-from mutabot_languages.mutation.provider import variant_of  # noqa: E402
+from mutabot_languages.mutation.rules import BY_NAME  # noqa: E402
 from suites.agreement import campaign, request_for, seeds_of  # noqa: E402
 from suites.corpus import copied  # noqa: E402
 from suites.editor import Facts  # noqa: E402
@@ -66,24 +67,26 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=0, help="of the sample")
     parser.add_argument("--engine", default="fork")
     parser.add_argument("--only", nargs="*", default=[*PROGRAMS])
+    parser.add_argument("--family", nargs="*", default=FAMILIES)
     given = parser.parse_args()
     same = other = 0
     for name in given.only:
         began = time.monotonic()
-        agree, differ = compare(name, given.engine, given.sample, given.seed)
+        agree, differ = compare(name, given.engine, given.sample, given.seed, given.family)
         same, other = same + agree, other + differ
         print(f"{name}: {agree} of {agree + differ} agree, {time.monotonic() - began:.0f} s", flush=True)
     print(f"{same} of {same + other} verdicts agree")
     return 0 if same and not other else 1
 
 
-def compare(name: str, engine: str, sample: int, seed: int) -> tuple[int, int]:
+def compare(name: str, engine: str, sample: int, seed: int, families: list[str]) -> tuple[int, int]:
     """Judge a program; print what differs, and return how many verdicts agree and how many do not."""
     example, files = PROGRAMS[name]
     planned = [
         planned_text
         for planned_text in planned_texts(example, [*files])
         if planned_text.difference.reason is None
+        and BY_NAME[planned_text.difference.operator].family in families
     ]
     chosen = random.Random(seed).sample(planned, min(sample, len(planned)))
     by_id = {mutant_id(planned_text): planned_text for planned_text in chosen}
@@ -112,12 +115,6 @@ def request_of(request: Any, ids: list[str]) -> Any:
     from dataclasses import replace  # noqa: PLC0415
 
     return replace(request, only=tuple(ids))
-
-
-def mutant_id(planned_text: PlannedText) -> str:
-    """The id that a campaign gives it."""
-    variant = variant_of(planned_text.difference)
-    return f"{planned_text.site.id}:{planned_text.difference.operator}{f'={variant}' if variant else ''}"
 
 
 def configure(copy: Path, name: str) -> None:
