@@ -9,7 +9,7 @@ import pytest
 from mutabot.campaign.run import run_campaign
 from mutabot.model import Outcome, Verdict
 from tests.campaign.outside import killer
-from tests.campaign.project import CONFIGURATION, ROBOT, Quiet, request_for, run, write_project
+from tests.campaign.project import CONFIGURATION, REPLAY, ROBOT, Quiet, request_for, run, write_project
 
 TESTS = """
     import json
@@ -316,3 +316,53 @@ def test_a_script_sees_itself_as_ever_when_its_text_is_mutated(tmp_path: Path) -
     changed = [value for mutant, value in found.items() if ":3#1:" in mutant]
     assert changed
     assert {outcome.verdict for outcome in changed} == {Verdict.KILLED}
+
+
+@pytest.mark.needs("source")
+@pytest.mark.parametrize("engine", ["fork", REPLAY])
+def test_a_process_that_goes_on_after_its_test_tells_of_no_change_where_no_value_changed(
+    tmp_path: Path, engine: str
+) -> None:
+    mission = """
+        from robot import Arm
+
+        def serve(orders, answers):
+            arm = Arm()
+            for order in orders:
+                arm.move_by(float(order))
+                answers.write(f"{arm.position()} {arm.x}\\n")
+                answers.flush()
+    """
+    tests = """
+        import os
+
+        import mission
+        import pytest
+
+        @pytest.fixture(scope="session")
+        def ask():
+            (orders, order), (answer, answers) = os.pipe(), os.pipe()
+            child = os.fork()
+            if not child:
+                os.close(order)
+                try:
+                    mission.serve(os.fdopen(orders), os.fdopen(answers, "w"))
+                finally:
+                    os._exit(0)
+            os.close(orders)
+            os.close(answers)
+            with os.fdopen(order, "w", buffering=1) as given, os.fdopen(answer) as taken:
+                yield lambda text: (given.write(text), taken.readline())[1]
+            os.waitpid(child, 0)
+
+        def test_the_first(ask):
+            assert ask("0.25\\n") == "0.25 0.25\\n"
+
+        def test_the_second(ask):
+            assert ask("0.25\\n") == "0.5 0.5\\n"
+    """
+    project = write_project(tmp_path, mission, tests)
+    engine = "auto" if engine == "fork" else engine
+    found = run(project, families=("conventional",), only=("*:ABS=abs",), engine=engine)
+    assert len(found) == 3  # of what is ordered, of what is read, of the attribute: all are positive
+    assert {outcome.verdict for outcome in found.values()} == {Verdict.NO_EFFECT}

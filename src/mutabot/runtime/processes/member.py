@@ -296,6 +296,12 @@ class Member:
             text.sightings.report_first(lambda place: self._reached((place,)))
         else:
             text.alternatives.on_first = lambda place: self.poll()
+            text.alternatives.on_idle = self._take_back
+
+    def _take_back(self) -> None:
+        """Report that an alternative changed nothing, if it was reported while that was not known."""
+        if self.session.evidence.acted < self._reported.acted:
+            self.poll()
 
     def _reached(self, places: tuple[int, ...]) -> None:
         self.turn()

@@ -104,6 +104,8 @@ class Alternatives:
             differ for the first time from the original, or may be; it may activate one of them, which then
             stands there at once.
         forms: gives a place as trees that can be looked ahead of; None for statements.
+        on_idle: told that an evaluation of the active alternative has changed nothing; until its value is
+            known, it counts as a change.
         on_first: told the number of a place that is on when it is first evaluated since ``start``.
         on_act: told when the active alternative is known to change something, or may do so, for the first
             time since ``start``.
@@ -121,6 +123,7 @@ class Alternatives:
         self.on_place: Callable[[int, frozenset[int]], None] | None = None
         self.forms: Callable[[int], Forms | None] = lambda place: None
         self.on_act: Callable[[], None] = lambda: None
+        self.on_idle: Callable[[], None] = lambda: None
         self.on_first: Callable[[int], None] | None = None
         self.switches: list[Any] = [self, *([False] * size)]
 
@@ -147,6 +150,7 @@ class Alternatives:
         """Compare an alternative's value with the original's, if that is known."""
         if before is not _UNKNOWN and _is_same(before, after):
             self.idle[place] = self.idle.get(place, 0) + 1
+            self.on_idle()
             return
         if before is not _UNKNOWN and self.example is None:
             self.example = (_plain(before), _plain(after))
@@ -184,14 +188,14 @@ class Alternatives:
         """Return whether an alternative replaces the original at a place that is being evaluated."""
         place = switch.place
         hits = self.hits[place] = self.hits.get(place, 0) + 1
-        if self.on_first is not None and hits == 1 + self._kept[0].get(place, 0):
-            self.on_first(place)
         if switch.watched:
             self._look_ahead(switch, frame)
         index = self.active[1] if self.active is not None and self.active[0] == place else None
         if index is not None and index < 0:
             self._control(place, index)
-            return False
+            index = None
+        if self.on_first is not None and hits == 1 + self._kept[0].get(place, 0):
+            self.on_first(place)
         return index is not None
 
     def _look_ahead(self, switch: Switch, frame: types.FrameType) -> None:
