@@ -42,6 +42,16 @@ ROBOT = """
         async def amethod(self, x):
             LOG.append(("amethod", x))
 
+        slowly = functools.partialmethod(method)
+
+        @functools.singledispatchmethod
+        def by_type(self, x):
+            raise TypeError(x)
+
+        @by_type.register
+        def _(self, x: float):
+            LOG.append(("by_type", x))
+
         @property
         def height(self):
             LOG.append(("height",))
@@ -71,11 +81,13 @@ def operation(target: str, *lines: str) -> str:
         ("Arm.static", "robot.Arm.static(0.25)"),
         ("amove", "asyncio.run(robot.amove(0.25))"),
         ("Arm.amethod", "asyncio.run(robot.Arm().amethod(0.25))"),
+        ("Arm.slowly", "robot.Arm().slowly(0.25)"),
+        ("Arm.by_type", "robot.Arm().by_type(0.25)"),
     ],
 )
 def test_a_mutant_reaches_this_kind_of_callable(make_stage: Make, target: str, call: str) -> None:
     program = f"import asyncio\nimport robot\n\ndef run():\n    {call}\n    return robot.LOG[-1][-1]\n"
-    stage = make_stage(ROBOT, program, operation(target))
+    stage = make_stage(ROBOT, program, operation(target, 'signature = "(x)"', X))
     result, activation = stage.mutated("reverse", "x")
     assert result == -0.25
     assert (activation.evidence.hits, activation.evidence.acted) == (1, 1)

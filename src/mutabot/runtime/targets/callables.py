@@ -1,8 +1,8 @@
 """Targets that are Python callables, ``module:qualified.name``: wrapped before or after they are imported.
 
-Functions, methods, class and static methods, async functions and properties can be wrapped. Where a
-module was already imported, names that other modules took from it (``from x import f``) are re-bound too;
-other references to it are not found.
+Functions, async functions, properties and methods of all kinds can be wrapped: of an object, of the class,
+static, and those that ``functools`` makes. Where a module was already imported, names that other modules took
+from it (``from x import f``) are re-bound too; other references to it are not found.
 """
 
 from __future__ import annotations
@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 _SET = "is a property: its arguments are those of assignments, which return nothing; describe one of the two"
 _NOT_SET = "is a property that cannot be set; describe its result"
+#: what stands in a class and can be called once it was read from there
+_BOUND_ONLY = (classmethod, staticmethod, functools.partialmethod, functools.singledispatchmethod)
 
 
 def look_at(operation: Operation, original: Any) -> Iterator[Finding]:
@@ -179,7 +181,7 @@ def _wrapper(owner: Any, name: str, original: Any, handler: Handler, *, is_set: 
         return cached
     if isinstance(original, type):
         raise NotCallableError(f"{class_name(original)} is a class; name one of its methods")
-    if not callable(original) and not isinstance(original, classmethod | staticmethod):
+    if not callable(original) and not isinstance(original, _BOUND_ONLY):
         raise NotCallableError(f"{name!r} is {type(original).__name__}, which cannot be called")
     if isinstance(owner, type):  # what Python binds, it goes on to bind
         if type(original) is FunctionType:
