@@ -21,7 +21,6 @@ from typing import Any
 from comparison.across import STRENGTHS, UNKNOWN
 from comparison.claims import family_of
 from comparison.data import comparison_data
-from comparison.ends import noticing_tests
 from comparison.families import compare_families
 from comparison.run import campaign
 from comparison.tasks_page import ORDER, ROBOT, TEXT, page
@@ -29,6 +28,7 @@ from mutabot.cli.options import Running
 from mutabot.model import Outcome
 from mutabot.report.document import dumps
 from mutabot.results.results import MutantResult, Results
+from mutabot_minimal.subsumption import noticing_tests
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCS = ROOT / "docs"

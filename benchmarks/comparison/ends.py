@@ -21,6 +21,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from mutabot.model import By, Outcome, Verdict
+from mutabot_minimal.subsumption import noticing_tests
 
 
 class End(StrEnum):
@@ -103,14 +104,6 @@ def properties_of(rounds: Sequence[Outcome | None]) -> Properties:
         indistinguishable=bool(judged)
         and all(end_of(outcome) is End.INDISTINGUISHABLE for outcome in judged),
     )
-
-
-def noticing_tests(outcome: Outcome) -> frozenset[str]:
-    """The tests that noticed a mutant, as far as they are known; a time-out is noticed too."""
-    if not outcome.verdict.is_killed:
-        return frozenset()
-    first = {outcome.test} if outcome.test is not None else set()
-    return frozenset({kill.test for kill in outcome.kills} | first)
 
 
 def _is_trivial(judged: Iterable[Outcome], *, everything_run: bool) -> bool | None:

@@ -1,31 +1,18 @@
 """Redundancy: which mutants tell nothing that others do not tell as well.
 
-Two notions, both from what tests really did (*dynamic*), so about this suite and these rounds:
-
-- *Alike* are mutants that die in exactly the same tests and rounds with the same messages.
-- Mutant a *subsumes* mutant b if something kills a, and everything that kills a kills b too, where
-  "something" is a test in a round. Mutants that subsume each other form a class; a class that no other one
-  subsumes is a *dominator*, and one mutant of each dominator makes a smallest set whose killing kills all:
-  Ammann, Delamaro and Offutt, "Establishing Theoretical Minimal Sets of Mutants" (ICST 2014); Kurtz, Ammann,
-  Delamaro, Offutt and Deng, "Mutant Subsumption Graphs" (Mutation 2014).
-
-A test in a round stands for a test case of these papers: with other seeds it is another one. Both notions
-need every test that reaches a mutant to have been run (``Outcome.complete``).
+Two notions, both from what tests really did, so about this suite and these rounds: *dominators*
+(``mutabot_minimal.subsumption``), and *alike* ones, which die in exactly the same tests and rounds with the
+same messages. Both need every test that reaches a mutant to have been run (``Outcome.complete``).
 """
 
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TypeVar
 
 from mutabot.model import Outcome
 from mutabot.model.outcome_text import without_accidents
-
-from .ends import noticing_tests
-
-M = TypeVar("M", bound=Hashable)
-Killer = tuple[str, int]
+from mutabot_minimal.subsumption import dominators, killers_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,25 +51,6 @@ class Redundancy:
             killed=len(known),
             unknown=len(killed) - len(known),
         )
-
-
-def killers_of(outcomes: Iterable[Outcome]) -> frozenset[Killer]:
-    """The tests, each with its round, that kill a mutant."""
-    return frozenset((test, outcome.round) for outcome in outcomes for test in noticing_tests(outcome))
-
-
-def dominators(killers: Mapping[M, frozenset[Killer]]) -> tuple[tuple[M, ...], ...]:
-    """The classes of mutants that no other class subsumes, in the order in which they first occur."""
-    classes: dict[frozenset[Killer], list[M]] = {}
-    for mutant, those in killers.items():
-        if those:
-            classes.setdefault(those, []).append(mutant)
-    smallest: list[frozenset[Killer]] = []
-    for those in sorted(classes, key=len):  # what subsumes a class is smaller, so it is found before
-        if not any(other <= those for other in smallest):
-            smallest.append(those)
-    kept = set(smallest)
-    return tuple(tuple(members) for those, members in classes.items() if those in kept)
 
 
 def _grouped_by_manner(mutants: Mapping[str, Sequence[Outcome]]) -> list[tuple[str, ...]]:

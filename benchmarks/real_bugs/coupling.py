@@ -7,7 +7,7 @@ as it was found in public robot programs. All tests run with every bug and every
 * whether, of many random parts of a program's tests, all of one size, those that kill more mutants catch more
   bugs: the rank correlation (Spearman), beside that of the lines covered;
 * for how many bugs there is a mutant that is killed by exactly the tests that catch the bug;
-* how many dominators there are: classes of mutants that no other one subsumes (``comparison.subsumption``);
+* how many dominators there are: classes of mutants that no other one subsumes (``mutabot_minimal``);
 * which share of the bugs parts of any size catch that have some score: what reports say beside a score
   (``mutabot.results.bugs_caught``).
 
@@ -30,8 +30,8 @@ from typing import TypeVar
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from comparison.subsumption import dominators
 from mutabot.results.bugs_caught import Caught, band_of
+from mutabot_minimal.subsumption import dominators
 from real_bugs.gathering import BUGS, FAMILIES, PROGRAMS, STRENGTHS, Found, gather, read, write
 
 #: what a score may be made of

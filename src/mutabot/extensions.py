@@ -33,6 +33,7 @@ _OF_OWN_PACKAGES = {
         "export": "mutabot_languages",
         "init": "mutabot_init",
         "live": "mutabot_live",
+        "minimal": "mutabot_minimal",
         "motion": "mutabot_motion",
         "patches": "mutabot_patches",
         "suggest": "mutabot_suggest",

@@ -1,17 +1,9 @@
-"""Dominators keep what they promise on any matrix of kills, and groups hold only what dies alike."""
+"""Groups hold only what dies alike, and no class holds what is not known."""
 
 from __future__ import annotations
 
-from itertools import combinations
-
-from hypothesis import given
-from hypothesis import strategies as st
-
-from comparison.subsumption import Redundancy, dominators, killers_of
+from comparison.subsumption import Redundancy
 from mutabot.model import By, Kill, Outcome, Verdict
-
-KILLERS = st.frozensets(st.tuples(st.sampled_from("abcd"), st.integers(0, 2)), max_size=6)
-MATRICES = st.lists(KILLERS, max_size=25).map(lambda rows: dict(enumerate(rows)))
 
 
 def killed(
@@ -24,11 +16,6 @@ def killed(
     )  # fmt: skip
 
 
-def subsumes(first: frozenset[tuple[str, int]], second: frozenset[tuple[str, int]]) -> bool:
-    """The definition: something kills the one mutant, and whatever does kills the other too."""
-    return bool(first) and first <= second
-
-
 def redundancy(*outcomes: Outcome) -> Redundancy:
     mutants: dict[str, list[Outcome]] = {}
     for outcome in outcomes:
@@ -36,58 +23,7 @@ def redundancy(*outcomes: Outcome) -> Redundancy:
     return Redundancy.of(mutants)
 
 
-@given(MATRICES)
-def test_no_dominator_subsumes_another_and_members_of_one_subsume_each_other(
-    matrix: dict[int, frozenset[tuple[str, int]]],
-) -> None:
-    found = dominators(matrix)
-    for first, second in combinations(found, 2):
-        assert not subsumes(matrix[first[0]], matrix[second[0]])
-        assert not subsumes(matrix[second[0]], matrix[first[0]])
-    for members in found:
-        assert len({matrix[member] for member in members}) == 1
-
-
-@given(MATRICES)
-def test_every_killed_mutant_is_subsumed_by_a_dominator(
-    matrix: dict[int, frozenset[tuple[str, int]]],
-) -> None:
-    found = dominators(matrix)
-    for mutant, killers in matrix.items():
-        subsumed = [members for members in found if subsumes(matrix[members[0]], killers)]
-        assert bool(subsumed) == bool(killers), mutant
-
-
-@given(MATRICES, KILLERS)
-def test_tests_that_kill_all_dominators_kill_all_that_can_be_killed(
-    matrix: dict[int, frozenset[tuple[str, int]]], suite: frozenset[tuple[str, int]]
-) -> None:
-    if all(matrix[members[0]] & suite for members in dominators(matrix)):
-        assert all(killers & suite for killers in matrix.values() if killers)
-
-
-@given(MATRICES)
-def test_no_dominator_can_be_spared(matrix: dict[int, frozenset[tuple[str, int]]]) -> None:
-    """For each there is a suite that kills all others and lets it live: everything but what kills it."""
-    found = dominators(matrix)
-    everything = frozenset().union(*matrix.values())
-    for spared in found:
-        suite = everything - matrix[spared[0]]
-        assert all(matrix[other[0]] & suite for other in found if other != spared)
-
-
-@given(MATRICES, st.randoms())
-def test_the_order_of_mutants_does_not_matter(
-    matrix: dict[int, frozenset[tuple[str, int]]], random: object
-) -> None:
-    names = list(matrix)
-    random.shuffle(names)  # type: ignore[attr-defined]
-    shuffled = dominators({name: matrix[name] for name in names})
-    assert {frozenset(group) for group in shuffled} == {frozenset(group) for group in dominators(matrix)}
-
-
 def test_the_same_test_in_another_round_is_another_killer() -> None:
-    assert killers_of([killed("m", "a"), killed("m", "a", round=1)]) == {("a", 0), ("a", 1)}
     found = redundancy(killed("m", "a"), killed("n", "a", round=1))
     assert found.dominators == (("m",), ("n",))
     assert found.alike == ()

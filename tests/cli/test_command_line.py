@@ -76,13 +76,14 @@ def test_help_works_in_any_folder_and_names_every_command(
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.needs("init", "suggest", "live", "motion", "patches")
+@pytest.mark.needs("init", "suggest", "live", "minimal", "motion", "patches")
 def test_help_lists_commands_in_the_order_in_which_they_are_used(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--help"]) == 0
     listed = capsys.readouterr().out.partition("Commands:\n")[2].partition("\n\n")[0].splitlines()
     assert [line.split()[0] for line in listed] == [
         "init", "check", "list", "diff", "export", "operators", "patches", "run", "merge", "replay",
-        "suggest", "world", "results", "show", "accept", "thresholds", "report", "live", "motion",
+        "minimal", "suggest", "world", "results", "show", "accept", "thresholds", "report", "live",
+        "motion",
     ]  # fmt: skip
 
 

@@ -278,6 +278,7 @@ def alone(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "mutabot_dask",
         "mutabot_init",
         "mutabot_live",
+        "mutabot_minimal",
         "mutabot_motion",
         "mutabot_suggest",
     )

@@ -80,7 +80,8 @@ T = TypeVar("T")
 
 #: facts of a campaign that tell nothing of the machine and its folders
 _META = (
-    "mutabot", "python", "versions", "seed", "rounds", "engine", "families", "order", "started", "seconds",
+    "mutabot", "python", "versions", "seed", "rounds", "engine", "families", "order", "every_test", "started",
+    "seconds",
 )  # fmt: skip
 
 

@@ -1,0 +1,54 @@
+"""Subsumption: which mutants are killed by whatever kills another one.
+
+Mutant a *subsumes* mutant b if something kills a, and everything that kills a kills b too, where
+"something" is a test in a round. Mutants that subsume each other form a class; a class that no other one
+subsumes is a *dominator*, and one mutant of each dominator makes a smallest set whose killing kills all:
+Ammann, Delamaro and Offutt, "Establishing Theoretical Minimal Sets of Mutants" (ICST 2014); Kurtz, Ammann,
+Delamaro, Offutt and Deng, "Mutant Subsumption Graphs" (Mutation 2014).
+
+It is *dynamic*: from what tests really did, so about this suite and these rounds. A test in a round stands
+for a test case of these papers: with other seeds it is another one. Every test that reaches a mutant must
+have been run (``Outcome.complete``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterable, Mapping
+from typing import TypeVar
+
+from mutabot.api.reports import Outcome
+
+M = TypeVar("M", bound=Hashable)
+#: a test, and a round from 0
+Killer = tuple[str, int]
+
+
+def noticing_tests(outcome: Outcome) -> frozenset[str]:
+    """The tests that noticed a mutant, as far as they are known; a time-out is noticed too."""
+    if not outcome.verdict.is_killed:
+        return frozenset()
+    first = {outcome.test} if outcome.test is not None else set()
+    return frozenset({kill.test for kill in outcome.kills} | first)
+
+
+def killers_of(outcomes: Iterable[Outcome]) -> frozenset[Killer]:
+    """The tests, each with its round, that kill a mutant."""
+    return frozenset((test, outcome.round) for outcome in outcomes for test in noticing_tests(outcome))
+
+
+def dominators(killers: Mapping[M, frozenset[Killer]]) -> tuple[tuple[M, ...], ...]:
+    """The classes of mutants that no other class subsumes, in the order in which they first occur.
+
+    Args:
+        killers: of each mutant; those that nothing kills are in no class.
+    """
+    classes: dict[frozenset[Killer], list[M]] = {}
+    for mutant, those in killers.items():
+        if those:
+            classes.setdefault(those, []).append(mutant)
+    smallest: list[frozenset[Killer]] = []
+    for those in sorted(classes, key=len):  # what subsumes a class is smaller, so it is found before
+        if not any(other <= those for other in smallest):
+            smallest.append(those)
+    kept = set(smallest)
+    return tuple(tuple(members) for those, members in classes.items() if those in kept)
