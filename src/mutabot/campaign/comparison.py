@@ -122,7 +122,8 @@ class Difference:
             to be claimed.
         distance: greatest difference of a probe, in units of the original's spread (``OTHER_WORLD`` for one
             that is not of numbers); None without probes, or if none that differs more is all that is known.
-        divergence: one line per difference: the outcome, the worst probe first, the first call that differs.
+        divergence: one line per difference: the outcome, probes whose ends differ by more than the original's
+            spread, a difference along the way that does, other probes, the first call that differs.
         gaps: what could not be compared, one line each.
         way: greatest difference of a probe along the way, likewise; None if none was compared.
         compared: how much was; None if nothing was.
@@ -134,6 +135,12 @@ class Difference:
     gaps: tuple[str, ...] = ()
     way: float | None = None
     compared: Compared | None = field(default=None, compare=False)
+
+    @property
+    def weight(self) -> tuple[float, float, float, bool]:
+        """The sort key for reports: an end beyond the original's spread says more than the way there."""
+        end, way = self.distance or 0.0, self.way or 0.0
+        return end if end > 1.0 else 0.0, way, end, not self.indistinguishable
 
 
 def compare(
@@ -166,12 +173,15 @@ def compare(
     trace_line = _first_difference(original, mutant, tolerance, _angles_of(operations))
     returned_line = _returned_difference(original, mutant, probes)
     distances = [difference.deviation(spread.ends) for difference in found]
-    different = [difference.text for difference in found if difference.distance > 1.0]
+    different = [difference for difference in found if difference.distance > 1.0]
+    beyond = [difference.text for difference in different if difference.deviation(spread.ends) > 1.0]
+    within = [difference.text for difference in different if difference.deviation(spread.ends) <= 1.0]
 
     way, way_line, moments = _on_the_way(original, mutant, probes, spread)
     is_same_end = original.outcome == mutant.outcome
     end_line = "" if is_same_end else f"the test ended {mutant.outcome} instead of {original.outcome}"
-    lines = [line for line in (end_line, *different, way_line, returned_line, trace_line) if line]
+    probe_lines = (*beyond, way_line, *within) if (way or 0.0) > 1.0 else (*beyond, *within, way_line)
+    lines = [line for line in (end_line, *probe_lines, returned_line, trace_line) if line]
     distance = max(distances, default=None)
     if gaps and not different:  # what cannot be read may be anywhere
         distance = None
@@ -290,11 +300,7 @@ def farthest(comparisons: Sequence[Difference]) -> Difference:
     """Merge the comparisons of several tests of one mutant: the largest differences; equal if all are."""
     if not comparisons:
         return Difference(True, None, ())
-    ranked = sorted(
-        comparisons,
-        key=lambda difference: (difference.distance or 0.0, not difference.indistinguishable),
-        reverse=True,
-    )
+    ranked = sorted(comparisons, key=lambda difference: difference.weight, reverse=True)
     distances = [comparison.distance for comparison in comparisons if comparison.distance is not None]
     lines = dict.fromkeys(line for difference in ranked for line in difference.divergence)
     together = all(comparison.indistinguishable for comparison in comparisons)
@@ -424,9 +430,13 @@ class _ProbeDifference(NamedTuple):
         tolerance = max(self.tolerance, TOLERANCES.get(self.unit or "", 0.0))
         return min(deviation_of(self.size, spread.get(self.key, 0.0), tolerance), OTHER_WORLD)
 
-    def rank(self, spread: Mapping[str, float]) -> tuple[float, float]:
-        """Return the sort key of a difference; the lowest is the largest deviation."""
-        return -self.deviation(spread), -self.distance
+    def rank(self, spread: Mapping[str, float]) -> tuple[float, bool, float, float]:
+        """Return the sort key of a difference; the lowest is the largest deviation.
+
+        A delay goes before what differs by no more than the original's spread.
+        """
+        deviation, is_late = self.deviation(spread), self.is_clock and self.size > TOLERANCES["s"]
+        return -deviation if deviation > 1.0 else 0.0, not is_late, -deviation, -self.distance
 
 
 def _probe_differences(

@@ -8,7 +8,7 @@ import pytest
 
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.vocabulary_fit import refuse_unfit
-from mutabot.campaign.comparison import Difference, Observation, ProbeSpread, TraceCall, compare
+from mutabot.campaign.comparison import Difference, Observation, ProbeSpread, TraceCall, compare, farthest
 from mutabot.campaign.verdict import stable_first
 from mutabot.errors import ConfigurationError
 from mutabot.model import Kind, Path, Probe, Quantity, Vocabulary
@@ -101,6 +101,37 @@ def test_along_the_way_spreads_count_too() -> None:
     runs = [along(0.5), along(0.6)]
     assert compare(along(0.5), along(0.8), [MARKED]).way == pytest.approx(300.0)
     assert compare(along(0.5), along(0.8), [MARKED], spread=spread(*runs)).way == pytest.approx(3.0)
+
+
+def first_words(found: Difference) -> list[str]:
+    return [line.partition(":")[0].partition(",")[0] for line in found.divergence]
+
+
+@pytest.mark.parametrize(
+    ("end", "lines"),
+    [
+        ({"tool__theta_z": 90.01}, ["on the way", "world.tool"]),
+        ({"tool__theta_z": 91.0}, ["world.tool", "on the way"]),
+        ({"tool__theta_z": 90.01, "time": 11.7}, ["on the way", "the clock world.time", "world.tool"]),
+        ({"tool__theta_z": 90.01, "time": 10.05}, ["on the way", "world.tool", "the clock world.time"]),
+    ],
+)
+def test_an_end_within_the_originals_spread_is_told_after_a_detour_and_a_delay(
+    end: dict[str, float], lines: list[str]
+) -> None:
+    def along(y: float, **changes: float) -> Observation:
+        read = {f"{TARGET}.driver.y": y}
+        return Observation([TraceCall("a.py:1 move")], seen(**changes).probes, moments=[(1, read, True)])
+
+    assert first_words(compare(along(0.08), along(-0.08, **end), [MARKED])) == lines
+
+
+def test_the_test_with_the_detour_is_told_before_one_whose_end_is_nearly_the_same() -> None:
+    same = Difference(False, 0.06, ("world.tool: turned by 0.03 deg",), way=0.1)
+    detour = Difference(False, 0.02, ("on the way: off by 0.16",), way=160.0)
+    elsewhere = Difference(False, 3.0, ("world.box: off by 3 mm",), way=3.0)
+    told = farthest([same, detour, elsewhere]).divergence
+    assert told == (*elsewhere.divergence, *detour.divergence, *same.divergence)
 
 
 def test_lines_name_calls_without_columns() -> None:
