@@ -96,7 +96,8 @@ def measured(name: str, copy: Path, only: Sequence[str], jobs: int) -> list[Worl
     what = EXAMPLES[name]
     if not copy.is_dir():
         copied(ROOT / "examples" / name, copy)
-        names = ", ".join(f'"{key}" = "{value}"' for key, value in what.names.items())
+        named = {key: value for key, value in what.names.items() if key in (only or what.names)}
+        names = ", ".join(f'"{key}" = "{value}"' for key, value in named.items())
         lines = (
             f'tests = ["{what.test}"]',
             "[tool.mutabot.world]",
