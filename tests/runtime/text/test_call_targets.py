@@ -59,6 +59,10 @@ PROGRAM = """
 
     def own():
         return Own().move_by(0.5)
+
+    def under_the_name_of_another(arm):
+        tool = arm.move_by
+        return tool(0.5)
 """
 VOCABULARY = """
     [[operation]]
@@ -204,6 +208,17 @@ def test_check_says_what_stood_in_and_what_was_left_alone(stage: Stage) -> None:
     assert told["call"] == "it is replaced by a mock in 2 tests"
     assert "1 call of this name left alone" in told["method"]
     assert told["method"].endswith('if it is, write method = "move_by"')
+
+
+def test_check_calls_no_operation_left_alone_that_is_kept_under_the_name_of_another(stage: Stage) -> None:
+    session = stage.session(inspect=True)
+    stage.load_program()
+    session.start_test("test")
+    stage.run(session, "under_the_name_of_another", stage.load_robot().Arm())
+    session.end_test()
+    session.finish()
+    assert [written for _, written, *_ in session.recorder.trace] == [{"dx": 0.5}]
+    assert not [line for line in stage.pipe.lines if isinstance(line, Remark) and line.key == "method"]
 
 
 def test_a_method_counts_for_whatever_object_has_it(make_stage: Make) -> None:

@@ -167,7 +167,7 @@ class CallTargets:
     def __call__(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
         """Return what is called at a site: ``found``, or a wrapper that calls it as an operation."""
         adapter = self.candidate(site, found, receiver, frame)
-        if self.noted is not None:
+        if self.noted is not None and (adapter is not None or not self._is_seen(found)):
             operation = adapter.operation if adapter is not None else None
             self.noted.note(site, operation, found, receiver)
         if adapter is None:
@@ -236,7 +236,7 @@ class CallTargets:
 
     def candidate(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Adapter | None:
         """Return the operation at a site, unless its calls are intercepted anyway."""
-        if any(handler in self.sees_itself for handler in _handlers(found)):
+        if self._is_seen(found):
             return None
         adapter = self.named(site.name, found, receiver, frame)
         if adapter is None and self.known:
@@ -250,6 +250,12 @@ class CallTargets:
         else:
             self.stood[self.place(site, frame)[0]] = adapter.operation.target
         return adapter
+
+    def _is_seen(self, found: Any) -> bool:
+        """Return whether calls are intercepted whatever name they have."""
+        if type(found) is PassedCallable:
+            return True
+        return any(handler in self.sees_itself for handler in _handlers(found))
 
     def named(self, name: str, found: Any, receiver: Any, frame: FrameType) -> Adapter | None:
         """Return the operation of this name that a callable replaces."""
