@@ -28,7 +28,7 @@ class RapidParser(StatementParser):
 
     lexis: ClassVar = Lexis.of(
         {
-            "space": r"[ \t\r\n\f\v\ufeff\xa0\x00\x1a]+",
+            "space": r"[ \t\r\n\f\v\ufeff\xa0\u3000\x00\x1a]+",
             "comment": r"![^\r\n]*",
             "header": r"%%%.*?%%%",
             "name": r"[^\W\d]\w*|\d+_\w*",
@@ -226,8 +226,7 @@ class RapidParser(StatementParser):
         self.at += 1
         name = self.expression()
         self.expect("%")
-        arguments = [] if self.words[self.at] == ";" else self._arguments(";")
-        return self._ended(self.node("call", "%", start, [name, *arguments], value="late"))
+        return self._ended(self.node("call", "%", start, [name, *self._arguments(";")], value="late"))
 
     def _ended(self, node: ProgramNode) -> ProgramNode:
         self.expect(";")
@@ -243,8 +242,7 @@ class RapidParser(StatementParser):
                 raise Unexpected("':='")
             return self._ended(self.node("assign", "", start, [target, self.expression()]))
         self.at += 1
-        arguments = [] if follows == ";" else self._arguments(";")
-        return self._ended(self.node("call", word, start, arguments))
+        return self._ended(self.node("call", word, start, self._arguments(";")))
 
     def arguments(self) -> list[ProgramNode]:
         """Read the arguments and options of a function, behind its opening parenthesis."""

@@ -50,13 +50,15 @@ class URScriptParser(StatementParser):
         self._join_lines()
 
     def _join_lines(self) -> None:
-        """Take out the ends of lines inside brackets, but not before what can only begin a statement."""
+        """Take out the ends of lines inside brackets and behind operators of two operands, but not before
+        what can only begin a statement.
+        """
         depth, kept = 0, list[int]()
         kinds, words = self.kinds, self.words
         for index, (kind, word) in enumerate(zip(kinds, words, strict=True)):
             if kind == "sign":
                 depth = depth + 1 if word in _OPENING else max(depth - 1, 0) if word in _CLOSING else depth
-            elif kind == "newline" and depth:
+            elif kind == "newline" and (depth or (kept and words[kept[-1]] in self.binary)):
                 if words[index + 1] not in _BEGINNINGS:
                     continue
                 depth = 0
@@ -201,7 +203,11 @@ class URScriptParser(StatementParser):
             return self.node("constant", word, start, value=CONSTANTS[word])
         if word == "p" and self.words[self.at] == "[":
             self.at += 1
-            return self.after(self.node("pose", "", start, self.sequence("]", self.expression)), start)
+            parts = self.sequence("]", self.expression)
+            if len(parts) == 1:  # an element of a variable of this name
+                owner = ProgramNode("name", "p", start, start + 1)
+                return self.after(self.node("index", "", start, [owner, *parts]), start)
+            return self.after(self.node("pose", "", start, parts), start)
         return self.after(self.node("name", word, start), start)
 
     def number_of(self, word: str) -> int | float:

@@ -83,6 +83,26 @@ def test_what_is_open_or_too_deep_is_said(name: str, text: str) -> None:
     assert read(name, text).diagnostics
 
 
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("a.script", "def f(p, k):\n  p[0] = p[0] * k\n  return p\nend\n"),
+        ("a.script", "def f(a, b):\n  return (a == 1) and\n    (b == 2)\nend\n"),
+        ("a.script", "x = 1 +\n  2\ny = x\n"),
+        ("a.mod", "MODULE M\n\u3000PROC main()\n\u3000\u3000n:=1;\nENDPROC\nENDMODULE\n"),
+    ],
+)
+def test_what_public_programs_do_is_read(name: str, text: str) -> None:
+    assert [diagnostic.text for diagnostic in read(name, text).diagnostics] == []
+
+
+def test_a_single_number_behind_p_is_an_element_of_a_variable() -> None:
+    target, value = read("a.script", "p[0] = p[1]\n").tree.bodies[0][0].parts
+    assert [target.kind, value.kind] == ["index", "index"]
+    (point,) = read("a.script", "x = p[0, 0, 0, 0, 0, 0]\n").tree.bodies[0][0].parts[1:]
+    assert point.kind == "pose"
+
+
 def test_columns_of_places_count_bytes() -> None:
     source = SourceText("x", "aé\r\nbü = 1\rc")
     assert source.extent(7, 8) == (2, 4, 2, 5)
