@@ -14,6 +14,7 @@ _END = frozenset({"end"})
 _BRANCH = frozenset({"end", "elif", "else"})
 #: words that begin a line whatever brackets are still open
 _BEGINNINGS = name_set("def thread sec if elif else while end return global local break continue")
+_LOGIC = ("and", "or", "xor")
 _OPENING = frozenset("([{")
 _CLOSING = frozenset(")]}")
 CONSTANTS = {"True": True, "False": False, "true": True, "false": False, "None": None}
@@ -50,15 +51,13 @@ class URScriptParser(StatementParser):
         self._join_lines()
 
     def _join_lines(self) -> None:
-        """Take out the ends of lines inside brackets and behind operators of two operands, but not before
-        what can only begin a statement.
-        """
+        """Take out ends of lines in brackets and behind AND and OR, but not before what begins a statement."""
         depth, kept = 0, list[int]()
         kinds, words = self.kinds, self.words
         for index, (kind, word) in enumerate(zip(kinds, words, strict=True)):
             if kind == "sign":
                 depth = depth + 1 if word in _OPENING else max(depth - 1, 0) if word in _CLOSING else depth
-            elif kind == "newline" and (depth or (kept and words[kept[-1]] in self.binary)):
+            elif kind == "newline" and (depth or (kept and words[kept[-1]] in _LOGIC)):
                 if words[index + 1] not in _BEGINNINGS:
                     continue
                 depth = 0

@@ -88,7 +88,6 @@ def test_what_is_open_or_too_deep_is_said(name: str, text: str) -> None:
     [
         ("a.script", "def f(p, k):\n  p[0] = p[0] * k\n  return p\nend\n"),
         ("a.script", "def f(a, b):\n  return (a == 1) and\n    (b == 2)\nend\n"),
-        ("a.script", "x = 1 +\n  2\ny = x\n"),
         ("a.mod", "MODULE M\n\u3000PROC main()\n\u3000\u3000n:=1;\nENDPROC\nENDMODULE\n"),
     ],
 )
