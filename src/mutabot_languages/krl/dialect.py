@@ -235,7 +235,7 @@ def assign_system(task: Evaluation, target: ProgramNode, value: Any, scope: Rout
     if found is not None:
         return NotImplemented
     if name in machine.signals:
-        return _write(task, target, scope, machine.signals[name], value)
+        return task.station.write(task.site(target, scope), machine.signals[name], value)
     if not name.startswith("$") and name not in ("base_data", "tool_data", "load_data"):
         return NotImplemented
     if target.kind == "index":
@@ -263,16 +263,12 @@ def set_frame(machine: KrlMachine, name: str, value: Any) -> None:
         machine.station.tool = frame_of(value)
 
 
-def _write(task: Evaluation, node: ProgramNode, scope: RoutineScope, signal: str, value: Any) -> None:
-    task.station.write(task.site(node, scope), signal, value)
-
-
 def _set_element(task: Evaluation, target: ProgramNode, value: Any, scope: RoutineScope) -> Steps:
     machine = machine_of(task)
     name = target.parts[0].name
     indexes, signal = yield from _indexed(task, target, scope)
     if name in ("$out", "$anout"):
-        _write(task, target, scope, signal, value)
+        task.station.write(task.site(target, scope), signal, value)
         return
     machine.system[signal] = copy.deepcopy(value)
     if name == "$vel_axis":

@@ -14,7 +14,6 @@ _END = frozenset({"end"})
 _BRANCH = frozenset({"end", "elif", "else"})
 #: words that begin a line whatever brackets are still open
 _BEGINNINGS = name_set("def thread sec if elif else while end return global local break continue")
-_LOGIC = ("and", "or", "xor")
 _OPENING = frozenset("([{")
 _CLOSING = frozenset(")]}")
 CONSTANTS = {"True": True, "False": False, "true": True, "false": False, "None": None}
@@ -51,13 +50,13 @@ class URScriptParser(StatementParser):
         self._join_lines()
 
     def _join_lines(self) -> None:
-        """Take out ends of lines in brackets and behind AND and OR, but not before what begins a statement."""
+        """Take out ends of lines in brackets, and behind AND and OR, but not before a statement."""
         depth, kept = 0, list[int]()
         kinds, words = self.kinds, self.words
         for index, (kind, word) in enumerate(zip(kinds, words, strict=True)):
             if kind == "sign":
                 depth = depth + 1 if word in _OPENING else max(depth - 1, 0) if word in _CLOSING else depth
-            elif kind == "newline" and (depth or (kept and words[kept[-1]] in _LOGIC)):
+            elif kind == "newline" and (depth or (kept and words[kept[-1]] in ("and", "or", "xor"))):
                 if words[index + 1] not in _BEGINNINGS:
                     continue
                 depth = 0
