@@ -22,6 +22,7 @@ import numpy as np
 from .cell import Cell
 from .geometry import Array, quaternion_from_euler
 from .parts import Box, Cylinder, Part
+from .placing import fixture_placement, place_fixture
 from .scene import Scene
 from .simulation import TICK
 from .system import RobotSystem
@@ -122,28 +123,17 @@ def vacuum_leak(cell: Cell, change: Changed, *, names: str, random: Random) -> N
 def fixture_position(cell: Cell, change: Changed, *, names: str, random: Random, axis: str) -> None:
     """Change the position of fixtures along a world axis, m, with the parts that stand on them."""
     for name in _fixtures(cell, names):
-        body = cell.simulation.id_of("body", name)
-        before = float(cell.simulation.model.body_pos[body][_AXES.index(axis)])
-        carried = _carried(cell, name)
-        cell.simulation.model.body_pos[body][_AXES.index(axis)] = change(before)
-        for part in carried:
-            _place(cell, part)[_AXES.index(axis)] += change(before) - before
-    _forward(cell)
+        position, orientation = fixture_placement(cell.simulation, name)
+        position[_AXES.index(axis)] = change(float(position[_AXES.index(axis)]))
+        place_fixture(cell.simulation, name, (position, orientation), _carried(cell, name))
 
 
 def fixture_angle(cell: Cell, change: Changed, *, names: str, random: Random) -> None:
     """Turn fixtures about the vertical through their centres, rad, with the parts that stand on them."""
-    angle, model = change(0.0), cell.simulation.model
-    turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
     for name in _fixtures(cell, names):
-        body = cell.simulation.id_of("body", name)
-        centre, carried = model.body_pos[body][:2], _carried(cell, name)
-        _turn(model.body_quat[body], angle)
-        for part in carried:
-            place = _place(cell, part)
-            place[:2] = centre + turn @ (place[:2] - centre)
-            _turn(place[3:7], angle)
-    _forward(cell)
+        position, orientation = fixture_placement(cell.simulation, name)
+        _turn(orientation, change(0.0))
+        place_fixture(cell.simulation, name, (position, orientation), _carried(cell, name))
 
 
 def base_position(cell: Cell, change: Changed, *, names: str, random: Random, axis: str) -> None:
@@ -272,16 +262,16 @@ def _change_pairs(cell: Cell, change: Changed, names: str, *, is_in_grip: bool) 
             ]
 
 
-def _carried(cell: Cell, fixture: str) -> list[int]:
-    """Return the bodies of the parts that stand on a fixture."""
+def _carried(cell: Cell, fixture: str) -> list[str]:
+    """Return the names of the parts that stand on a fixture."""
     model, data = cell.simulation.model, cell.simulation.data
     body, geom = cell.simulation.id_of("body", fixture), model.geom(fixture).id
     half, axes = model.geom_size[geom], data.xmat[body].reshape(3, 3)
     found = []
-    for part in _part_bodies(cell, "*") if cell.simulation.scene.parts else []:
-        x, y, z = axes.T @ (data.xpos[part] - data.xpos[body])
+    for part in cell.simulation.scene.parts:
+        x, y, z = axes.T @ (data.body(part.name).xpos - data.xpos[body])
         if abs(x) <= half[0] and abs(y) <= half[1] and 0.0 < z - half[2] < _STANDS:
-            found.append(part)
+            found.append(part.name)
     return found
 
 

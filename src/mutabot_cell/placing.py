@@ -37,10 +37,23 @@ def move_fixture(
     Raises:
         BadArgument: there is no such fixture or part.
     """
+    place_fixture(simulation, name, (np.array(centre), quaternion_from_euler(*angles)), carried)
+
+
+def fixture_placement(simulation: Simulation, name: str) -> Placement:
+    """Return where a fixture stands, world frame. Raises BadArgument if there is no such fixture."""
+    model, body = simulation.model, _body(simulation, name, is_free=False)
+    return model.body_pos[body].copy(), model.body_quat[body].copy()
+
+
+def place_fixture(simulation: Simulation, name: str, after: Placement, carried: Iterable[str]) -> None:
+    """Move a fixture, and the parts that keep their place on it, at once; world frame.
+
+    Raises:
+        BadArgument: there is no such fixture or part.
+    """
     model, data = simulation.model, simulation.data
-    body = _body(simulation, name, is_free=False)
-    before = model.body_pos[body].copy(), model.body_quat[body].copy()
-    after = np.array(centre), quaternion_from_euler(*angles)
+    body, before = _body(simulation, name, is_free=False), fixture_placement(simulation, name)
     parts = [_body(simulation, part, is_free=True) for part in carried]
     model.body_pos[body], model.body_quat[body] = after
     for part in parts:
