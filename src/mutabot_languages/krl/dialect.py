@@ -287,6 +287,8 @@ def _set_component(task: Evaluation, target: ProgramNode, value: Any, scope: Rou
         machine.station.note(f"{owner.name or owner.kind}.{target.name} has no effect here")
         return None
     name = owner.name
+    if name == "$vel" and not value > 0:
+        raise task.error(target, scope, f"$VEL.{target.name.upper()} cannot be {value:g}: a speed is above 0")
     record = machine.system.setdefault(name, Structure.of("", {}))
     record[target.name] = value
     if name in ("$base", "$tool"):

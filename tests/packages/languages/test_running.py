@@ -304,6 +304,11 @@ def test_a_whole_target_of_krl_reads_no_pose_and_one_with_parts_does(tmp_path: P
         ),
         (
             "a.src",
+            "DEF a( )\n$VEL.CP=-0.2\nEND\n",
+            "a.src:2: $VEL.CP cannot be -0.2: a speed is above 0 (in a)",
+        ),
+        (
+            "a.src",
             "DEF a( )\nDECL INT I\nPTP I\nEND\n",
             "a.src:3: PTP I: expected a position {X …} or axes {A1 …}, found 0 (in a)",
         ),
