@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from types import ModuleType
 from typing import Any
 from unittest.mock import AsyncMock, MagicMock, Mock, call, create_autospec, patch
 
@@ -231,6 +232,39 @@ def test_a_method_counts_for_whatever_object_has_it(make_stage: Make) -> None:
     stage = make_stage(ROBOT, PROGRAM, vocabulary)
     for arm in (Stranger(), Mock()):
         assert _sites(stage, "by_keyword", arm) == [("*.move_by", {"dx": 0.5})]
+
+
+@pytest.mark.parametrize(
+    "go",
+    [
+        "Arm().move_by(0.5)",
+        "Arm.move_by(Arm(), 0.5)",
+        "list(map(Arm().move_by, [0.5]))",
+        "type('Fast', (Arm,), {})().move_by(0.5)",
+    ],
+)
+def test_a_class_of_a_module_that_the_tests_put_in_place_has_the_operation(
+    make_stage: Make, monkeypatch: pytest.MonkeyPatch, go: str
+) -> None:
+    vocabulary = """
+        [[operation]]
+        call = "sdk_of_the_maker:Arm.move_by"
+        signature = "(dx)"
+        arguments.dx = { kind = "translation", axis = "x", unit = "m", mode = "by" }
+    """
+    stage = make_stage(ROBOT, f"def run():\n    from sdk_of_the_maker import Arm\n    {go}\n", vocabulary)
+    session = stage.session()
+    stage.load_program()
+    for number in range(2):  # each test has a module of its own, which nothing imports
+        moved: list[float] = []
+        arm = type("Arm", (), {"move_by": lambda self, dx, moved=moved: moved.append(dx)})
+        module = ModuleType("sdk_of_the_maker")
+        vars(module)["Arm"] = arm
+        monkeypatch.setitem(sys.modules, module.__name__, module)
+        session.start_test(f"test {number}")
+        stage.run(session, "run")
+        assert moved == [0.5]
+        assert [written for _, written, *_ in session.recorder.trace] == [{"dx": 0.5}]
 
 
 async def _awaited(arm: Any) -> Any:

@@ -271,9 +271,7 @@ class CallTargets:
         ]
         fitting = [adapter for adapter in ones if self._is_of_class(adapter, found, receiver, frame)]
         if fitting:
-            return max(
-                fitting, key=lambda adapter: len(self.callables.owners[adapter.operation.target].__mro__)
-            )
+            return max(fitting, key=lambda adapter: len(getattr(self._owner(adapter), "__mro__", ())))
         fitting += [adapter for adapter in ones if self._means(adapter, found, receiver, frame)]
         if mock is not None:
             fitting += (
@@ -339,7 +337,13 @@ class CallTargets:
         return known
 
     def _owner(self, adapter: Adapter) -> type | None:
-        return self.callables.owners.get(adapter.operation.target)
+        """Return the operation's class, also of a module that the tests put in place without an import."""
+        target = adapter.operation.target
+        owner = self.callables.owners.get(target)
+        if owner is None and target in self.callables.pending:
+            found = named_class(target.rpartition(".")[0])
+            return found if isinstance(found, type) else None
+        return owner
 
     def _signature_of(self, adapter: Adapter) -> Signature | None:
         """Return the operation's own signature; None if it has none, or was not found yet."""
