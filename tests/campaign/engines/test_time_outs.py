@@ -213,7 +213,7 @@ class Clock:
         for module in (deadline, process_time):
             monkeypatch.setattr(module, "monotonic", lambda: self.now)
         monkeypatch.setattr(process_time, "shortage", lambda: 0.0)
-        monkeypatch.setattr(process_time, "below", set)
+        monkeypatch.setattr(process_time, "descendants", set)
         monkeypatch.setattr(process_time, "accounts_of", self.accounts)
 
     def accounts(self, processes: Iterable[int]) -> dict[int, process_time.Account]:

@@ -129,7 +129,7 @@ def test_an_outcome_that_is_taken_over_names_the_line_of_now(project: Path, tmp_
 def test_places_of_a_text_are_found_in_one_with_another_layout(name: str) -> None:
     told = language_for(name).units
     old, new = (File(name, text.encode(), told) for text in (FILES[name], LAYOUT[name]))
-    assert old.said == new.said
+    assert old.digests == new.digests
     moved = old.moves_to(new)
     assert len(moved) > 3
     for was, now in moved.items():
