@@ -306,4 +306,4 @@ def test_a_refusal_belongs_to_the_command_that_is_due(
     stage = ClientStage(tmp_path, (refusing,))
     _, _, activation = stage.mutated(TOLD, operator, quantity=quantity)
     assert activation.evidence.acted == 1
-    assert activation.evidence.said == said
+    assert activation.evidence.refusing_answer == said

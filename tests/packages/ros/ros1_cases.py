@@ -388,7 +388,7 @@ def test_a_goal_that_is_aborted_is_refused_if_the_vocabulary_says_so(
     program = program.replace("run(angle=30)", "run(angle=13)")  # the server turns no 13 degrees back
     (_, _, state), activation = make(program, vocabulary).mutated("reverse", "goal", index=1)
     assert (turning, state) == ([13, -13], 4)
-    assert activation.evidence.said == "/cell/turn: ABORTED"
+    assert activation.evidence.refusing_answer == "/cell/turn: ABORTED"
 
 
 def test_a_message_that_follows_says_that_a_command_is_refused(make: Making) -> None:
@@ -411,7 +411,7 @@ def test_a_message_that_follows_says_that_a_command_is_refused(make: Making) -> 
     """
     end, activation = make(program, vocabulary).mutated("reverse", "linear.y", index=1)
     assert end == 5
-    assert activation.evidence.said == "/cell/ended: data 5"
+    assert activation.evidence.refusing_answer == "/cell/ended: data 5"
 
 
 PARAMETER = """
