@@ -78,7 +78,7 @@ def test_the_story_is_told_in_a_test_whose_end_is_stable() -> None:
     assert lost.apart[0].final > stable.apart[0].final
     for both in ((lost, stable), (stable, lost)):
         outcome = Outcome("m", 0, Verdict.SURVIVED, diverged=both)
-        assert outcome.told is stable
+        assert outcome.shown_difference is stable
         assert outcome.deviation == stable.deviation
 
 
