@@ -13,7 +13,8 @@ as it was found in public robot programs. All tests run with every bug and every
 
 Intervals are those of 2000 draws of programs with replacement (bootstrap, 95 %).
 
-Use: ``python benchmarks/real_bugs/coupling.py [NAMES] [--json FILE | --read FILE]``.
+Use: ``python benchmarks/real_bugs/coupling.py [NAMES] [--json FILE | --read FILE]``, with a Python that has
+ROS 2 and MuJoCo.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from mutabot.results.bugs_caught import Caught, band_of
 from mutabot_minimal.subsumption import dominators
-from real_bugs.gathering import BUGS, FAMILIES, PROGRAMS, STRENGTHS, Found, gather, read, write
+from real_bugs.gathering import BUGS, FAMILIES, PROGRAMS, STRENGTHS, Found, gather, missing, read, write
 
 #: what a score may be made of
 GROUPS: Mapping[str, tuple[str, ...]] = {
@@ -46,7 +47,8 @@ LINES = "lines covered"
 #: scores that are compared
 COMPARED = (
     ("robot", "conventional"), ("bugs", "conventional"), ("robot, bugs, conventional", "conventional"),
-    ("robot, bugs", LINES), ("conventional", LINES),
+    ("robot, bugs", "robot"), ("robot, bugs, conventional", "robot"),
+    ("robot, bugs, conventional", "robot, bugs"), ("robot, bugs", LINES), ("conventional", LINES),
 )  # fmt: skip
 PARTS, DRAWS, SEED = 400, 2000, 1
 #: mutants and programs that an operator must have to be looked at by itself
@@ -73,6 +75,8 @@ def main() -> int:
         names = given.names or sorted(
             path.name for path in PROGRAMS.iterdir() if (path / "program.py").exists()
         )
+        if lacking := {name: needed for name in names if (needed := missing(name))}:
+            parser.error(f"this Python lacks what these programs need: {lacking}; --read does without")
         with multiprocessing.get_context("fork").Pool(given.jobs, maxtasksperchild=1) as pool:
             programs = pool.starmap(gather, [(name, given.sample) for name in names], chunksize=1)
     if given.json is not None:

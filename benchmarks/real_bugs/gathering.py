@@ -1,12 +1,21 @@
-"""Who notices what in a program, gathered by running, and as a file: one line for each bug or mutant."""
+"""Who notices what in a program, gathered by running, and as a file: one line for each bug or mutant.
+
+Of programs on plain objects, campaigns judge mutants of calls, and forks of one process bugs and mutants of
+the text (``matrix``). Of programs on the cell and on ROS 2, which need fixtures and plug-ins of pytest, one
+campaign judges all, of each family at most ``ON_ROS`` and ``ON_CELL`` mutants.
+"""
 
 from __future__ import annotations
 
 import json
+import os
 import shutil
+import subprocess
+import sys
 import tempfile
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from importlib.util import find_spec
 from pathlib import Path
 from random import Random
 
@@ -14,18 +23,23 @@ from mutabot.campaign.request import Progress
 from mutabot.campaign.run import run_campaign
 from mutabot.cli.request import request_of
 from mutabot.journal.reader import JournalReader
-from mutabot.model import Role, Verdict
-from mutabot.results.results import Results, read_results
+from mutabot.model import Outcome, Role, Verdict
+from mutabot.results.results import MutantResult, Results, read_results
+from real_bugs.lines import RECORD
 from real_bugs.matrix import PROBE, STRENGTHS, Suite, Variant, in_fork
 
 __all__ = ["STRENGTHS"]
 
 PROGRAMS = Path(__file__).resolve().parent / "programs"
 BUGS = "patch"
-#: mutants of calls are judged by campaigns, those of the text beside the bugs
-OF_CALLS, OF_TEXT = ("robot",), ("bugs", "conventional")
-FAMILIES = (*OF_CALLS, *OF_TEXT)
+#: mutants of calls, and those of the text; tables of scores have the ``FAMILIES``
+OF_CALLS, OF_TEXT = ("robot", "catalogue"), ("bugs", "conventional")
+FAMILIES = ("robot", *OF_TEXT)
+#: mutants of each family of a program on ROS 2, and of one on the cell, drawn by the campaign's seed
+ON_ROS, ON_CELL = 30, 10
 KILLED, REFUSED, STILLBORN, DIFFERS, SAME = "killed", "refused", "stillborn", "differs", "same"
+#: what programs need that say so in their settings
+NEEDED = {"ros_in_process": "rclpy", '"cell"': "mujoco"}
 #: what a text raises that makes no sense, wherever it is reached
 _SENSELESS = {"NameError", "UnboundLocalError", "AttributeError", "TypeError", "SyntaxError"}
 #: the tests that notice a mutant or a bug
@@ -46,8 +60,9 @@ class Noticed:
         what: what it is.
         end: ``killed``; ``stillborn``: whatever notices it sees an error of a name or type; ``refused``:
             the robot refuses it; or, where no test notices it, ``differs`` from the original on inputs of the
-            probe, or is the ``same`` on all of them. Mutants of calls are not probed: they are the ``same``
-            if no test notices them.
+            probe, or is the ``same`` on all of them. On the cell and on ROS 2, the tests are these inputs: it
+            ``differs`` if anything is seen to. Mutants of calls of plain objects are not probed: they are the
+            ``same`` if no test notices them.
         by: the tests that notice it.
     """
 
@@ -96,12 +111,34 @@ class Found:
         )
 
 
+def missing(name: str) -> list[str]:
+    """Return the packages that a program needs and this Python lacks."""
+    settings = "".join((PROGRAMS / name / file).read_text() for file in ("mutabot.toml", "pytest.ini"))
+    return [package for word, package in NEEDED.items() if word in settings and find_spec(package) is None]
+
+
 def gather(name: str, sample: int | None = None) -> Found:
     """Run all tests of a program with each of its bugs and mutants, or so many of each kind of mutants."""
+    if not (PROGRAMS / name / f"{PROBE}.py").exists():
+        is_ros = (PROGRAMS / name / "robot.toml").exists()
+        return of_campaign(name, sample or (ON_ROS if is_ros else ON_CELL))
     calls = of_calls(name, sample)
     found = of_text(name, sample)
     found.mutants += calls
     return found
+
+
+def of_campaign(name: str, sample: int) -> Found:
+    """The bugs of a program on the cell or on ROS 2, and so many mutants of each family."""
+    with tempfile.TemporaryDirectory() as folder:
+        copy = _copied(PROGRAMS / name, Path(folder))
+        file = Path(folder).resolve() / "lines.json"
+        environment = {**os.environ, "PYTHONPATH": str(PROGRAMS.parents[1]), RECORD: str(file)}
+        words = [sys.executable, "-m", "pytest", "-q", "-p", "real_bugs.lines", "-p", "no:cacheprovider"]
+        subprocess.run(words, cwd=copy, env=environment, check=True, stdout=subprocess.DEVNULL)
+        lines = {test: frozenset(those) for test, those in json.loads(file.read_text()).items()}
+        families = [*OF_CALLS, *OF_TEXT, BUGS]
+        return Found(name, list(lines), lines, _campaign(copy, families, sample, is_probed=True))
 
 
 def of_text(name: str, sample: int | None = None) -> Found:
@@ -132,29 +169,63 @@ def _noticed(suite: Suite, variant: Variant) -> Noticed:
 
 def of_calls(name: str, sample: int | None = None) -> list[Noticed]:
     """The mutants of the calls in a program, by a campaign with every test."""
-    program = PROGRAMS / name
     with tempfile.TemporaryDirectory() as folder:
-        copy = Path(folder).resolve() / program.name
-        ignored = shutil.ignore_patterns(".mutabot", "__pycache__", ".pytest_cache", "patches")
-        shutil.copytree(program, copy, ignore=ignored)
-        request = request_of(copy, family=[*OF_CALLS], sample=None if sample is None else str(sample))
-        request = replace(request, every_test=True)
-        with JournalReader.open(run_campaign(request, SilentProgress())) as journal:
-            return judged(read_results(journal))
+        return _campaign(_copied(PROGRAMS / name, Path(folder)), OF_CALLS, sample)
 
 
-def judged(results: Results) -> list[Noticed]:
-    """The mutants of calls of a campaign with every test that stand in the program."""
+def _copied(program: Path, folder: Path) -> Path:
+    copy = folder.resolve() / program.name
+    shutil.copytree(program, copy, ignore=shutil.ignore_patterns(".mutabot", "__pycache__", ".pytest_cache"))
+    return copy
+
+
+def _campaign(
+    folder: Path, families: Sequence[str], sample: int | None, *, is_probed: bool = False
+) -> list[Noticed]:
+    """Run a campaign with every test; return what became of the mutants that stand in the program."""
+    request = request_of(folder, family=[*families], sample=None if sample is None else str(sample))
+    request = replace(request, every_test=True)
+    with JournalReader.open(run_campaign(request, SilentProgress())) as journal:
+        return judged(read_results(journal), is_probed=is_probed)
+
+
+def judged(results: Results, *, is_probed: bool = False) -> list[Noticed]:
+    """What became of the mutants of a campaign with every test that stand in the program, and of patches.
+
+    ``is_probed``: whether the campaign compares the world of survivors with that of the original.
+    """
     found = []
     for result in results.mutants:
-        (outcome,) = result.outcomes
-        by = frozenset(kill.test for kill in outcome.kills)
-        end = REFUSED if outcome.verdict is Verdict.INVALID else KILLED if by else SAME
+        mutant, (outcome,) = result.mutant, result.outcomes
+        by = _noticing(outcome)
         is_judged = outcome.verdict not in (Verdict.ERROR, Verdict.TIMEOUT) or by
-        if result.mutant.family in OF_CALLS and result.mutant.site.role is Role.PROGRAM and is_judged:
-            what = f"{result.mutant.site.span.line}: {result.mutant.description}"
-            found.append(Noticed(result.mutant.family, result.mutant.operator, what, end, by))
+        if not is_judged or mutant.site.role is not Role.PROGRAM:
+            continue
+        if mutant.family == BUGS:
+            file, _, title = mutant.description.partition(" ")
+            found.append(Noticed(BUGS, "", f"{Path(file).stem}: {title}", _end(result, is_probed), by))
+        else:
+            what = f"{mutant.site.span.line}: {mutant.description}"
+            found.append(Noticed(mutant.family, mutant.operator, what, _end(result, is_probed), by))
     return found
+
+
+def _noticing(outcome: Outcome) -> Kills:
+    """The tests that notice it; a command that the robot refuses fails the test that gives it."""
+    refusing = {outcome.test} if outcome.verdict is Verdict.REFUSED and outcome.test else set[str]()
+    return frozenset({kill.test for kill in outcome.kills} | refusing)
+
+
+def _end(result: MutantResult, is_probed: bool) -> str:
+    (outcome,) = result.outcomes
+    if result.mutant.family != BUGS and outcome.verdict in (Verdict.INVALID, Verdict.REFUSED):
+        return REFUSED
+    if _noticing(outcome):
+        raised = {(kill.exception or "").rpartition(":")[2] for kill in outcome.kills}
+        is_senseless = result.mutant.family in OF_TEXT and bool(raised) and _SENSELESS.issuperset(raised)
+        return STILLBORN if is_senseless else KILLED
+    is_same = result.indistinguishable or outcome.verdict is Verdict.NO_EFFECT
+    return SAME if is_same or not is_probed else DIFFERS
 
 
 def write(file: Path, programs: Iterable[Found]) -> None:

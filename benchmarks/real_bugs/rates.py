@@ -3,7 +3,8 @@
 An operator is *common* if it makes at least ``FREQUENT`` of the real bugs of ``reading.toml`` exactly or
 nearly, and if of its mutants of the programs of ``coupling.json``, ``MEASURED`` or more, less than a share of
 ``USELESS`` are useless: *refused* by the robot, *stillborn* (all that notices them sees an error of a name or
-type), or *equivalent* as far as is known (the same as the original for all tests and inputs of the probe).
+type), or *equivalent* as far as is known (the same as the original for all tests and inputs of the probe; on
+the cell and on ROS 2, for all tests as far as the campaign compares).
 Operators that are not measured are not common.
 
 Use: ``python benchmarks/real_bugs/rates.py``.

@@ -110,6 +110,7 @@ class NoWait(HalfWait):
     """A wait is left out."""
 
     name = "no-wait"
+    is_common = True
     examples = (
         Example.changed(_WAIT, 0.8, 0.0),
         Example.unchanged(_WAIT, 0.0, "there is nothing to shorten"),

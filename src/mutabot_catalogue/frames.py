@@ -56,6 +56,7 @@ class AxisSwap(Exchange):
     """
 
     name = "axis-swap"
+    is_common = True
     examples = (
         Example.changed(MOVE_TO, {"x": 0.4, "y": 0.1}, {"x": 0.1, "y": 0.4}, "y"),
         Example.unchanged(MOVE_TO, {"x": 0.2, "y": 0.2}, "both are the same", "y"),

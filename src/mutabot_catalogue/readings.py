@@ -104,6 +104,7 @@ class OldReading(_ChangedReading):
     """
 
     name = "old-reading"
+    is_common = True
     kinds = frozenset(Kind)
     variants: ClassVar[Mapping[str, int]] = {"1": 1, "5": 5}
     examples = (

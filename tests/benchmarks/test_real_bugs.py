@@ -14,14 +14,31 @@ import pytest
 
 from mutabot.campaign.faults.providers import rules_of
 from mutabot.faults import known_families
+from mutabot.model import By, Kill, Mutant, Outcome, Role, Verdict
 from mutabot.results.bugs_caught import BANDS
+from mutabot.results.results import MutantResult, Results
+from mutabot.results.score import RoundScores
 from mutabot_patches.changes import read_patch
 from mutabot_patches.suite import looks_like_tests
 from mutabot_source.registry import names, operator
 from real_bugs import coupling
-from real_bugs.gathering import BUGS, KILLED, PROGRAMS, SAME, STILLBORN, Found, Noticed, read, write
+from real_bugs.gathering import (
+    BUGS,
+    DIFFERS,
+    KILLED,
+    PROGRAMS,
+    REFUSED,
+    SAME,
+    STILLBORN,
+    Found,
+    Noticed,
+    judged,
+    read,
+    write,
+)
 from real_bugs.rates import DATA, Rate, rates
 from real_bugs.shares import agreement, by_operator, now, second_reading, share, silent
+from tests.results import samples
 
 PAGE = (Path(__file__).parents[2] / "docs" / "real-bugs.md").read_text(encoding="utf-8")
 FOUND = read(DATA)
@@ -189,3 +206,40 @@ def test_a_text_that_makes_no_sense_is_stillborn() -> None:
     stillborn = [mutant for each in FOUND for mutant in each.mutants if mutant.end == STILLBORN]
     assert {mutant.family for mutant in stillborn} <= {"bugs", "conventional"}
     assert any(mutant.operator == "counterpart" for mutant in stillborn)
+
+
+@pytest.mark.parametrize(
+    ("family", "outcome", "is_probed", "end", "by"),
+    [
+        ("robot", Outcome("", 0, Verdict.REFUSED, test="t"), True, REFUSED, {"t"}),
+        ("bugs", Outcome("", 0, Verdict.INVALID), True, REFUSED, set()),
+        (BUGS, Outcome("", 0, Verdict.REFUSED, test="t"), True, KILLED, {"t"}),
+        (BUGS, Outcome("", 0, Verdict.KILLED, kills=(Kill("t", By.CHECK),)), True, KILLED, {"t"}),
+        ("robot", Outcome("", 0, Verdict.SURVIVED, indistinguishable=True), True, SAME, set()),
+        ("robot", Outcome("", 0, Verdict.SURVIVED, indistinguishable=False), True, DIFFERS, set()),
+        ("robot", Outcome("", 0, Verdict.SURVIVED), False, SAME, set()),
+        ("bugs", Outcome("", 0, Verdict.KILLED, kills=(Kill("t", By.EXCEPTION, "builtins:NameError"),)),
+         True, STILLBORN, {"t"}),
+        ("robot", Outcome("", 0, Verdict.KILLED, kills=(Kill("t", By.EXCEPTION, "builtins:TypeError"),)),
+         True, KILLED, {"t"}),
+    ],
+)  # fmt: skip
+def test_what_a_campaign_says_of_a_mutant(
+    family: str, outcome: Outcome, is_probed: bool, end: str, by: set[str]
+) -> None:
+    at = samples.site("program.py", 2, "arm.move_by", Role.PROGRAM)
+    mutant = Mutant(1, family, "skip", at, "", None, None, "", "patches/late.patch order: too late")
+    results = Results(
+        {},
+        "complete",
+        1,
+        (MutantResult(mutant, (outcome,), None, ""),),
+        (),
+        RoundScores.of([], 1),
+        (),
+        (),
+        (),
+    )
+    (found,) = judged(results, is_probed=is_probed)
+    assert (found.end, found.by) == (end, by)
+    assert found.what == ("late: order: too late" if family == BUGS else f"2: {mutant.description}")

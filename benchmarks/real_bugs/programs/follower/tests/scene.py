@@ -48,6 +48,10 @@ class Scene:
         )
         self.spin(0.2)
 
+    def seen(self):
+        """What the world has got from the program."""
+        return {"speeds": list(self.speeds), "states": list(self.states)}
+
     def spin(self, seconds):
         end = time.monotonic() + seconds
         while time.monotonic() < end:

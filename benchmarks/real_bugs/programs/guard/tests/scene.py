@@ -46,6 +46,10 @@ class Scene:
         self.world.destroy_node()
         rclpy.try_shutdown()
 
+    def seen(self):
+        """What the world has got from the program."""
+        return {"limits": list(self.limits), "stops": list(self.stops)}
+
     def spin(self, seconds):
         end = time.monotonic() + seconds
         while time.monotonic() < end:

@@ -74,6 +74,10 @@ class Scene:
         )
         self.spin(0.1)
 
+    def seen(self):
+        """What the world has got from the program."""
+        return {"log": list(self.log), "reports": list(self.reports), "opening": self.opening}
+
     def spin(self, seconds):
         end = time.monotonic() + seconds
         while time.monotonic() < end:
