@@ -28,7 +28,6 @@ from mutabot.cli.options import Running
 from mutabot.model import Outcome
 from mutabot.report.document import dumps
 from mutabot.results.results import MutantResult, Results
-from mutabot_minimal.subsumption import noticing_tests
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCS = ROOT / "docs"
@@ -60,7 +59,7 @@ def noticed(result: MutantResult) -> list[str | None]:
 
 
 def _weakest(outcome: Outcome) -> str | None:
-    tests = noticing_tests(outcome)
+    tests = outcome.noticing_tests
     folders = {test.split("/")[1] for test in tests if test.count("/") > 1}
     found = next((strength for strength in STRENGTHS if strength in folders), "all" if tests else None)
     return found if outcome.complete or found in ("weak", "all", None) else UNKNOWN

@@ -21,7 +21,6 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from mutabot.model import By, Outcome, Verdict
-from mutabot_minimal.subsumption import noticing_tests
 
 
 class End(StrEnum):
@@ -121,5 +120,5 @@ def _noticed_by_all(outcome: Outcome) -> bool | None:
         return False
     if not outcome.complete:
         return None
-    noticing = noticing_tests(outcome)
+    noticing = outcome.noticing_tests
     return bool(noticing) and len(noticing) >= outcome.tests

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from mutabot.model import Outcome
 from mutabot.model.outcome_text import without_accidents
-from mutabot_minimal.subsumption import dominators, killers_of
+from mutabot_minimal.subsumption import dominators
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,10 +47,14 @@ class Redundancy:
         known = {name: those for name, those in killed.items() if all(outcome.complete for outcome in those)}
         return cls(
             alike=tuple(group for group in _grouped_by_manner(known) if len(group) > 1),
-            dominators=dominators({name: killers_of(those) for name, those in known.items()}),
+            dominators=dominators({name: _killers(those) for name, those in known.items()}),
             killed=len(known),
             unknown=len(killed) - len(known),
         )
+
+
+def _killers(outcomes: Iterable[Outcome]) -> frozenset[tuple[str, int]]:
+    return frozenset((test, outcome.round) for outcome in outcomes for test in outcome.noticing_tests)
 
 
 def _grouped_by_manner(mutants: Mapping[str, Sequence[Outcome]]) -> list[tuple[str, ...]]:

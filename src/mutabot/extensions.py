@@ -109,7 +109,7 @@ class Extension:
         commands: sub-commands: functions; ``mutabot.cli.parameters`` says what their parameters stand for.
         formats: a function (``mutabot.report.format.Format``) each, by its name.
         sections: functions of ``mutabot.results.results.Results`` that make a section of the results
-            document each, of plain data, by its name.
+            document each, of plain data, by its name; None for no section.
         simulations: subclasses of ``mutabot.api.processes.SimulatedMiddleware``, by their names: what
             campaigns may run the tests over instead of the real middleware.
         faults: subclasses of ``mutabot.faults.FaultProvider``, by the providers' names.

@@ -13,6 +13,5 @@ EXTENSION = Extension(
             before="results",
         )
     },
-    formats={"minimal": "mutabot_minimal.table:markdown"},
     sections={"minimal": "mutabot_minimal.minimal:section"},
 )

@@ -98,7 +98,7 @@ def minimal_of(results: Results) -> Minimal | None:
         and any(outcome.verdict.is_valid for outcome in result.outcomes)
     ]
     by_number = {result.mutant.number: result for result in valid}
-    killers = {number: killers_of(result.outcomes) for number, result in by_number.items()}
+    killers = {number: killers_of(result) for number, result in by_number.items()}
     incomplete = {
         number for number, those in killers.items() if those and not _is_complete(by_number[number])
     }

@@ -13,27 +13,19 @@ have been run (``Outcome.complete``).
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Mapping
+from collections.abc import Hashable, Mapping
 from typing import TypeVar
 
-from mutabot.api.reports import Outcome
+from mutabot.api.reports import MutantResult
 
 M = TypeVar("M", bound=Hashable)
 #: a test, and a round from 0
 Killer = tuple[str, int]
 
 
-def noticing_tests(outcome: Outcome) -> frozenset[str]:
-    """The tests that noticed a mutant, as far as they are known; a time-out is noticed too."""
-    if not outcome.verdict.is_killed:
-        return frozenset()
-    first = {outcome.test} if outcome.test is not None else set()
-    return frozenset({kill.test for kill in outcome.kills} | first)
-
-
-def killers_of(outcomes: Iterable[Outcome]) -> frozenset[Killer]:
+def killers_of(result: MutantResult) -> frozenset[Killer]:
     """The tests, each with its round, that kill a mutant."""
-    return frozenset((test, outcome.round) for outcome in outcomes for test in noticing_tests(outcome))
+    return frozenset((test, end.round) for end in result.outcomes for test in end.noticing_tests)
 
 
 def dominators(killers: Mapping[M, frozenset[Killer]]) -> tuple[tuple[M, ...], ...]:

@@ -1,24 +1,13 @@
-"""The minimal set as text: rows for the terminal, and Markdown."""
+"""The minimal set as text: a row for each family, and a line for each mutant."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from mutabot.api.reports import Material, UsageError
-
-from .minimal import KeptMutant, Minimal, minimal_of
+from .minimal import KeptMutant, Minimal
 
 #: what each column of the table of families says
 COLUMNS = ("family", "mutants", "killed", "minimal set", "in the joint set", "there alone")
-_NONE = "no minimal set: not every test was run on every mutant; `mutabot minimal` does"
-
-
-def markdown(material: Material) -> str:
-    """Return the minimal set in Markdown. Raises UsageError if not every test was run on every mutant."""
-    found = minimal_of(material.campaign)
-    if found is None:
-        raise UsageError(_NONE)
-    return "\n".join([f"### {title(found)}", "", *_table(COLUMNS, rows(found)), "", *_list(found), ""])
 
 
 def title(found: Minimal) -> str:
@@ -62,28 +51,3 @@ def described(kept: KeptMutant) -> str:
     """Return a mutant of the set in a line."""
     more = f"; stands for {kept.stands_for} others" if kept.stands_for else ""
     return f"{kept.number} {kept.place} {kept.operator}: {kept.description}{more}"
-
-
-def _table(columns: Sequence[str], cells: Iterable[Sequence[str]]) -> list[str]:
-    return [f"| {' | '.join(map(_escaped, row))} |" for row in (columns, ["---"] * len(columns), *cells)]
-
-
-def _list(found: Minimal) -> Iterator[str]:
-    yield from remarks(found)
-    yield ""
-    columns = ("no.", "place", "operator", "fault", "tests that kill it", "stands for")
-    yield from _table(
-        columns,
-        (
-            (str(kept.number), kept.place, kept.operator, kept.description, *_counts(kept))
-            for kept in (*found.dominators, *found.survivors)
-        ),
-    )
-
-
-def _counts(kept: KeptMutant) -> tuple[str, str]:
-    return str(kept.killed_by), str(kept.stands_for)
-
-
-def _escaped(text: str) -> str:
-    return text.replace("\\", "\\\\").replace("|", "\\|").replace("\n", " ")

@@ -13,9 +13,7 @@ if TYPE_CHECKING:
     from mutabot.errors import MutabotError as MutabotError
     from mutabot.errors import UsageError as UsageError
     from mutabot.evidence.paths import RecordedPaths as RecordedPaths
-    from mutabot.model.outcome import Outcome as Outcome
     from mutabot.model.outcome import Verdict as Verdict
-    from mutabot.report.format import Material as Material
     from mutabot.report.html.pages import LiveReport as LiveReport
     from mutabot.results.results import MutantResult as MutantResult
     from mutabot.results.results import Results as Results
@@ -26,8 +24,7 @@ _HOMES = {
     "mutabot.cli.context": ("CommandContext",),
     "mutabot.errors": ("MutabotError", "UsageError"),
     "mutabot.evidence.paths": ("RecordedPaths",),
-    "mutabot.model.outcome": ("Outcome", "Verdict"),
-    "mutabot.report.format": ("Material",),
+    "mutabot.model.outcome": ("Verdict",),
     "mutabot.report.html.pages": ("LiveReport",),
     "mutabot.results.results": ("MutantResult", "Results"),
 }

@@ -223,6 +223,15 @@ class Outcome:
     executed: Mapping[str, tuple[int, ...]] | None = None
 
     @property
+    def noticing_tests(self) -> frozenset[str]:
+        """The tests that noticed the mutant, as far as they are known; a time-out is noticed too."""
+        if not self.verdict.is_killed:
+            return frozenset()
+        return frozenset(
+            {*(kill.test for kill in self.kills), *([self.test] if self.test is not None else [])}
+        )
+
+    @property
     def shown_difference(self) -> Diverged | None:
         """The most telling difference in recordings, whose story reports show; None if there is none."""
         return max(self.diverged, key=lambda divergence: divergence.rank, default=None)

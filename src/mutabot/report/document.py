@@ -60,7 +60,11 @@ def document(results: Results) -> dict[str, Any]:
             "operators draws reaching untested sources",
         ),
         "accepting": accepting_data(results),
-        "sections": {name: _section(part, results) for name, part in brought("sections").items()},
+        "sections": {
+            name: made
+            for name, part in brought("sections").items()
+            if (made := _section(part, results)) is not None
+        },
     }
 
 

@@ -6,17 +6,13 @@ import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mutabot.errors import UsageError
 from mutabot.model import By, Kill, Mutant, Outcome, Role, Verdict
-from mutabot.report.format import Material
 from mutabot.results.results import MutantResult, Results
 from mutabot.results.score import RoundScores
 from mutabot_minimal.minimal import minimal_of, section
-from mutabot_minimal.table import markdown
 from tests.plugins.test_plugins import mutabot, project
 from tests.results import samples
 
@@ -106,18 +102,6 @@ def test_a_campaign_that_stopped_at_the_first_test_has_no_minimal_set() -> None:
     results = campaign([("robot", 1, "x", frozenset("a"))], every_test=False)
     assert minimal_of(results) is None
     assert section(results) is None
-    with pytest.raises(UsageError, match="`mutabot minimal` does"):
-        markdown(Material(results))
-
-
-def test_markdown_has_a_row_for_each_family_and_each_mutant_of_the_set() -> None:
-    text = markdown(
-        Material(campaign([("robot", 1, "x | y", frozenset("a")), ("bugs", 2, "z", frozenset())]))
-    )
-    assert "Minimal set: 2 of 2 mutants, 1 killed and 1 survivors" in text
-    assert "| robot | 1 | 1 | 1 | 1 | 1 |" in text
-    assert "| 1 | mission.py:1 | skip | x \\| y | 1 | 0 |" in text
-    assert "Every test on every mutant took 12 s." in text
 
 
 def test_a_campaign_of_two_families_has_one_set(project: Path) -> None:
@@ -128,5 +112,5 @@ def test_a_campaign_of_two_families_has_one_set(project: Path) -> None:
     assert {share["family"] for share in found["families"]} == {"robot", "conventional"}  # type: ignore[attr-defined]
     results = json.loads(mutabot(None, project, "results", "--json").stdout)
     assert results["sections"]["minimal"] == found
-    shown = mutabot(None, project, "report", "--format", "minimal")
+    shown = mutabot(None, project, "minimal", "--family", "robot,conventional")
     assert f"Minimal set: {found['size']} of {found['mutants']} mutants" in shown.stdout

@@ -8,7 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mutabot.model import By, Kill, Outcome, Verdict
-from mutabot_minimal.subsumption import dominators, killers_of, noticing_tests
+from mutabot.results.results import MutantResult
+from mutabot_minimal.subsumption import dominators, killers_of
+from tests.results import samples
 
 KILLERS = st.frozensets(st.tuples(st.sampled_from("abcd"), st.integers(0, 2)), max_size=6)
 MATRICES = st.lists(KILLERS, max_size=25).map(lambda rows: dict(enumerate(rows)))
@@ -71,10 +73,10 @@ def test_the_order_of_mutants_does_not_matter(
 
 def test_the_same_test_in_another_round_is_another_killer() -> None:
     kill = (Kill("a", By.CHECK),)
-    found = killers_of([Outcome("m", round, Verdict.KILLED, test="a", kills=kill) for round in (0, 1)])
-    assert found == {("a", 0), ("a", 1)}
+    ends = tuple(Outcome("m", round, Verdict.KILLED, test="a", kills=kill) for round in (0, 1))
+    assert killers_of(MutantResult(samples.MUTANTS[0], ends, None, "")) == {("a", 0), ("a", 1)}
 
 
 def test_a_time_out_is_noticed_by_its_test_and_a_survivor_by_none() -> None:
-    assert noticing_tests(Outcome("m", 0, Verdict.TIMEOUT, test="a")) == {"a"}
-    assert noticing_tests(Outcome("m", 0, Verdict.SURVIVED)) == frozenset()
+    assert Outcome("m", 0, Verdict.TIMEOUT, test="a").noticing_tests == {"a"}
+    assert Outcome("m", 0, Verdict.SURVIVED).noticing_tests == frozenset()
