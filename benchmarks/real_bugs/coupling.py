@@ -136,12 +136,12 @@ def of_parts(programs: Sequence[Found]) -> Iterable[str]:
     yield "|---|---|---|---|"
     for name, (of_quarter, of_half) in by.items():
         positive = sum(value > 0 for value in of_half)
-        yield f"| {name} | {_interval(of_quarter)} | {_interval(of_half)} | {positive} of {len(of_half)} |"
+        yield f"| {name} | {in_words(of_quarter)} | {in_words(of_half)} | {positive} of {len(of_half)} |"
     yield from ("", "| difference | a quarter of the tests | a half |", "|---|---|---|")
     for first, second in COMPARED:
         pairs = zip(by[first], by[second], strict=True)
         gaps = [[a - b for a, b in zip(*pair, strict=True)] for pair in pairs]
-        yield f"| {first} – {second} | {' | '.join(map(_interval, gaps))} |"
+        yield f"| {first} – {second} | {' | '.join(map(in_words, gaps))} |"
 
 
 def _correlations(parts: Iterable[Parts], families: tuple[str, ...]) -> list[float]:
@@ -157,15 +157,17 @@ def of_coupling(programs: Sequence[Found]) -> Iterable[str]:
     yield "| family | bugs that are caught and have a mutant killed by exactly the same tests |"
     yield "|---|---|"
     for name, families in GROUPS.items():
-        by_program = [
-            [tests in program.kills(families) for tests in program.kills((BUGS,)) if tests]
-            for program in programs
-        ]
-        rows = [row for row in by_program if row]
-        low, high = interval(rows, _share)
-        count, size = sum(map(sum, rows)), sum(map(len, rows))
-        share = f"{count} of {size} = {100 * count / size:.0f} %"
-        yield f"| {name} | {share} ({100 * low:.0f}–{100 * high:.0f}) |"
+        yield coupled_row(name, [(program, program.kills(families)) for program in programs])
+
+
+def coupled_row(name: str, programs: Sequence[tuple[Found, Sequence[frozenset[str]]]]) -> str:
+    """Return for how many bugs of programs something is noticed by exactly the same tests."""
+    by_program = [[tests in kills for tests in found.kills((BUGS,)) if tests] for found, kills in programs]
+    rows = [row for row in by_program if row]
+    low, high = interval(rows, _share)
+    count, size = sum(map(sum, rows)), sum(map(len, rows))
+    share = f"{count} of {size} = {100 * count / size:.0f} %"
+    return f"| {name} | {share} ({100 * low:.0f}–{100 * high:.0f}) |"
 
 
 def _share(rows: Sequence[Sequence[bool]]) -> float:
@@ -186,7 +188,7 @@ def of_operators(programs: Sequence[Found]) -> Iterable[str]:
             continue
         correlations = [_correlation(part, part.found.kills_of(name)) for part in having]
         coupled = [tests in part.found.kills((BUGS,)) for part, tests in kills if tests]
-        row = f"| {name} | {len(kills)} | {_interval(correlations)} | {100 * fmean(coupled or [0]):.0f} % |"
+        row = f"| {name} | {len(kills)} | {in_words(correlations)} | {100 * fmean(coupled or [0]):.0f} % |"
         rows.append((fmean(correlations), row))
     yield from (row for _, row in sorted(rows, reverse=True))
 
@@ -257,7 +259,8 @@ def interval(rows: Sequence[T], mean: Callable[[Sequence[T]], float]) -> tuple[f
     return found[int(0.025 * DRAWS)], found[int(0.975 * DRAWS) - 1]
 
 
-def _interval(values: Sequence[float]) -> str:
+def in_words(values: Sequence[float]) -> str:
+    """Return the mean over programs with its interval."""
     low, high = interval(values, fmean)
     return f"{fmean(values):.2f} ({low:.2f} to {high:.2f})"
 

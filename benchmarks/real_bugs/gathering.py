@@ -131,7 +131,7 @@ def gather(name: str, sample: int | None = None) -> Found:
 def of_campaign(name: str, sample: int) -> Found:
     """The bugs of a program on the cell or on ROS 2, and so many mutants of each family."""
     with tempfile.TemporaryDirectory() as folder:
-        copy = _copied(PROGRAMS / name, Path(folder))
+        copy = copied(PROGRAMS / name, Path(folder))
         file = Path(folder).resolve() / "lines.json"
         environment = {**os.environ, "PYTHONPATH": str(PROGRAMS.parents[1]), RECORD: str(file)}
         words = [sys.executable, "-m", "pytest", "-q", "-p", "real_bugs.lines", "-p", "no:cacheprovider"]
@@ -170,10 +170,10 @@ def _noticed(suite: Suite, variant: Variant) -> Noticed:
 def of_calls(name: str, sample: int | None = None) -> list[Noticed]:
     """The mutants of the calls in a program, by a campaign with every test."""
     with tempfile.TemporaryDirectory() as folder:
-        return _campaign(_copied(PROGRAMS / name, Path(folder)), OF_CALLS, sample)
+        return _campaign(copied(PROGRAMS / name, Path(folder)), OF_CALLS, sample)
 
 
-def _copied(program: Path, folder: Path) -> Path:
+def copied(program: Path, folder: Path) -> Path:
     copy = folder.resolve() / program.name
     shutil.copytree(program, copy, ignore=shutil.ignore_patterns(".mutabot", "__pycache__", ".pytest_cache"))
     return copy
@@ -197,7 +197,7 @@ def judged(results: Results, *, is_probed: bool = False) -> list[Noticed]:
     found = []
     for result in results.mutants:
         mutant, (outcome,) = result.mutant, result.outcomes
-        by = _noticing(outcome)
+        by = noticing(outcome)
         is_judged = outcome.verdict not in (Verdict.ERROR, Verdict.TIMEOUT) or by
         if not is_judged or mutant.site.role is not Role.PROGRAM:
             continue
@@ -210,7 +210,7 @@ def judged(results: Results, *, is_probed: bool = False) -> list[Noticed]:
     return found
 
 
-def _noticing(outcome: Outcome) -> Kills:
+def noticing(outcome: Outcome) -> Kills:
     """The tests that notice it; a command that the robot refuses fails the test that gives it."""
     refusing = {outcome.test} if outcome.verdict is Verdict.REFUSED and outcome.test else set[str]()
     return frozenset({kill.test for kill in outcome.kills} | refusing)
@@ -220,7 +220,7 @@ def _end(result: MutantResult, is_probed: bool) -> str:
     (outcome,) = result.outcomes
     if result.mutant.family != BUGS and outcome.verdict in (Verdict.INVALID, Verdict.REFUSED):
         return REFUSED
-    if _noticing(outcome):
+    if noticing(outcome):
         raised = {(kill.exception or "").rpartition(":")[2] for kill in outcome.kills}
         is_senseless = result.mutant.family in OF_TEXT and bool(raised) and _SENSELESS.issuperset(raised)
         return STILLBORN if is_senseless else KILLED
