@@ -25,7 +25,7 @@ from pathlib import Path
 from typing import Any
 from unittest import mock
 
-from mutabot.campaign.reuse import keys
+from mutabot.campaign.reuse import parts
 from mutabot.cli import campaign as _loaded_before_the_forks  # noqa: F401
 from mutabot.cli.app import main as mutabot
 from mutabot.execution.versions import versions
@@ -189,7 +189,7 @@ def main() -> int:
     if "paper" not in names:  # whose tests need a plug-in
         os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
     found = versions()
-    mock.patch.object(keys, "versions", return_value=found).start()  # no package changes meanwhile
+    mock.patch.object(parts, "versions", return_value=found).start()  # no package changes meanwhile
     with tempfile.TemporaryDirectory(prefix="mutabot-edits-") as place:
         work = Path(place)
         known: dict[str, tuple[Path, Subject, dict[Any, Any]]] = {}

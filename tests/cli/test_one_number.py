@@ -55,9 +55,16 @@ def test_list_and_run_number_alike_with_and_without_a_selection(
 
 @pytest.mark.needs("source")
 @pytest.mark.whole
-@pytest.mark.parametrize("vocabulary", ["", "vocabulary = []", 'vocabulary = ["robot.toml"]'])
+@pytest.mark.parametrize(
+    ("vocabulary", "why"),
+    [
+        ("", "empty"),
+        ("vocabulary = []", "empty"),
+        ('vocabulary = ["robot.toml"]', "robot.toml: describes nothing"),
+    ],
+)
 def test_mutants_of_the_text_alone_need_no_vocabulary(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], vocabulary: str
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], vocabulary: str, why: str
 ) -> None:
     configuration = f'program = ["mission.py"]\n{vocabulary}\npytest_args = ["-o", "pythonpath=."]\n'
     write_project(tmp_path, MISSION, TESTS, configuration=configuration, vocabulary="")
@@ -67,7 +74,7 @@ def test_mutants_of_the_text_alone_need_no_vocabulary(
     assert main([*project, "run", "--family", "conventional", "--family", "robot"]) == ExitCode.USAGE
     err = capsys.readouterr().err
     assert "vocabulary" in err
-    assert "empty" in err
+    assert why in err
     assert main([*project, "run"]) == ExitCode.USAGE
     (tmp_path / "mutabot.toml").write_text(f'families = ["conventional", "text"]\n{configuration}')
     assert found.keys() <= printed(capsys, *project, "run").keys()
