@@ -48,7 +48,10 @@ def main() -> int:
     parser.add_argument("--read", type=Path, help="what was written so, instead of running anything")
     parser.add_argument("--jobs", type=int, default=2, help="programs at a time")
     given = parser.parse_args()
-    programs = [program for program in read(DATA) if not given.names or program.name in given.names]
+    known = read(DATA)
+    if unknown := {*given.names}.difference(program.name for program in known):
+        parser.error(f"no program {', '.join(sorted(unknown))}; there are {', '.join(p.name for p in known)}")
+    programs = [program for program in known if not given.names or program.name in given.names]
     if given.read is not None:
         sizes = read(given.read)
     else:
