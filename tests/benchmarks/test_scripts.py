@@ -38,6 +38,7 @@ SHORT: dict[str, list[str]] = {
     "patches_judged": ["doctest_program", "--patches", "1"],
     "processes_in_a_row": ["--count", "1", "--examples", "scales"],
     "published_campaign": [MUTABOT, "1", "1"],
+    "real_bugs/added": ["dispenser", "--jobs", "1"],
     "real_bugs/coupling": ["base", "--sample", "5", "--jobs", "1"],
     "real_bugs/rates": [],
     "real_bugs/shares": [],
