@@ -15,7 +15,6 @@ MuJoCo.
 
 from __future__ import annotations
 
-import argparse
 import multiprocessing
 import sys
 from collections.abc import Iterable, Mapping, Sequence
@@ -26,7 +25,7 @@ from statistics import fmean
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from real_bugs.coupling import Parts, coupled_row, in_words, noticed
+from real_bugs.coupling import Parts, command_line, coupled_row, in_words, noticed
 from real_bugs.gathering import BUGS, REFUSED, SAME, Found, Kills, Noticed, read, write
 from real_bugs.rates import DATA
 from real_bugs.sizes import AT, GRADED, WORLD, with_sizes
@@ -40,13 +39,7 @@ Counted = Sequence[Sequence[Kills]]
 
 def main() -> int:
     """The command."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("names", nargs="*", help="programs; all without")
-    parser.add_argument("--json", type=Path, help="where to write who notices what")
-    parser.add_argument("--read", type=Path, help="what was written so, instead of running anything")
-    parser.add_argument("--jobs", type=int, default=2, help="programs at a time")
+    parser = command_line(__doc__)
     given = parser.parse_args()
     known = read(DATA)
     if unknown := {*given.names}.difference(program.name for program in known):

@@ -58,16 +58,22 @@ T = TypeVar("T")
 Table = Callable[[Sequence[Found]], Iterable[str]]
 
 
-def main() -> int:
-    """The command."""
+def command_line(description: str | None) -> argparse.ArgumentParser:
+    """Return a parser of what scripts are told that run programs or read what was written of them."""
     parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+        description=description, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("names", nargs="*", help="programs; all without")
     parser.add_argument("--json", type=Path, help="where to write who notices what")
     parser.add_argument("--read", type=Path, help="what was written so, instead of running anything")
-    parser.add_argument("--sample", type=int, help="so many mutants of calls and of text of each")
     parser.add_argument("--jobs", type=int, default=2, help="programs at a time")
+    return parser
+
+
+def main() -> int:
+    """The command."""
+    parser = command_line(__doc__)
+    parser.add_argument("--sample", type=int, help="so many mutants of calls and of text of each")
     given = parser.parse_args()
     if given.read is not None:
         programs = read(given.read)
