@@ -15,7 +15,7 @@ from .index import TextExtent, extent_of, segment_of
 from .operator import HELPER
 
 #: what the helper's functions are in a text that is run where there is no helper
-_FAIL = "(_ for _ in ()).throw(type(name, (Exception,), {})(text))"
+_FAIL = "(_ for _ in ()).throw(type(name, (Exception,), {'__module__': 'builtins'})(text))"
 _EQUAL = "(lambda equal: equal.any() if hasattr(equal, 'any') else equal)(value == wrong)"
 _WITHOUT_HELPER = {
     f"{HELPER}.absolute(": "__import__('builtins').abs(",

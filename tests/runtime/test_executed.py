@@ -164,7 +164,7 @@ def test_tests_from_the_first_on_that_reads_the_program_may_have_its_text(
     assert not baseline.is_read("robot.py")
     (note,) = (line for line in told.lines if "may read mission.py as text" in line)
     assert "from tests/test_mission.py::test_reads_the_program on" in note
-    assert note.endswith(": no mutants of calls are made of what they do with it")
+    assert note.endswith(": mutants of calls act in it only where they run it unchanged")
 
 
 def test_of_tests_that_start_processes_nothing_is_known(executed: dict[str, set[str]]) -> None:

@@ -9,20 +9,6 @@ forks, and ``processes`` follows what the tests start. To follow one call, begin
 """
 
 import os
-from functools import cache
 
 #: where all of it lies: frames in these files are ours
 FOLDER = os.path.dirname(os.path.realpath(__file__))
-
-#: a folder without symbolic links; there are few, and hundreds of files in them
-real_folder = cache(os.path.realpath)
-
-
-@cache
-def real_path(path: str) -> str:
-    """Return the path of a file without symbolic links."""
-    if not os.path.isabs(path):
-        return os.path.realpath(path)
-    folder, name = os.path.split(path)
-    found = os.path.join(real_folder(folder), name)
-    return os.path.realpath(found) if name in ("", ".", "..") or os.path.islink(found) else found

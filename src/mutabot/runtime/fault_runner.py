@@ -23,6 +23,7 @@ from mutabot.operators.command import FatalFault
 from mutabot.runtime.active_fault import ActiveFault, FatalControl, FaultContext
 from mutabot.runtime.evidence import Evidence
 from mutabot.runtime.exceptions import Refusal, everything
+from mutabot.runtime.executed_text import file_of
 from mutabot.runtime.interception.active_mutant import with_refusal
 
 if TYPE_CHECKING:
@@ -197,7 +198,7 @@ def _is_own(frame: FrameType, module: str, robots: Collection[str], locator: Loc
         return True
     if name.startswith(_MOCKS) or any(_is_within(name, robot.partition(".")[0]) for robot in robots):
         return False
-    file = frame.f_code.co_filename
+    file = file_of(frame.f_code)
     return False if locator.is_of_project(file) or locator.role(file) is not None else None
 
 

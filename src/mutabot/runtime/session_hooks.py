@@ -19,7 +19,7 @@ from mutabot.model import Mutant, Role
 from mutabot.model.events import SessionEnd
 from mutabot.model.job import Job, read_job
 from mutabot.operators.registry import preload
-from mutabot.runtime import seeds
+from mutabot.runtime import executed_text, seeds
 from mutabot.runtime.event_file import EventFile, Held
 from mutabot.runtime.interception.frames import is_ours
 from mutabot.runtime.interception.trace import Locator
@@ -29,6 +29,7 @@ from mutabot.runtime.isolation.forkable import track_event_loops
 from mutabot.runtime.isolation.namespaces import die_with_parent
 from mutabot.runtime.meter import limit_memory
 from mutabot.runtime.observation.checks import Checks
+from mutabot.runtime.paths import BEGAN, watch_copies
 from mutabot.runtime.processes.member import watch_forks
 from mutabot.runtime.processes.members import Members
 from mutabot.runtime.program_text.returns import Returns
@@ -80,6 +81,8 @@ class SessionHooks:
         home = os.path.dirname(os.path.dirname(job_file))
         job = read_job(home)
         extensions.use(job.extensions)
+        watch_copies(job.root, job.program, BEGAN)
+        executed_text.install()
         if job.memory is not None:
             limit_memory(job.memory)
         # what the program draws while it is imported is the same in all rounds: a server imports it once

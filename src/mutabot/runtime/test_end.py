@@ -16,9 +16,11 @@ from mutabot.extensions import packages
 from mutabot.model import By, Role, Vocabulary
 from mutabot.model.events import TestEnd
 from mutabot.model.path import class_name
-from mutabot.runtime import FOLDER, real_path
+from mutabot.runtime import FOLDER
 from mutabot.runtime.exceptions import failure_in, is_due_to, leaves
+from mutabot.runtime.executed_text import file_of
 from mutabot.runtime.meter import TimeExceeded
+from mutabot.runtime.paths import real_path
 from mutabot.runtime.targets.target import is_named
 
 if TYPE_CHECKING:
@@ -146,7 +148,7 @@ def _is_check(error: BaseException, test_file: str, locator: Locator, vocabulary
     # nearest to the raise decides that is the tests', the program's or an operation's.
     folder = os.path.dirname(os.path.realpath(test_file)) + os.sep
     for frame, _ in _from_the_raise(error):
-        filename = real_path(frame.f_code.co_filename)
+        filename = real_path(file_of(frame.f_code))
         package = str(frame.f_globals.get("__name__", "")).partition(".")[0]
         if filename.startswith(FOLDER) or package in packages():  # such bring operators, or hooks
             return False
@@ -165,7 +167,7 @@ def _from_the_raise(error: BaseException) -> list[tuple[FrameType, int]]:
 
 def _place(error: BaseException, locator: Locator) -> str | None:
     """Return the innermost line that is the user's own: below the root and not installed."""
-    lines = [(frame.f_code.co_filename, line) for frame, line in _from_the_raise(error)]
+    lines = [(file_of(frame.f_code), line) for frame, line in _from_the_raise(error)]
     if _is_mismatch(error) and error.test.filename is not None and error.test.lineno is not None:
         lines.append((error.test.filename, error.test.lineno + error.example.lineno + 1))
     for filename, line in lines:

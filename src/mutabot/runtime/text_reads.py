@@ -17,7 +17,7 @@ from typing import Any
 
 from mutabot.extensions import packages
 from mutabot.languages.registry import unit_parser
-from mutabot.runtime import real_folder
+from mutabot.runtime.paths import real_folder
 from mutabot.runtime.processes.environment import FRAMES, listen
 
 #: our own audit event: lines of a file are taken, from the cache or not

@@ -324,7 +324,7 @@ def _note_read_texts(baseline: Baseline, request: Request, progress: Progress) -
     read = [file for file in files if baseline.is_read(file)]
     reasons = ["each of its mutants changes the file, in a process of its own"] if baseline.texts else []
     if not {*request.families}.isdisjoint(OF_CALLS):
-        reasons.append("no mutants of calls are made of what they do with it")
+        reasons.append("mutants of calls act in it only where they run it unchanged")
     if read and reasons:
         rounds = range(len(baseline.tests))
         first = next(

@@ -20,9 +20,10 @@ from mutabot.model.answer import NotKeptError, keep
 from mutabot.model.codec import is_plain
 from mutabot.model.events import TRACE_LIMIT, SiteSeen
 from mutabot.model.operation import Form
-from mutabot.runtime import real_path
+from mutabot.runtime.executed_text import executed, file_of
 from mutabot.runtime.interception.adapter import SiteCall, call_context
 from mutabot.runtime.interception.frames import borders, is_within_border
+from mutabot.runtime.paths import forget_with, real_path
 
 if TYPE_CHECKING:
     from mutabot.model.mutant import Extent
@@ -210,7 +211,9 @@ class Locator:
         places = [(self._absolute(path), Role.PROGRAM) for path in program]
         places += [(self._absolute(path), Role.ORACLE) for path in oracle]
         self._places = sorted(places, key=lambda place: -len(place[0]))
-        self.role: Callable[[str], Role | None] = cache(self._find_role)
+        find_role = cache(self._find_role)
+        self.role: Callable[[str], Role | None] = find_role
+        forget_with(find_role.cache_clear)
         # By the identity of code: the code of equal functions in two files is equal, though they are two
         # places. It is kept beside its span, so that no other code can get its address.
         self._spans: dict[tuple[int, int], tuple[Span, CodeType]] = {}
@@ -230,6 +233,8 @@ class Locator:
                 return None
             found = self._in_interpreter(frame) if interpreted else None
             role = self.role(code.co_filename) if found is None else None
+            if role is None and executed:
+                role = self.role(file_of(code))
             if role is not None:
                 found = (self._span(code, frame.f_lasti, PYTHON.position_of, frame), role)
             if found is not None:
@@ -240,7 +245,7 @@ class Locator:
 
     def locate_definition(self, code: CodeType) -> CallPlace | None:
         """Return the span and role of a function's definition; None outside of program and oracle."""
-        role = self.role(code.co_filename)
+        role = self.role(file_of(code))
         if role is None:
             return None
         return self._span(code, _DEFINITION, PYTHON.definition_of, code), role
@@ -278,7 +283,7 @@ class Locator:
         key = (id(code), instruction)
         known = self._spans.get(key)
         if known is None:
-            span = self._span_at(code.co_filename, *find(asked))
+            span = self._span_at(file_of(code), *find(asked))
             known = self._spans[key] = (span, code)
         return known[0]
 

@@ -24,6 +24,7 @@ from typing import Any
 
 from mutabot.model.event_file import ANYBODY, NOW, TESTS, VARIABLE, WAKE
 from mutabot.model.files import open_file, read_file
+from mutabot.runtime.paths import BEGAN
 
 #: told an event's name and its arguments
 AuditHandler = Callable[[str, tuple[Any, ...]], None]
@@ -193,7 +194,7 @@ def write_wake(
     _write(os.path.join(folder, WAKE), text.encode("utf-8", "surrogateescape"), os.O_TRUNC)
 
 
-def _write(path: str, data: bytes, flags: int) -> None:
+def _write(path: str, data: bytes | bytearray, flags: int) -> None:
     with os.fdopen(open_file(path, os.O_WRONLY | os.O_CREAT | flags, 0o644), "wb") as file:
         file.write(data)
 
@@ -210,6 +211,8 @@ def _folders_of(names: Iterable[str]) -> list[str]:
 
 
 _NUMBER = struct.Struct("=q")
+#: where in the page it stands when the test process began
+_BEGAN = 2 * _NUMBER.size
 
 
 class Announced:
@@ -227,7 +230,9 @@ class Announced:
     def __init__(self, folder: str) -> None:
         self.number = 0
         self._now, self._tests = os.path.join(folder, NOW), os.path.join(folder, TESTS)
-        _write(self._now, bytes(mmap.PAGESIZE), os.O_TRUNC)
+        page = bytearray(mmap.PAGESIZE)
+        _NUMBER.pack_into(page, _BEGAN, BEGAN)
+        _write(self._now, page, os.O_TRUNC)
 
     def begin(self, test: str) -> int:
         """Announce a test that begins. Return its number."""
@@ -258,6 +263,12 @@ class Now:
         """The number of the running test; after a test still its number, 0 before the first."""
         number: int = _NUMBER.unpack_from(self._memory)[0]
         return number
+
+    @property
+    def began(self) -> int:
+        """When the test process began, ns since the epoch."""
+        began: int = _NUMBER.unpack_from(self._memory, _BEGAN)[0]
+        return began
 
     def note_unwritten(self) -> None:
         """Note, in shared memory, that this process could not write its events."""

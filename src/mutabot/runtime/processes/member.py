@@ -23,10 +23,12 @@ from mutabot.model.clocks import monotonic
 from mutabot.model.event_file import ANYBODY
 from mutabot.model.job import Job, read_job
 from mutabot.runtime import FOLDER as OURS
+from mutabot.runtime import executed_text
 from mutabot.runtime.event_file import EventFile
 from mutabot.runtime.evidence import Evidence
 from mutabot.runtime.exceptions import failure_in, is_due_to, leaves
 from mutabot.runtime.meter import Meter, TimeExceeded
+from mutabot.runtime.paths import watch_copies
 from mutabot.runtime.processes.environment import STARTS, Now, export_folder, listen, starts_a_killer
 from mutabot.runtime.program_text.instrument import SessionText
 from mutabot.runtime.program_text.loading import hook_script
@@ -145,6 +147,9 @@ class Member:
         command = tuple(getattr(sys, "orig_argv", sys.argv))
         is_forked = session is not None
         self.file.send(events.Began(os.getpid(), os.getpgrp(), command, now, self._test, forked=is_forked))
+        if session is None:
+            watch_copies(job.root, job.program, self._now.began)
+            executed_text.install()
         self.session = session or _session(job, self)
         self._targets: set[str] = set()
         self._reported = Evidence()

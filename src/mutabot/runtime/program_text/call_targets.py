@@ -45,6 +45,7 @@ from mutabot.languages.python import function_of
 from mutabot.model import ANY, Operation, Role, Span
 from mutabot.model.path import class_name
 from mutabot.model.signature import signature_of
+from mutabot.runtime.executed_text import file_of
 from mutabot.runtime.interception.adapter import Adapter, is_mock
 from mutabot.runtime.interception.dispatcher import is_coroutine_function, is_untracked
 from mutabot.runtime.interception.frames import ModuleCache, is_border
@@ -223,9 +224,7 @@ class CallTargets:
         function = found.__func__ if isinstance(found, MethodType) else found
         if mock_of(function) is not None:
             return True
-        return isinstance(function, FunctionType) and self.locator.is_of_project(
-            function.__code__.co_filename
-        )
+        return isinstance(function, FunctionType) and self.locator.is_of_project(file_of(function.__code__))
 
     def place(self, site: CallSite, frame: FrameType) -> CallPlace:
         """Return the place of a site."""
@@ -288,7 +287,7 @@ class CallTargets:
         if owner is None or receiver is NOTHING:
             return False
         function = found.__func__ if isinstance(found, MethodType) else found
-        file = function.__code__.co_filename if isinstance(function, FunctionType) else ""
+        file = file_of(function.__code__) if isinstance(function, FunctionType) else ""
         if file and self.locator.role(file) is Role.PROGRAM and not adapter.operation.overrides:
             return False
         return any(_is_a(receiver, kind) for kind in self._kinds(adapter, owner, frame))
@@ -535,7 +534,7 @@ class PassedCallables:
         else:
             parent = own.get("_mock_new_parent")
             adapter, receiver, place = None, NOTHING if parent is None else parent, None
-            if caller is not None and self._call_targets.locator.role(caller.f_code.co_filename) is not None:
+            if caller is not None and self._call_targets.locator.role(file_of(caller.f_code)) is not None:
                 adapter = self._call_targets.named(name, mock, receiver, caller)
         is_property = is_mock(mock, "PropertyMock")
         if adapter is None or (is_property and bool(args) is not bool(adapter.operation.described)):

@@ -27,6 +27,8 @@ from importlib.util import decode_source
 from types import CodeType
 from typing import Any, Protocol
 
+from mutabot.runtime.paths import look_again
+
 
 class SourceStep(Protocol):
     """A change of source files before they are compiled.
@@ -81,9 +83,9 @@ steps: list[SourceStep] = []
 requests = _Requests()
 _builtin = builtins.compile
 #: flags of code that what it compiles inherits; those of two old features mean something else today
-_INHERITED = 0
+INHERITED = 0
 for _name in {*__future__.all_feature_names} - {"nested_scopes", "generators"}:
-    _INHERITED |= getattr(__future__, _name).compiler_flag
+    INHERITED |= getattr(__future__, _name).compiler_flag
 #: how all names begin that are put into text
 _OURS = "__mutabot"
 #: attributes of trees: all steps are done with it; the file that a loader has parsed; whether it was changed
@@ -101,6 +103,14 @@ def is_wanted(path: str) -> bool:
     return any(step.wants(path) for step in steps)
 
 
+def compile_plainly(text: str, name: str, flags: int) -> CodeType:
+    """Return the code of a text as it stands. Raises SyntaxError or ValueError."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", SyntaxWarning)  # told when the program is compiled
+        code: CodeType = _builtin(text, name, "exec", flags, True)
+    return code
+
+
 def compile_tree(tree: ast.Module, path: str, flags: int = 0, optimize: int = -1) -> CodeType:
     """Return the code of a changed file. Raises what ``compile`` raises."""
     with warnings.catch_warnings():
@@ -115,7 +125,7 @@ def _compile(
 ) -> Any:  # fmt: skip
     """Compile a source, with the steps; the replacement of ``compile``."""
     if not dont_inherit:
-        flags |= sys._getframe(1).f_code.co_flags & _INHERITED
+        flags |= sys._getframe(1).f_code.co_flags & INHERITED
     plainly = partial(_builtin, source, filename, mode, flags, True, optimize, **more)
     request = requests.open[-1] if requests.open else None
     if mode != "exec" or (request is not None and request.is_off):
@@ -191,6 +201,7 @@ def _wanted(filename: Any) -> str | None:
     if name.startswith("<"):
         return None
     path = name if os.path.isabs(name) else os.path.abspath(name)  # the folder may change before it runs
+    look_again(path)
     return path if is_wanted(path) and not _is_kept() else None
 
 

@@ -26,9 +26,9 @@ from mutabot.model.events import NotInstrumented, PlacesReached, TextsSeen
 from mutabot.model.mutant import Extent
 from mutabot.model.program_text import RUNTIME, Alternative
 from mutabot.model.source_units import digest
-from mutabot.runtime import real_path
 from mutabot.runtime.event_file import EventWriter, Held
 from mutabot.runtime.evidence import Evidence
+from mutabot.runtime.paths import real_path
 from mutabot.runtime.processes.environment import listen
 from mutabot.runtime.program_text import compiling, loading
 from mutabot.runtime.program_text.compiling import content_of

@@ -22,6 +22,7 @@ from typing import Any
 
 from mutabot.errors import error_text
 from mutabot.languages.python import head_size
+from mutabot.runtime.paths import look_again
 from mutabot.runtime.program_text import compiling
 from mutabot.runtime.program_text.compiling import LoaderRequest, SourceStep, is_wanted
 
@@ -39,6 +40,7 @@ def add(step: SourceStep) -> None:
 
 def _get_code(self: Any, fullname: str) -> CodeType | None:
     path = self.get_filename(fullname)
+    look_again(path)
     if not is_wanted(path):
         found: CodeType | None = _original(self, fullname)
         return found

@@ -1,0 +1,124 @@
+"""Copies of the program count as the program if they are made while the session runs."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import time
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from mutabot.runtime import executed_text, paths
+from mutabot.runtime.executed_text import file_of
+from mutabot.runtime.paths import look_again, real_path, watch_copies
+
+TEXT = "def main(arm):\n    arm.move(10)\n"
+
+
+@pytest.fixture
+def program(tmp_path: Path) -> Iterator[Path]:
+    """A program of two files, older than the session."""
+    folder = tmp_path / "project"
+    (folder / "cell").mkdir(parents=True)
+    (folder / "cell" / "__init__.py").touch()
+    (folder / "cell" / "mission.py").write_text(TEXT)
+    before = paths._copies
+    watch_copies(str(folder), ["cell"], since_now(tmp_path))
+    yield folder / "cell" / "mission.py"
+    paths._copies = before
+    paths.forget()
+
+
+def since_now(folder: Path) -> int:
+    """A time after all that was written until now: file systems know it by ticks of a clock."""
+    first = now = written(folder)
+    while now == first:
+        now = written(folder)
+    return now
+
+
+def written(folder: Path) -> int:
+    """When a file that is written now was written, ns."""
+    (folder / "tick").write_text(str(time.time_ns()))
+    return (folder / "tick").stat().st_ctime_ns
+
+
+def test_a_copy_stands_for_its_original(program: Path, tmp_path: Path) -> None:
+    copy = shutil.copy2(program, tmp_path / "other.py")
+    assert real_path(str(copy)) == str(program)
+
+
+def test_an_older_file_with_the_same_text_is_another_one(program: Path, tmp_path: Path) -> None:
+    older = tmp_path / "older.py"
+    older.write_text(TEXT)
+    watch_copies(str(program.parents[1]), ["cell"], since_now(tmp_path))
+    assert real_path(str(older)) == str(older)
+
+
+def test_a_file_of_the_program_is_itself(program: Path) -> None:
+    program.with_name("second.py").write_text(TEXT)
+    assert real_path(str(program.with_name("second.py"))) == str(program.with_name("second.py"))
+
+
+def test_of_originals_with_the_same_text_it_is_the_one_with_the_same_name(
+    program: Path, tmp_path: Path
+) -> None:
+    program.with_name("second.py").write_text(TEXT)
+    copied = shutil.copytree(program.parent, tmp_path / "copied" / "cell")
+    for name in ("mission.py", "second.py"):
+        assert real_path(str(copied / name)) == str(program.with_name(name))
+
+
+def test_an_empty_file_is_no_copy(program: Path, tmp_path: Path) -> None:
+    (tmp_path / "__init__.py").touch()
+    assert real_path(str(tmp_path / "__init__.py")) == str(tmp_path / "__init__.py")
+
+
+def test_line_ends_and_encodings_do_not_matter(program: Path, tmp_path: Path) -> None:
+    (tmp_path / "other.py").write_bytes(b"\xef\xbb\xbf" + TEXT.replace("\n", "\r\n").encode())
+    assert real_path(str(tmp_path / "other.py")) == str(program)
+
+
+def test_a_member_of_a_zip_file_is_a_copy(program: Path, tmp_path: Path) -> None:
+    with zipfile.ZipFile(tmp_path / "app.pyz", "w") as archive:
+        archive.write(program, "parts/mission.py")
+        archive.writestr("other.py", "x = 1\n")
+    assert real_path(str(tmp_path / "app.pyz" / "parts" / "mission.py")) == str(program)
+    for name in ("other.py", "missing.py"):
+        assert real_path(str(tmp_path / "app.pyz" / name)) == str(tmp_path / "app.pyz" / name)
+
+
+def test_what_is_written_again_is_looked_at_again(program: Path, tmp_path: Path) -> None:
+    file = tmp_path / "variant.py"
+    file.write_text(TEXT.replace("10", "200"))
+    assert real_path(str(file)) == str(file)
+    file.write_text(TEXT)
+    look_again(str(file))
+    assert real_path(str(file)) == str(program)
+    file.unlink()
+    look_again(str(file))
+    assert real_path(str(file)) == str(file)
+
+
+def test_a_copy_of_what_a_mutant_has_changed_stands_for_its_original(program: Path, tmp_path: Path) -> None:
+    program.write_text(TEXT.replace("10", "-10"))
+    copy = shutil.copy(program, tmp_path / "other.py")
+    assert real_path(str(copy)) == str(program)
+
+
+def test_a_pipe_is_no_copy(program: Path, tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.py")
+    assert real_path(str(tmp_path / "pipe.py")) == str(tmp_path / "pipe.py")
+
+
+@pytest.mark.parametrize("name", ["<string>", "<mission>"])
+def test_text_that_is_run_has_the_file_that_holds_it(program: Path, name: str) -> None:
+    same, other = (compile(text, name, "exec") for text in (TEXT, TEXT.replace("10", "20")))
+    for code in (same, other):
+        executed_text._on_audit_event("exec", (code,))
+    inner = next(part for part in same.co_consts if hasattr(part, "co_code"))
+    assert file_of(same) == file_of(inner) == str(program)
+    assert file_of(other) == name
