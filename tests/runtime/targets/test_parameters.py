@@ -177,9 +177,10 @@ def test_nothing_is_remarked_where_the_arguments_can_be_told_apart(
     assert not stage.pipe.lines
 
 
-def test_a_signature_that_does_not_take_a_call_is_a_problem(make_stage: Make) -> None:
+@pytest.mark.parametrize("when", ["", 'when = { argument = "data", value = "x" }\n'], ids=["", "some calls"])
+def test_a_signature_that_does_not_take_a_call_is_a_problem(make_stage: Make, when: str) -> None:
     stage = make_stage(
-        NATIVE, program_with(f"group({DATA}, ':', 2)"), vocabulary_with("(data, bytes_per_sep)")
+        NATIVE, program_with(f"group({DATA}, ':', 2)"), vocabulary_with("(data, bytes_per_sep)") + when
     )
     assert stage.run(stage.session()) == FROM_RIGHT
     (problem,) = [line for line in stage.pipe.lines if isinstance(line, Problem)]
@@ -187,8 +188,10 @@ def test_a_signature_that_does_not_take_a_call_is_a_problem(make_stage: Make) ->
     assert problem.text == "(data, bytes_per_sep) does not take the call (…, …, …)"
 
 
-def test_a_call_that_the_callable_itself_refuses_is_no_problem(make_stage: Make) -> None:
-    stage = make_stage(NATIVE, program_with("swap()"), vocabulary_with("(x)", target="swap", argument="x"))
+@pytest.mark.parametrize("when", ["", 'when = { argument = "x", value = "1" }\n'], ids=["", "some calls"])
+def test_a_call_that_the_callable_itself_refuses_is_no_problem(make_stage: Make, when: str) -> None:
+    vocabulary = vocabulary_with("(x)", target="swap", argument="x") + when
+    stage = make_stage(NATIVE, program_with("swap()"), vocabulary)
     with pytest.raises(TypeError):
         stage.run(stage.session())
     assert not [line for line in stage.pipe.lines if isinstance(line, Problem)]

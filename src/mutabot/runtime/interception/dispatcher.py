@@ -221,6 +221,8 @@ class Dispatcher:
             # 1. The adapter reads which command it is, and the values it writes.
             call = adapter.to_call(invocation)
             if call.pattern is None and adapter.operation.is_partial:  # none of the calls that are meant
+                if invocation.values is None and adapter.operation.signature is not None:  # or not known
+                    return (await self._perform(adapter, SiteCall(site, call, 0, is_async))).payload
                 if adapter.guard is not None:
                     adapter.guard.check(invocation)
                 return _ALONE
