@@ -251,6 +251,19 @@ def test_a_recording_tells_kinds_and_variables_of_the_same_type(tmp_path: Path) 
     }
 
 
+def test_a_recording_keeps_no_object_and_changes_no_names(tmp_path: Path) -> None:
+    source = (
+        "import weakref\nclass Port:\n    pass\n"
+        "def closed(n):\n    port = Port()\n    end = weakref.ref(port)\n    n = n + 1\n"
+        "    del port\n    return end() is None, n\n"
+        "def kept(n):\n    names = locals()\n    m = n\n    return m + 1, sorted(names)\n"
+    )
+    text = text_of(tmp_path, source)
+    with imported(tmp_path, text, record=True) as (module, _):
+        assert module.closed(1) == (True, 2)
+        assert module.kept(1) == (2, ["n"])
+
+
 def test_a_place_that_has_told_all_is_not_looked_at_any_more(tmp_path: Path) -> None:
     text = text_of(tmp_path, "LIMIT = 4\ndef f(x):\n    return x, [x + x]\n", "ABS", "SVR")
     numbers = {place.text: place.number for place in text.places}

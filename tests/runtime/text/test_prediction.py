@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import math
 import sys
+import weakref
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -235,6 +236,20 @@ def test_what_a_function_keeps_of_its_local_names_is_not_brought_up_to_date() ->
         form("x").value(sys._getframe(0))
     assert kept["x"] == 1
     assert x == 2
+
+
+def test_an_object_ends_with_its_name_after_the_local_names_were_looked_at() -> None:
+    program = """
+def run(thing):
+    x, end = 1, weakref.ref(thing := Plain(1.0))
+    value = look(sys._getframe(0))
+    del thing
+    return value, end() is None, x
+"""
+    space = {"sys": sys, "weakref": weakref, "Plain": Plain, "look": form("x").value}
+    exec(program, space)
+    run: Any = space["run"]
+    assert run(None) == (1, True, 1)
 
 
 @pytest.mark.parametrize(

@@ -177,13 +177,22 @@ def is_identical(first: Any, second: Any) -> bool:
 def locals_of(frame: types.FrameType) -> Mapping[str, Any]:
     """Return the local names of a frame.
 
+    Up to Python 3.12 a function keeps what it has shown of them until it ends. That is emptied, or an object
+    would outlive its ``del``.
+
     Raises UnpredictableError in a function that calls ``locals`` itself: to look would bring up to date what
     it may have kept.
     """
     code = frame.f_code
-    if code.co_flags & _OPTIMIZED and not _LOOKING.isdisjoint(code.co_names):
+    if not code.co_flags & _OPTIMIZED:
+        return frame.f_locals
+    if not _LOOKING.isdisjoint(code.co_names):
         raise UnpredictableError
-    return frame.f_locals
+    shown: Any = frame.f_locals
+    found = dict(shown)
+    if type(shown) is dict:
+        shown.clear()
+    return found
 
 
 def plain_attribute(owner: Any, name: str) -> Any:

@@ -17,14 +17,14 @@ import sys
 import threading
 import types
 from collections.abc import Callable, Collection, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import cache
 from typing import Any, NoReturn
 
 from mutabot.model.data import is_of_numpy
 from mutabot.model.path import class_name
 from mutabot.model.program_text import FATAL, IDENTITY, Sighting, TextPlace, fits_kinds
-from mutabot.runtime.program_text.prediction import Forms, locals_of
+from mutabot.runtime.program_text.prediction import Forms, UnpredictableError, locals_of
 
 
 @cache
@@ -455,7 +455,10 @@ def _alike(value: Any, frame: types.FrameType, among: Collection[str] | None) ->
     code = frame.f_code
     own = {*code.co_varnames, *code.co_cellvars, *code.co_freevars}
     allowed = code.co_names if "<locals>" in code.co_qualname else frame.f_globals
-    local, everywhere, kind = frame.f_locals, frame.f_globals, type(value)
+    local: Mapping[str, Any] = {}
+    everywhere, kind = frame.f_globals, type(value)
+    with suppress(UnpredictableError):
+        local = locals_of(frame)
     for name in [*local, *everywhere] if among is None else among:
         found = type(local.get(name, _UNKNOWN)) is kind
         if not found and name in allowed and name not in own:
