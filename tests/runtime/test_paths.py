@@ -8,11 +8,12 @@ import time
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path
+from types import CodeType
 
 import pytest
 
-from mutabot.runtime import executed_text, paths
-from mutabot.runtime.executed_text import file_of
+from mutabot.runtime import paths
+from mutabot.runtime.executed_text import file_of, look_at, original_code
 from mutabot.runtime.paths import look_again, real_path, watch_copies
 
 TEXT = "def main(arm):\n    arm.move(10)\n"
@@ -118,7 +119,34 @@ def test_a_pipe_is_no_copy(program: Path, tmp_path: Path) -> None:
 def test_text_that_is_run_has_the_file_that_holds_it(program: Path, name: str) -> None:
     same, other = (compile(text, name, "exec") for text in (TEXT, TEXT.replace("10", "20")))
     for code in (same, other):
-        executed_text._on_audit_event("exec", (code,))
-    inner = next(part for part in same.co_consts if hasattr(part, "co_code"))
-    assert file_of(same) == file_of(inner) == str(program)
-    assert file_of(other) == name
+        look_at(code)
+    assert file_of(same) == file_of(inner(same)) == str(program)
+    assert file_of(other) == file_of(inner(other)) == name
+
+
+def test_a_function_that_a_changed_text_has_taken_over_is_the_program_s(
+    program: Path, tmp_path: Path
+) -> None:
+    text = f"import math\n\n\n{TEXT}\n\ndef other():\n    arm.move(10)\n"
+    (tmp_path / "changed.py").write_text(text)
+    for name in ("<string>", str(tmp_path / "changed.py")):
+        code = compile(text, name, "exec")
+        look_at(code)
+        main, other = (part for part in code.co_consts if hasattr(part, "co_code"))
+        assert original_code(main).co_firstlineno == 1
+        assert (file_of(main), file_of(other), file_of(code)) == (str(program), name, name)
+
+
+def test_an_older_text_that_has_a_function_of_the_program_is_another_one(
+    program: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "older.py").write_text(f"import math\n{TEXT}")
+    watch_copies(str(program.parents[1]), ["cell"], since_now(tmp_path))
+    code = compile(f"import math\n{TEXT}", str(tmp_path / "older.py"), "exec")
+    look_at(code)
+    assert file_of(inner(code)) == str(tmp_path / "older.py")
+
+
+def inner(code: CodeType) -> CodeType:
+    """The only function in code."""
+    return next(part for part in code.co_consts if isinstance(part, CodeType))

@@ -58,7 +58,13 @@ class Python:
 
     def position_of(self, frame: FrameType) -> tuple[Extent, str]:
         """Return the position of the running instruction."""
-        return _position(frame.f_code, frame.f_lasti)
+        return self.position_at(frame.f_code, frame.f_lasti)
+
+    def position_at(self, code: CodeType, instruction: int) -> tuple[Extent, str]:
+        """Return the position of an instruction of the code."""
+        line, end_line, column, end_column = list(code.co_positions())[instruction // 2]
+        first = line or code.co_firstlineno
+        return ((first, column or 0, end_line or first, end_column or 0), function_of(code))
 
     def definition_of(self, code: CodeType) -> tuple[Extent, str]:
         """Return the position of a function's definition: its first line, or that of its first decorator."""
@@ -100,12 +106,6 @@ def placed(made: _Node, place: ast.AST) -> _Node:
         if isinstance(part, ast.expr | ast.stmt | ast.ExceptHandler) and not hasattr(part, "lineno"):
             placed(part, place)
     return made
-
-
-def _position(code: CodeType, instruction: int) -> tuple[Extent, str]:
-    line, end_line, column, end_column = list(code.co_positions())[instruction // 2]
-    first = line or code.co_firstlineno
-    return ((first, column or 0, end_line or first, end_column or 0), function_of(code))
 
 
 def function_of(code: CodeType) -> str:

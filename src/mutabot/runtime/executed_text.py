@@ -1,52 +1,96 @@
-"""Which file of the program is run where its text is handed to ``exec``, and so has no file of its own.
+"""Code of the program that tests run from a text of their own: all of it, or functions taken over from it.
 
-The code of ``exec(Path("program.py").read_text())`` has the file name ``<string>``, like that of dataclasses
-and named tuples. What is run is the program all the same if the file, compiled, is equal code.
+``exec(Path("program.py").read_text())`` runs code whose file is ``<string>``, and a test may change a text of
+the program before it runs it, or take one function by ``inspect.getsource``. What the program's files hold as
+well, compiled, is the program: it is mutated at the same places. Where it stands in the text is of no matter.
 """
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
-from types import CodeType
+from types import CodeType, FrameType
 from typing import Any
 
-from mutabot.runtime.paths import program_texts
+from mutabot.runtime.paths import is_young, program_texts
 from mutabot.runtime.processes.environment import listen
 from mutabot.runtime.program_text.compiling import INHERITED, compile_plainly
 
-#: by the identity of code, which is kept beside it: equal code may come from elsewhere
-executed: dict[int, tuple[CodeType, str]] = {}
+#: by the identity of code, which is kept beside it, the equal code of a file of the program
+executed: dict[int, tuple[CodeType, CodeType]] = {}
+#: what equal code has in common: all but its file, and where in that it stands
+_SAME = (
+    "co_code", "co_name", "co_names", "co_varnames", "co_freevars", "co_cellvars", "co_argcount",
+    "co_posonlyargcount", "co_kwonlyargcount", "co_flags", "co_exceptiontable",
+)  # fmt: skip
+
+
+def original_code(code: CodeType) -> CodeType:
+    """Return the code of the program that this is equal to, if it was run from a text; else the code."""
+    known = executed.get(id(code))
+    return code if known is None else known[1]
 
 
 def file_of(code: CodeType) -> str:
     """Return the name of the file that code comes from."""
-    known = executed.get(id(code))
-    return code.co_filename if known is None else known[1]
+    return original_code(code).co_filename
 
 
 def install() -> None:
-    """Look at all text that is run from now on."""
-    listen(("exec",), _on_audit_event)
+    """Look at all text that is being run, by this thread, or is run from now on."""
+    listen(("exec",), lambda event, arguments: look_at(arguments[0]))
+    frame: FrameType | None = sys._getframe()
+    while frame is not None:
+        look_at(frame.f_code)
+        frame = frame.f_back
 
 
-def _on_audit_event(event: str, arguments: tuple[Any, ...]) -> None:
-    code = arguments[0]
-    if not isinstance(code, CodeType) or code.co_name != "<module>" or not code.co_filename.startswith("<"):
+def look_at(code: Any) -> None:
+    """Find out of code that is run which parts of it come from the program."""
+    if not isinstance(code, CodeType) or code.co_name != "<module>" or not is_young(code.co_filename):
         return
     if all(name.startswith("__") for name in code.co_names):  # what dataclasses and the like define
         return
-    path = next((path for path, text in program_texts() if _is_of(code, text)), None)
-    if path is not None:
-        executed.update((id(part), (part, path)) for part in _parts(code))
+    for path, text in program_texts():
+        if _take_over(code, path, text):
+            return
 
 
-def _is_of(code: CodeType, text: str) -> bool:
-    if not all(name in text for name in code.co_names):
+def _take_over(code: CodeType, path: str, text: str) -> bool:
+    """Note which parts of code come from a file; return whether all of it does."""
+    wanted = [part for part in _parts(code) if _may_be_of(part, text)]
+    if not wanted:
         return False
     try:
-        return code == compile_plainly(text, code.co_filename, code.co_flags & INHERITED)
+        whole = compile_plainly(text, path, code.co_flags & INHERITED)
     except (SyntaxError, ValueError):
         return False
+    originals = {part.co_qualname: part for part in _parts(whole)}
+    originals |= {part.co_name: part for part in originals.values()}  # a method taken out of its class
+    for part in wanted:
+        original = originals.get(part.co_qualname)
+        if original is not None and id(part) not in executed and _is_same(part, original):
+            pairs = zip(_parts(part), _parts(original), strict=True)
+            executed.update((id(mine), (mine, yours)) for mine, yours in pairs)
+    return id(code) in executed
+
+
+def _may_be_of(code: CodeType, text: str) -> bool:
+    name = () if code.co_name.startswith("<") else (code.co_name,)
+    return all(word in text for word in (*name, *code.co_names))
+
+
+def _is_same(one: CodeType, other: CodeType) -> bool:
+    if any(getattr(one, name) != getattr(other, name) for name in _SAME):
+        return False
+    mine, yours = one.co_consts, other.co_consts
+    return len(mine) == len(yours) and all(map(_is_same_constant, mine, yours))
+
+
+def _is_same_constant(one: Any, other: Any) -> bool:
+    if isinstance(one, CodeType) and isinstance(other, CodeType):
+        return _is_same(one, other)
+    return type(one) is type(other) and bool(one == other)
 
 
 def _parts(code: CodeType) -> Iterator[CodeType]:

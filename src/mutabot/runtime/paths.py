@@ -70,6 +70,11 @@ class _Copies:
         same = [known for known, found in self.program() if found == text] if text else []
         return max(same, key=lambda known: _common_end(known, path), default=None)
 
+    def is_young(self, name: str) -> bool:
+        """Return whether a file was written since the session began, and is none of the program."""
+        path = real_path(name)
+        return path in self.seen and self.original(path) is None
+
     def is_written_again(self, path: str) -> bool:
         """Return whether a file is not the one that was looked at."""
         known = self.seen.get(path)
@@ -102,6 +107,11 @@ def watch_copies(root: str, program: Iterable[str], since: int) -> None:
     global _copies  # noqa: PLW0603  # one process, one program
     _copies = _Copies(tuple(os.path.realpath(os.path.join(root, path)) for path in program), since)
     forget()
+
+
+def is_young(name: str) -> bool:
+    """Return whether code with this file name may come from a text that a test has made."""
+    return _copies is not None and (name.startswith("<") or _copies.is_young(name))
 
 
 def program_texts() -> Iterator[tuple[str, str]]:

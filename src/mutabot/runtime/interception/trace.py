@@ -10,7 +10,7 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
 from types import CodeType, FrameType
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 from mutabot.evidence.recording import RecordedCall
 from mutabot.languages.python import FRONT_END as PYTHON
@@ -20,7 +20,7 @@ from mutabot.model.answer import NotKeptError, keep
 from mutabot.model.codec import is_plain
 from mutabot.model.events import TRACE_LIMIT, SiteSeen
 from mutabot.model.operation import Form
-from mutabot.runtime.executed_text import executed, file_of
+from mutabot.runtime.executed_text import executed, original_code
 from mutabot.runtime.interception.adapter import SiteCall, call_context
 from mutabot.runtime.interception.frames import borders, is_within_border
 from mutabot.runtime.paths import forget_with, real_path
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from mutabot.model.mutant import Extent
     from mutabot.runtime.targets.target import CallPlace
 
-_Asked = TypeVar("_Asked")
 #: stands for an answer that cannot be kept and that the program waits for: it never comes
 LOST = {"pending": ""}
 #: modules whose frames run the tasks of an event loop
@@ -234,9 +233,10 @@ class Locator:
             found = self._in_interpreter(frame) if interpreted else None
             role = self.role(code.co_filename) if found is None else None
             if role is None and executed:
-                role = self.role(file_of(code))
+                code = original_code(code)
+                role = self.role(code.co_filename)
             if role is not None:
-                found = (self._span(code, frame.f_lasti, PYTHON.position_of, frame), role)
+                found = (self._span(code, frame.f_lasti), role)
             if found is not None:
                 return found if not around_loop or is_within_border(frame) else None
             around_loop = around_loop or (in_operation and frame.f_globals.get("__name__") in _LOOPS)
@@ -245,10 +245,9 @@ class Locator:
 
     def locate_definition(self, code: CodeType) -> CallPlace | None:
         """Return the span and role of a function's definition; None outside of program and oracle."""
-        role = self.role(file_of(code))
-        if role is None:
-            return None
-        return self._span(code, _DEFINITION, PYTHON.definition_of, code), role
+        code = original_code(code)
+        role = self.role(code.co_filename)
+        return (self._span(code, _DEFINITION), role) if role is not None else None
 
     def relative(self, filename: str) -> str:
         """Return the path relative to the root, with forward slashes."""
@@ -276,15 +275,14 @@ class Locator:
                 return self._span_at(filename, *front_end.position_of(frame)), role
         return None
 
-    def _span(
-        self, code: CodeType, instruction: int, find: Callable[[_Asked], tuple[Extent, str]], asked: _Asked
-    ) -> Span:
+    def _span(self, code: CodeType, instruction: int) -> Span:
         """Return the span of an instruction of the code, cached."""
         key = (id(code), instruction)
         known = self._spans.get(key)
         if known is None:
-            span = self._span_at(file_of(code), *find(asked))
-            known = self._spans[key] = (span, code)
+            is_call = instruction != _DEFINITION
+            found = PYTHON.position_at(code, instruction) if is_call else PYTHON.definition_of(code)
+            known = self._spans[key] = (self._span_at(code.co_filename, *found), code)
         return known[0]
 
     def _span_at(self, filename: str, extent: Extent, function: str) -> Span:

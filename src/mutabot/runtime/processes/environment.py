@@ -164,8 +164,6 @@ def write_wake(
     names: Iterable[str],
     files: Iterable[str],
     own: Iterable[str] = (),
-    *,
-    has_readers: bool = False,
 ) -> None:
     """Write the file that says which processes join the campaign, and how.
 
@@ -176,7 +174,6 @@ def write_wake(
         names: top-level names of modules.
         files: real paths of files and folders.
         own: packages that are needed there beside those of ``extensions.packages``.
-        has_readers: whether processes are of interest that open one of the files for whatever reason.
     """
     from mutabot.extensions import packages  # noqa: PLC0415  # of no use to processes below the tests
 
@@ -188,7 +185,6 @@ def write_wake(
         *(f"own {name}" for name in own),
         *(f"name {name}" for name in sorted(set(names))),
         *(f"file {file}" for file in files),
-        *(["readers "] if has_readers else ()),
     ]
     text = "".join(f"{line}\n" for line in lines)
     _write(os.path.join(folder, WAKE), text.encode("utf-8", "surrogateescape"), os.O_TRUNC)

@@ -150,7 +150,7 @@ def _write_wake(folder: str, job: Job) -> None:
     files = [os.path.realpath(os.path.join(job.root, path)) for path in (*job.program, *job.oracle)]
     for path in (*job.program, *job.oracle):
         names.update(part.removesuffix(".py") for part in path.split("/") if part not in (".", "..", ""))
-    write_wake(folder, _JOIN, job.key, names, files, has_readers=job.is_of_original)
+    write_wake(folder, _JOIN, job.key, names, files)
 
 
 def _top(target: str) -> str:

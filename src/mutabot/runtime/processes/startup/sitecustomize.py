@@ -7,8 +7,9 @@ module that the vocabulary names. Only then the rest of mutabot is loaded.
 
 The file ``wake`` of the folder that the environment names says what is of interest, a line each:
 ``join MODULE`` with a function of that name, which is then called with the folder, ``key KEY`` of the seals,
-``path FOLDER`` where packages of ours can be found, ``own NAME`` of such a package, ``name MODULE``, ``file
-PATH`` of a file or folder, and ``readers`` if a process is of interest, too, that opens such a file.
+``path FOLDER`` where packages of ours can be found, ``own NAME`` of such a package, ``name MODULE``, and
+``file PATH`` of a file or folder. A process that opens such a file is of interest, as it may run what it
+reads.
 """
 
 import os
@@ -120,14 +121,13 @@ def enter(command: "str | None" = None) -> None:
     except OSError:  # the campaign is over
         return
     entries: "dict[str, list[str]]" = {"join": [""], "key": [""]}
-    entries.update((key, []) for key in ("path", "own", "name", "file", "readers"))
+    entries.update((key, []) for key in ("path", "own", "name", "file"))
     for key, _, value in lines:
         entries[key].append(value)
     finder = _Finder(folder, entries)
     sys.meta_path.append(_MutabotFinder(entries["path"], entries["own"]))
     sys.meta_path.insert(0, finder)
-    if entries["readers"]:
-        sys.addaudithook(finder.on_audit_event)
+    sys.addaudithook(finder.on_audit_event)
     script = command if command is not None else getattr(sys, "argv", [""])[0]
     if script and script[0] != "-" and finder.is_of_interest(script):
         _wake(finder)

@@ -1,4 +1,5 @@
 import ast
+import inspect
 from pathlib import Path
 
 import mission
@@ -39,3 +40,20 @@ def test_a_program_with_the_same_text_is_another_one():
     arm = Arm()
     taken_over.main(arm)
     assert arm.done == [("lift", 0.5), ("turn", 30), ("lift", -0.25)]
+
+
+def test_one_function_is_run():
+    names = {}
+    exec(inspect.getsource(mission.main), names)
+    arm = Arm()
+    names["main"](arm)
+    assert arm.done == [("lift", 0.5), ("turn", 30), ("lift", -0.25)]
+
+
+def test_a_changed_copy_is_run(tmp_path):
+    path = tmp_path / "slow.py"
+    path.write_text("import time\n\n" + Path("mission.py").read_text() + "    time.sleep(5)\n")
+    names = {}
+    exec(compile(path.read_text(), str(path), "exec"), names)
+    arm = Arm()
+    assert names["main"](arm) == 0.25
