@@ -5,7 +5,7 @@ from __future__ import annotations
 import gc
 import inspect
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from importlib import import_module
 from threading import get_ident
 from types import ModuleType
@@ -19,6 +19,9 @@ Before = Callable[..., tuple[tuple[Any, ...], dict[str, Any]] | None]
 After = Callable[[Any, Any], object]
 #: marks an exception as one of the function's own, and returns it
 Own = Callable[[BaseException], BaseException]
+
+#: flags of classes whose objects refer to them: made while Python runs, with objects that its collector knows
+_REFER = 1 << 9 | 1 << 14
 
 _marks: list[Own] = []
 
@@ -130,14 +133,16 @@ def _wrap_attribute(
 def instances_of(references: list[str]) -> Iterator[Any]:
     """Yield the objects of these classes that are alive, each once; references to functions yield nothing."""
     kinds = tuple(found for reference in references if isinstance(found := resolve(reference)[2], type))
-    if not kinds:
-        return
-    seen: set[int] = set()
-    gc.unfreeze()  # what the program has frozen is in no list; to freeze more than it did would keep garbage
-    for holder in gc.get_objects():
-        # those that Python's collector does not know are held by others
-        held = [holder] if isinstance(holder, kinds) else gc.get_referents(holder)
-        for instance in held:
-            if isinstance(instance, kinds) and id(instance) not in seen:
-                seen.add(id(instance))
-                yield instance
+    if kinds:
+        # what is frozen is in no list; to freeze more than the program did would keep garbage
+        gc.unfreeze()
+        yield from {id(held): held for held in _held(kinds) if isinstance(held, kinds)}.values()
+
+
+def _held(kinds: tuple[type, ...]) -> Iterable[Any]:
+    """Return objects among which are all of these classes."""
+    classes = {*kinds, *(cls for kind in kinds for cls in _below(kind))}
+    if all(cls.__flags__ & _REFER == _REFER for cls in classes):
+        return gc.get_referrers(*classes)  # writes to no other object: a fork would get a copy of each
+    # those that Python's collector does not know are held by others
+    return (held for holder in gc.get_objects() for held in (holder, *gc.get_referents(holder)))

@@ -89,9 +89,9 @@ def turned_aside(rows: Sequence[Row], path: Sequence[Row]) -> float:
     chords = _chords(_turns(path))
     worst = 0.0
     for turn in _without_repetitions(_turns(rows)):
-        least = inf
-        for start, end, unseen in chords:
-            square = min(_chord(turn, start, end), _chord([-part for part in turn], start, end))
+        least, opposite = inf, [-part for part in turn]
+        for chord, unseen in chords:
+            square = min(_square_turned(turn, chord), _square_turned(opposite, chord))
             least = min(least, sqrt(square) - unseen)
             if least <= worst:
                 break
@@ -118,38 +118,43 @@ def _without_repetitions(turns: Sequence[list[float]]) -> list[list[float]]:
     return found
 
 
-def _chords(turns: Sequence[list[float]]) -> list[tuple[list[float], list[float], float]]:
+def _chords(turns: Sequence[list[float]]) -> list[tuple[tuple[float, ...], float]]:
     """Return the chords between moments, each with how far the path may have been from it."""
     inner = (_strayed(*three) for three in zip(turns[1:], turns, turns[2:], strict=False))
     strayed = [0.0, *inner, 0.0]
     found = [
-        (start, end, max(strayed[number : number + 2]))
+        (_chord(start, end), max(strayed[number : number + 2]))
         for number, (start, end) in enumerate(pairwise(turns))
         if dist(start, end) > _SAME_TURN
     ]
-    return found or [(turns[0], turns[-1], 0.0)]
+    return found or [(_chord(turns[0], turns[-1]), 0.0)]
 
 
 def _strayed(turn: Sequence[float], start: Sequence[float], end: Sequence[float]) -> float:
     """Return how far an orientation is from the shortest turn between two others."""
-    share = _share(turn, start, end)
-    foot = [a + share * (b - a) for a, b in zip(start, end, strict=True)]
-    length = hypot(*foot)
-    return dist(turn, [part / length for part in foot]) if length else 0.0
-
-
-def _chord(point: Sequence[float], start: Sequence[float], end: Sequence[float]) -> float:
-    """Return the square of a point's distance from the line through two others."""
-    share = _share(point, start, end)
-    return sum((c - a - share * (b - a)) ** 2 for a, b, c in zip(start, end, point, strict=True))
-
-
-def _share(point: Sequence[float], start: Sequence[float], end: Sequence[float]) -> float:
-    """Return where between two others a point's nearest one is, from 0 to 1."""
     along = [b - a for a, b in zip(start, end, strict=True)]
     length = sum(part * part for part in along)
-    way = sum((c - a) * part for a, c, part in zip(start, point, along, strict=True))
-    return min(1.0, max(0.0, way / length)) if length else 0.0
+    way = sum((c - a) * part for a, c, part in zip(start, turn, along, strict=True))
+    share = min(1.0, max(0.0, way / length)) if length else 0.0
+    foot = [a + share * part for a, part in zip(start, along, strict=True)]
+    size = hypot(*foot)
+    return dist(turn, [part / size for part in foot]) if size else 0.0
+
+
+def _chord(start: Sequence[float], end: Sequence[float]) -> tuple[float, ...]:
+    """Return the start of a chord between two quaternions, its direction, and the square of its length."""
+    along = [b - a for a, b in zip(start, end, strict=True)]
+    return (*start, *along, sum(part * part for part in along))
+
+
+def _square_turned(turn: Sequence[float], chord: tuple[float, ...]) -> float:
+    """Return the square of a quaternion's distance from a chord, inlined, as every mutant needs many."""
+    aw, ax, ay, az, dw, dx, dy, dz, length = chord
+    w, x, y, z = turn[0] - aw, turn[1] - ax, turn[2] - ay, turn[3] - az
+    share = (w * dw + x * dx + y * dy + z * dz) / length if length else 0.0
+    share = 0.0 if share < 0.0 else 1.0 if share > 1.0 else share
+    w, x, y, z = w - share * dw, x - share * dx, y - share * dy, z - share * dz
+    return w * w + x * x + y * y + z * z
 
 
 def _segment(start: Point, end: Point) -> tuple[float, ...]:

@@ -6,8 +6,8 @@ Whatever the code of a fault raises is an error of its mutant: no test has notic
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Collection, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Collection, Iterable, Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from importlib import import_module
 from random import Random
@@ -36,6 +36,14 @@ if TYPE_CHECKING:
 _MOCKS = "unittest.mock"
 #: what a fault awaits that only a test brings
 _OF_TEST = (Activation.FIRST_TEST, Activation.FIRST_TICK)
+
+
+def preload(active: Iterable[Activation]) -> None:
+    """Import the modules of faults whose awaited modules are there. What fails raises when it is needed."""
+    there = [found for found in active if not found.awaits or found.awaits in sys.modules]
+    for module in {found.reference.partition(":")[0] for found in there}:
+        with suppress(Exception):
+            import_module(module)
 
 
 @dataclass(slots=True)

@@ -313,7 +313,7 @@ class Session:
             for call in self.recorder.trace:
                 self.pipe.send(Called(*call))
         self.test = test
-        self.call_targets.note_modules(self.call_sites.loaded)
+        self.note_modules()
         self.dispatcher.meter = Meter(self.job.simulated.get(test), self.job.spare)
         is_baseline = self.job.record and self.job.mutant is None and self.job.forking is None
         self.recorder.answers = Answers(handles_of(self.job.vocabulary)) if is_baseline else None
@@ -339,6 +339,10 @@ class Session:
             self.guards.start_test()
         self.fault.start_test()
         self.recording.start(test, is_wanted=self.job.evidence)
+
+    def note_modules(self) -> None:
+        """Note which names denote operations in the modules that were just loaded."""
+        self.call_targets.note_modules(self.call_sites.loaded)
 
     def change_file(self, path: str, content: bytes) -> None:
         """Change a file of the project for this process; see ``FaultContext.change_file``."""

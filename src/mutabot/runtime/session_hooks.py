@@ -19,7 +19,7 @@ from mutabot.model import Mutant, Role
 from mutabot.model.events import SessionEnd
 from mutabot.model.job import Job, read_job
 from mutabot.operators.registry import preload
-from mutabot.runtime import executed_text, seeds
+from mutabot.runtime import executed_text, fault_runner, seeds
 from mutabot.runtime.event_file import EventFile, Held
 from mutabot.runtime.interception.frames import is_ours
 from mutabot.runtime.interception.trace import Locator
@@ -131,6 +131,7 @@ class SessionHooks:
             self.tests.left_out = job.left_out(job.mutant.id)
         if job.forking is not None:
             preload({mutant.operator for mutant in job.forking.mutants})  # and not in every fork
+            fault_runner.preload(job.active.values())
             compile_all()
             track_event_loops()
             pipe, tests = self.session.pipe, job.tests or ()
@@ -229,6 +230,7 @@ class SessionHooks:
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtestloop(self, session: pytest.Session) -> Generator[None, Any, Any]:
         """Run the collected tests, or fork a copy of this process for every job."""
+        self.session.note_modules()  # before any copy is made of this process
         request = self._server.serve(self.tests.units.has_started) if self._server is not None else None
         if request is not None:
             self._take_on(session, *request)
