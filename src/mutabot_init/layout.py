@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -58,8 +59,10 @@ def look(root: Path, given: Sequence[Path]) -> Layout:
     files = _python_files(root)
     chosen = _named(root, given)
     tests = [path for path in files if _is_test_side(path.relative_to(root)) and path not in chosen]
-    code = [path for path in files if path not in tests and path.name not in _NO_PROGRAMS]
-    program = chosen or _guess_program(code) or [path for path in tests if path.name != "conftest.py"]
+    code = [path for path in files if path not in tests]
+    program = (
+        chosen or _guess_program(code, tests, root) or [path for path in tests if path.name != "conftest.py"]
+    )
     if not program:
         raise UsageError(
             f"{root}: there is no Python file here; name the files of the program: mutabot init FILE…"
@@ -162,16 +165,69 @@ def _places(root: Path, given: Sequence[Path]) -> list[Path]:
     return found
 
 
-def _guess_program(code: Sequence[Path]) -> list[Path]:
-    """Return files that import others and are not imported by the program, preferring telling names."""
-    ends = {path: path.stem for path in code}
-    imports = {path: {part for name in imported_modules(path) for part in name.split(".")} for path in code}
-    used = {path for path in code for other in code if other != path and ends[path] in imports[other]}
-    using = [path for path in code if imports[path]]
-    free = [path for path in using if path not in used] or using or list(code)
-    telling = [path for path in free if any(word in path.stem.lower() for word in _PROGRAM_NAMES)]
-    busy = [path for path in free if imports[path] & set(ends.values())]
+def _guess_program(code: Sequence[Path], tests: Sequence[Path], root: Path) -> list[Path]:
+    """Return files that no other file of the program imports, preferring telling names.
+
+    Only those that the tests reach, where they import any: what no test runs has no mutants to judge.
+    """
+    modules = _Modules([*code, *tests], root)
+    reached = modules.reached(tests)
+    candidates = [path for path in code if path.name not in _NO_PROGRAMS]
+    code = [path for path in candidates if path in reached] or candidates
+    used = {path: modules.reached([path], through="__init__.py") - {path} for path in code}
+    below = set().union(*used.values())
+    using = [path for path in code if imported_modules(path)]
+    free = [path for path in using if path not in below] or using or list(code)
+    telling = [path for path in free if _is_telling(path.stem)]
+    busy = [path for path in free if used[path]]
     return telling or busy or free
+
+
+def _is_telling(stem: str) -> bool:
+    return any(word.startswith(_PROGRAM_NAMES) for word in re.split(r"[^a-z]+", stem.lower()))
+
+
+class _Modules:
+    """Which of these files import which others."""
+
+    def __init__(self, paths: Sequence[Path], root: Path) -> None:
+        self._files: dict[str, list[tuple[str, Path]]] = {}
+        for path in paths:
+            parts = path.relative_to(root).with_suffix("").parts
+            names = parts[:-1] if parts[-1] == "__init__" else parts
+            if names:
+                self._files.setdefault(names[-1], []).append((f".{'.'.join(names)}", path))
+
+    def reached(self, starts: Sequence[Path], through: str = "") -> set[Path]:
+        """Return the files that these import, also by way of others.
+
+        Args:
+            starts: files to begin with.
+            through: name of the files whose imports are followed; empty for all.
+        """
+        found: set[Path] = set()
+        left = list(starts)
+        while left:
+            new = self._imported(left.pop()) - found
+            found |= new
+            left += [path for path in new if not through or path.name == through]
+        return found
+
+    def _imported(self, path: Path) -> set[Path]:
+        names = (*imported_modules(path), *_files_named(path))
+        return {
+            file
+            for name in names
+            for module, file in self._files.get(name.rpartition(".")[2], ())
+            if module.endswith(f".{name}")
+        }
+
+
+def _files_named(path: Path) -> Iterator[str]:
+    """Yield the modules of Python files that a file names in a text, as it does to run them."""
+    for node in ast.walk(parsed(path)):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and node.value.endswith(".py"):
+            yield node.value.removesuffix(".py").lstrip("./").replace("/", ".")
 
 
 def _arguments(root: Path, tests: Sequence[Path]) -> list[str]:

@@ -170,6 +170,12 @@ class _Findings:
         return not (self.taken or self.known)
 
     @property
+    def makes_no_call(self) -> bool:
+        """Whether the tests run no call of the program."""
+        calls = any(call.sites and not call.of_tests for call in self.seen.calls)
+        return not (calls or any(not entry.of_tests for entry in self.named))
+
+    @property
     def vocabulary(self) -> list[str]:
         """The vocabularies' names for the configuration."""
         names = [vocabulary.name for vocabulary in self.known]
@@ -352,11 +358,18 @@ def _told(found: _Findings, questions: int) -> list[str]:
     if names:
         how = "as what they stand for, or by name for any object that has it"
         lines.append(f"seen on mocks or fakes, proposed {how}: {', '.join(names)}")
+    if found.layout.guessed and found.makes_no_call and not found.is_empty:
+        written = " and ".join([CONFIGURATION, *([VOCABULARY] if found.needs_vocabulary else [])])
+        return [
+            *lines,
+            "next: no test runs a call of the guessed program. If another file is the program, remove "
+            f"{written}, and run `mutabot init FILE…`",
+        ]
     if not found.is_empty:
         answer = f"answer the questions in {VOCABULARY}, then " if questions else ""
         return [*lines, f"next: {answer}`mutabot check`, `mutabot list`, `mutabot run`"]
     by_hand = "describe the robot by hand (docs/vocabulary.md)"
-    if any(call.sites and not call.of_tests for call in found.seen.calls):
+    if not found.makes_no_call:
         return [*lines, f"next: none of these calls looks like one of a robot or a device: {by_hand}"]
     tests = " ".join(found.layout.arguments) or "tests"
     return [
