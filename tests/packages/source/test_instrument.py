@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import ast
 import builtins
+import gc
 import importlib
 import py_compile
 import runpy
 import sys
 import traceback
 import types
+import weakref
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from importlib.machinery import SourcelessFileLoader
@@ -262,6 +264,21 @@ def test_a_recording_keeps_no_object_and_changes_no_names(tmp_path: Path) -> Non
     with imported(tmp_path, text, record=True) as (module, _):
         assert module.closed(1) == (True, 2)
         assert module.kept(1) == (2, ["n"])
+
+
+def test_a_recording_keeps_no_class_that_a_test_makes(tmp_path: Path) -> None:
+    text = text_of(tmp_path, "def f(x):\n    return [x][0]\n")
+    with imported(tmp_path, text, record=True) as (module, hook):
+        kinds: list[Any] = [type("Local", (), {}), type("Local", (), {})]
+        for kind in kinds:
+            module.f(kind())
+        ends = [weakref.ref(kind) for kind in kinds]
+        del kind, kinds[:]
+        gc.collect()
+        assert [end() for end in ends] == [None, None]
+        assert hook.sightings is not None
+        seen = {kind for sighting in hook.sightings.seen() for kind in sighting.kinds}
+    assert f"{__name__}:Local" in seen
 
 
 def test_a_place_that_has_told_all_is_not_looked_at_any_more(tmp_path: Path) -> None:

@@ -11,11 +11,12 @@ from __future__ import annotations
 import inspect
 import sys
 from collections import Counter
-from collections.abc import Callable, Coroutine, Mapping
+from collections.abc import Callable, Mapping
 from contextvars import ContextVar
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
-from types import CodeType, FrameType, FunctionType, MethodType, TracebackType
+from functools import partial
+from types import CodeType, FrameType, FunctionType, MethodType
 from typing import TYPE_CHECKING, Any
 
 from mutabot.extensions import packages
@@ -26,7 +27,15 @@ from mutabot.model.quantity import Value
 from mutabot.operators.middleware import Carried, run
 from mutabot.runtime.interception.active_mutant import MutatedSite, RefusedCalls
 from mutabot.runtime.interception.adapter import Adapter, Caller, Invocation, SiteCall, is_mock
-from mutabot.runtime.interception.frames import ModuleCache, border, borders, without_ours
+from mutabot.runtime.interception.coroutines import (
+    ASYNC_MOCK,
+    called,
+    named_as,
+    noted,
+    noting,
+    runs_when_awaited,
+)  # fmt: skip
+from mutabot.runtime.interception.frames import ModuleCache, border, borders, from_here
 from mutabot.runtime.interception.live import is_live
 from mutabot.runtime.interception.trace import Locator, Recorder
 from mutabot.runtime.meter import Meter
@@ -150,19 +159,24 @@ class Dispatcher:
                 is_direct = self.recorder.answers is not None and self._is_direct(frame, where)
                 wrapped = bound(wrapped, instance)
                 is_async = is_coroutine_function(wrapped) or where.is_awaited
-                caller = caller_of(where.frame or frame, is_async)
+                acts_at_once = is_async and not runs_when_awaited(wrapped)
+                caller = caller_of(where.frame or frame, is_async and not acts_at_once)
+                if acts_at_once:
+                    caller = noting(caller)
                 invocation: Any = Invocation(wrapped, instance, args, kwargs, where, caller)
+                if is_async:  # only what is begun is told of, and by its name, if it is never awaited
+                    begin: Any = partial(self.dispatch, adapter, site, invocation, is_async, is_direct)
+                    waiting: Any = _awaited(begin, invocation, acts_at_once)
+                    return named_as(wrapped, called(waiting, _runs) if acts_at_once else waiting)
                 on_its_way: Any = self.dispatch(adapter, site, invocation, is_async, is_direct)
-                if is_async:
-                    return _awaited(on_its_way, invocation)
                 operator = self.mutant.mutant.operator if self.mutant is not None else ""
                 result = run(on_its_way, operator=operator)
                 return wrapped(*args, **kwargs) if result is _ALONE else result
             except BaseException as error:
                 # who keeps the exception keeps this frame
-                wrapped = instance = args = kwargs = frame = invocation = on_its_way = None
+                wrapped = instance = args = kwargs = frame = invocation = begin = waiting = on_its_way = None
                 where = NOWHERE
-                error.__traceback__ = _from_here(error)
+                error.__traceback__ = from_here(error)
                 raise
 
         return handle
@@ -289,26 +303,19 @@ class Dispatcher:
             self.on_end(made.call, reply.values if reply is not None else {})
 
 
-async def _awaited(on_its_way: Coroutine[Any, Any, Any], invocation: Invocation | None) -> Any:
-    """Await a call that has begun, or make it as if it had no handler."""
+async def _awaited(begin: Any, invocation: Any, acts_at_once: bool) -> Any:
+    """Make a call, or make it as if it had no handler."""
     __tracebackhide__ = True
     try:
-        result = await on_its_way
-        if result is not _ALONE or invocation is None:
+        result = await begin()
+        if result is not _ALONE:
             return result
-        return await invocation.wrapped(*invocation.args, **invocation.kwargs)
+        given = invocation.wrapped(*invocation.args, **invocation.kwargs)
+        return await (noted(given) if acts_at_once else given)
     except BaseException as error:
-        invocation = None
-        error.__traceback__ = _from_here(error)
+        begin = invocation = None
+        error.__traceback__ = from_here(error)
         raise
-
-
-def _from_here(error: BaseException) -> TracebackType | None:
-    """Return the traceback of an exception that is caught here, without the frames below this one."""
-    here = error.__traceback__
-    if here is not None:
-        here.tb_next = without_ours(here.tb_next)
-    return here
 
 
 def is_coroutine_function(wrapped: Callable[..., Any]) -> bool:
@@ -317,7 +324,7 @@ def is_coroutine_function(wrapped: Callable[..., Any]) -> bool:
     if type(function) is FunctionType and not function.__dict__:  # the most of them
         return bool(function.__code__.co_flags & inspect.CO_COROUTINE)
     if is_mock(function):  # to ask it for its flags would count as calls
-        return is_mock(function, "AsyncMockMixin")
+        return is_mock(function, ASYNC_MOCK)
     if inspect.iscoroutinefunction(wrapped) or inspect.iscoroutinefunction(type(wrapped).__call__):
         return True
     coroutines = sys.modules.get("asyncio.coroutines")

@@ -65,6 +65,14 @@ class ModuleCache(Generic[K, V]):
             self.known.pop(key, None)
 
 
+def from_here(error: BaseException) -> TracebackType | None:
+    """Return the traceback of an exception that is caught here, without the frames below this one."""
+    here = error.__traceback__
+    if here is not None:
+        here.tb_next = without_ours(here.tb_next)
+    return here
+
+
 def without_ours(traceback: TracebackType | None) -> TracebackType | None:
     """Remove mutabot's frames from a traceback; those of the operation stay.
 

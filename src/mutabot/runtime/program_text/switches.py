@@ -426,8 +426,12 @@ class _Witness:
         return not (self._lacking or self._is_around)
 
     def _note_kind(self, kind: type, value: Any) -> None:
-        self._types.add(kind)
-        self._kinds.add(kind_of(value))
+        name = kind_of(value)
+        if vars(sys.modules.get(kind.__module__, types)).get(kind.__qualname__) is kind:
+            self._types.add(kind)
+        elif name in self._kinds:  # classes that a function makes end with it: they are not kept
+            return
+        self._kinds.add(name)
         self._lacking -= {need for need in self._lacking if fits_kinds(need, self._kinds)}
         self.looks_around = 0
 
