@@ -31,9 +31,6 @@ _MOST_DIVERGED = 5
 _NOT_REACHED = "no test reaches the site in this round"
 _RECORDED = frozenset({Verdict.SURVIVED, Verdict.KILLED, Verdict.TIMEOUT, Verdict.REFUSED, Verdict.GUARDED})
 
-#: exit codes of pytest's that say nothing about the mutant: the mistake may be ours
-_OF_NO_TEST = {3: "an internal error", 4: "a wrong command line or configuration"}
-
 Ruling = tuple[Verdict, TestEnd | None, str | None]
 
 
@@ -217,7 +214,11 @@ def judge(campaign: Campaign, run: Run) -> Outcome:
         message = f"all reliable tests passed; {others}"
     simulated = [end.simulated for end in run.ends if end.simulated is not None]
     by = end.by if end is not None else By.EXCEPTION if run.death is not None else By.CHECK
-    died_at_work = end is None and run.death is not None and (run.death.acted or run.death.in_mutated_call)
+    acted = sum(end.acted for end in run.ends)
+    at_work = (
+        run.has_acted and not acted if run.death is None else run.death.acted or run.death.in_mutated_call
+    )
+    stopped_at_work = end is None and at_work
     outcome = Outcome(
         mutant=run.mutant.id,
         round=run.round,
@@ -228,8 +229,8 @@ def judge(campaign: Campaign, run: Run) -> Outcome:
         message=message,
         place=end.place if end is not None else None,
         # a test that never ended cannot say how often, but that the mutant was at work is known
-        hits=sum(end.hits for end in run.ends) + died_at_work,
-        acted=sum(end.acted for end in run.ends) + died_at_work,
+        hits=sum(end.hits for end in run.ends) + stopped_at_work,
+        acted=acted + stopped_at_work,
         away=added(end.away for end in run.ends),
         example=next((end.example for end in run.ends if end.example is not None), None),
         tests=len(run.ends),
@@ -363,10 +364,11 @@ def _ruling_on_death(death: Death, acted: bool) -> Ruling:
 
 
 def _ruling_on_exit(code: int | None, usual: int, acted: bool) -> Ruling:
-    """Return the verdict if the suite's exit status differs though no test failed, as hooks can cause."""
+    """Return the verdict if the suite's exit status differs though no test failed, as hooks can cause.
+
+    Where mutabot's own hooks failed, that counts as a death.
+    """
     text = f"the suite ends with exit code {code} instead of {usual}"
-    if code in _OF_NO_TEST:
-        return Verdict.ERROR, None, f"{text} ({_OF_NO_TEST[code]})"
     if not acted:
         return Verdict.UNSTABLE, None, f"{text}, and the mutant has changed nothing"
     return Verdict.KILLED, None, text

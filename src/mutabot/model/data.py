@@ -67,8 +67,10 @@ def data_of(value: Any) -> Any:
 
 def _data_of(value: Any, depth: int) -> Any:
     kind = type(value)
-    if kind in _FIXED or kind is bytearray or kind is array or is_of_numpy(value):
+    if kind in _FIXED or kind is bytearray or kind is array:
         return value
+    if is_of_numpy(value):
+        return value if value.shape or not hasattr(value, "__array_finalize__") else value[()]
     if is_textual(value):
         return _as_float(value) if _is_exact(value) else value
     if is_member(value):

@@ -218,8 +218,10 @@ class SessionHooks:
                 self.session.pipe.send(end)
 
     def pytest_internalerror(self, excinfo: pytest.ExceptionInfo[BaseException]) -> None:
-        """Report a failing hook, by which a mutant was noticed if it acted before any test."""
-        if not is_ours(excinfo.traceback[-1].frame.raw) and not self.session.test:
+        """Report a hook that fails: ours, or one that noticed a mutant which acted before any test."""
+        if is_ours(excinfo.traceback[-1].frame.raw):
+            self._errors.append(f"mutabot failed: {excinfo.exconly()}")
+        elif not self.session.test:
             self.import_failed(excinfo.value, "")
 
     def pytest_collectreport(self, report: pytest.CollectReport) -> None:

@@ -87,6 +87,11 @@ MISSION = """
         if arm.position() < 0:
             raise SystemExit(3)
 
+    def ends_pytest(arm):
+        if arm.position() < 0:
+            import pytest
+            pytest.exit("no robot", returncode=3)
+
     def eats_memory(arm):
         if arm.position() < 0:
             return len(bytearray(10**11))
@@ -159,6 +164,7 @@ EXPECTED = {
     "leaves_the_process": (Verdict.ERROR, None, "exit code 0"),
     "kills_itself": (Verdict.ERROR, None, "signal 9"),
     "exits": (Verdict.KILLED, By.EXCEPTION, "3"),
+    "ends_pytest": (Verdict.KILLED, By.CHECK, "exit code 3 instead of 0"),
     "eats_memory": (Verdict.ERROR, None, "memory limit"),
     "diverges": (Verdict.ERROR, None, "NaN in joint 3"),
     "crashes_in_the_mutated_call": (Verdict.KILLED, By.EXCEPTION, "signal 11"),
@@ -202,7 +208,7 @@ def test_every_kill_and_every_survivor_really_ran_mutated_code(
     for function, outcome in campaign[1].items():
         if outcome.verdict in (Verdict.KILLED, Verdict.SURVIVED, Verdict.REFUSED):
             assert outcome.acted > 0, function
-            assert outcome.example is not None or function == "crashes_in_the_mutated_call"
+            assert outcome.example is not None or function in ("crashes_in_the_mutated_call", "ends_pytest")
 
 
 def test_the_users_tree_is_byte_identical_afterwards(
