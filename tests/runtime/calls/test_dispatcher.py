@@ -118,3 +118,25 @@ def test_an_iterator_that_is_an_operation_ends_its_loop(make_stage: Make) -> Non
     assert stage.run(session) == ["red", "blue"]
     assert [hit[2] for hit in session.recorder.trace] == [{"result": "red"}, {"result": "blue"}, {}]
     assert stage.mutated("misread", "result")[0] == ["blue", "red"]
+
+
+@pytest.mark.parametrize("operator", ["identity", "reverse", "repeat"])
+def test_a_program_without_end_to_its_calls_is_no_fault_of_the_operator(
+    make_stage: Make, operator: str
+) -> None:
+    program = """
+        import robot
+
+        def endless():
+            robot.move(0.25)
+            endless()
+
+        def run():
+            try:
+                endless()
+            except RecursionError:
+                return "caught"
+    """
+    stage = make_stage(ROBOT, program, vocabulary("move"))
+    result, mutated = stage.mutated(operator, "x" if operator == "reverse" else None)
+    assert (result, mutated.evidence.failure) == ("caught", None)

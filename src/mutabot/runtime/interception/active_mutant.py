@@ -35,6 +35,8 @@ from mutabot.runtime.targets.target import CallPlace, is_named
 
 #: exceptions by which others end what an operator does: a user, an event loop, the end of a generator
 _FROM_OUTSIDE = frozenset({"KeyboardInterrupt", "CancelledError", "Cancelled", "GeneratorExit"})
+#: frames that carry out a call: an operator that calls itself without end has more
+_DEPTH = 100
 #: the name of a site: file, function, text and occurrence, which stay where the text around it changes
 _SiteName = tuple[str, str, str, int]
 #: the calls of a test at a site: where it is, the operation and the pattern
@@ -507,6 +509,8 @@ class _MutatedCall:
         error = error.error if isinstance(error, Carried) else error
         if any(known.matches(error) for known in self.raised):
             return False
+        if isinstance(error, RecursionError):  # it may be the program's, which we have made deeper by little
+            return len([*walk_tb(error.__traceback__)]) > _DEPTH
         if isinstance(error, Exception):
             return True
         if type(error).__name__ in _FROM_OUTSIDE:
