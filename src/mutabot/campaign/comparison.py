@@ -60,6 +60,10 @@ def _values_distance(before: Any, after: Any, angles: Mapping[str, Quantity]) ->
     return max(distances, default=0.0)
 
 
+#: a number smaller than this part of a difference is rounding
+_ROUNDING = 1e-9
+#: how a pattern formats a number
+_FORMAT = re.compile(r":[^{}]*\}")
 #: where a call's text begins and ends
 _EXTENT = re.compile(r"(:\d+):\d+-\d+:\d+")
 _NO_RETURNS: dict[str, Any] = {"prepared": None, "returned": None}
@@ -395,8 +399,8 @@ def _event_text(name: str, value: Any) -> str:
 
 
 def _place_text(key: str) -> str:
-    """Return a call's place without its columns: ``sorting.py:118 Arm.move_by``."""
-    return _EXTENT.sub(r"\1", key)
+    """Return a call's place without columns, and its command without formats: ``a.py:8 Arm.move_by``."""
+    return _FORMAT.sub("}", _EXTENT.sub(r"\1", key))
 
 
 class _ProbeDifference(NamedTuple):
@@ -601,9 +605,17 @@ def _change_of_values(before: Any, after: Any, angles: Mapping[str, Quantity], t
     return ", ".join(parts)
 
 
+def _without_noise(first: Any, second: Any) -> tuple[Any, Any]:
+    """Return values; 0 for a number that is but rounding beside the difference of both."""
+    if not (is_number(first) and is_number(second)):
+        return first, second
+    least = _ROUNDING * abs(first - second)
+    return (0 if abs(first) < least else first), (0 if abs(second) < least else second)
+
+
 def _change(before: Any, after: Any, quantity: Quantity | None = None) -> str:
     """Return ``after instead of before``, with the difference of numbers, angles and orientations."""
-    text = " instead of ".join(distinct_texts(after, before, value_text, 4))
+    text = " instead of ".join(distinct_texts(*_without_noise(after, before), value_text, 4))
     angle = _angle_between(quantity, before, after)
     if angle is not None and quantity is not None:
         return f"{text} (turned by {value_text(angle, 3)} {quantity.unit or 'rad'})"

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from mutabot.model import Span
-from mutabot.report.texts import effect_text, one_line, state_of
+from mutabot.report.texts import effect_text, next_step, one_line, state_of
 from mutabot.results.encoder import Encoder
 
 if TYPE_CHECKING:
@@ -33,6 +33,7 @@ def mutant_data(result: MutantResult) -> dict[str, Any]:
         **_DATA_OF.facts(result, _LINE),
         "test": deciding.test if deciding is not None else None,
         "why": one_line(effect_text(result)),
+        "next": next_step(result) or None,
         "accepted": result.acceptance.why if result.acceptance is not None and result.is_accepted else None,
     }
 

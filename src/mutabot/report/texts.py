@@ -13,7 +13,7 @@ from enum import Enum
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from mutabot.journal.records import Reaching, Untested
-from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity
+from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity, Verdict
 from mutabot.model.outcome_text import first_line, numbers_text
 from mutabot.results.divergence import weight_of
 
@@ -176,9 +176,21 @@ def reason_of(result: MutantResult) -> str:
 
 
 def survivor_text(result: MutantResult) -> str:
-    """Describe a survivor: what it does, in which rounds it survived, and its effect on the world."""
+    """Describe a survivor: what it does, in which rounds it survived, its effect, and what to do."""
     what = f"{result.mutant.description}{also_text(result.mutant.site)}"
-    return f"{what}: {rounds_text(result)}. {told_text(result)}"
+    return ". ".join(filter(None, [f"{what}: {rounds_text(result)}", told_text(result), next_step(result)]))
+
+
+def next_step(result: MutantResult) -> str:
+    """Return what to do about a survivor; empty for other mutants, and for magnitudes of a ladder."""
+    if not result.is_survivor or result.mutant.ladder:
+        return ""
+    if result.status is Verdict.NOT_COVERED:
+        return "Add a test that runs this line."
+    if result.indistinguishable:
+        add = "Add a probe or a test that would show one, or accept it as an equivalent mutant."
+        return f"No measured difference. {add}"
+    return f"Run `mutabot suggest --only {result.mutant.number}` to search for a check and verify it."
 
 
 def also_text(site: Site) -> str:

@@ -52,6 +52,11 @@ class StoredEvidence:
         """Return the tests with recordings in which a mutant, by its id, differed in a round (from 0)."""
         return self._recordings.tests(mutant, round) if self._recordings is not None else ()
 
+    def has_original(self) -> bool:
+        """Return whether anything is recorded of the original: if not, nothing is of mutants."""
+        pairs = self._recordings.pairs() if self._recordings is not None else []
+        return any(mutant == ORIGINAL for mutant, _ in pairs)
+
     def pair(self, mutant: str, round: int, test: str) -> tuple[Recording | None, Recording | None]:
         """Return the recordings of one test, as the original and as a mutant.
 

@@ -63,7 +63,7 @@ def _drawn(view: MotionView, why: str) -> tuple[SidePictures, SidePictures]:
     if original is None or mutant is None or not (original.recording.tracks and mutant.recording.tracks):
         raise UsageError(
             f"there is nothing to make a video of: {why}; and no simulator tells where things are "
-            "(mutabot.evidence.Feed, see docs/motion.md)"
+            "(mutabot.api.processes.Feed, see docs/motion.md)"
         )
     return DrawnPictures(original, [mutant]), DrawnPictures(mutant, [original])
 

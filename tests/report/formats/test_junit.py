@@ -75,3 +75,11 @@ def test_scores_are_properties(tmp_path: Path) -> None:
         for property_element in root[0].findall("properties/property")
     }
     assert found == {"score": "0.5000", "check_score": "0.2500"}
+
+
+def test_a_survivor_names_its_operator_and_what_to_do_and_a_killed_mutant_no_step(tmp_path: Path) -> None:
+    cases = {case.attrib["name"]: case for case in xml(stored(tmp_path)).findall(".//testcase")}
+    survived, killed = (cases[mutant.id][0].text or "" for mutant in (samples.SKIP, samples.REVERSE))
+    assert survived.startswith("mission.py:2: skip: ")
+    assert "`mutabot suggest --only 2`" in survived.splitlines()[-1]
+    assert "mutabot suggest" not in killed

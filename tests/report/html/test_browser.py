@@ -13,6 +13,7 @@ import pytest
 
 import mutabot
 import schemas
+from mutabot.journal.files import recordings_path
 from mutabot.model import Diverged, Mutant, Outcome, Role, Verdict
 from report.html import reports
 from results import samples
@@ -509,3 +510,23 @@ def test_a_mutant_s_page_gives_the_values_of_its_story_and_fits_a_phone(browser:
         assert visit.wrong == []
     finally:
         page.close()
+
+
+@pytest.mark.parametrize("is_recorded", [True, False])
+def test_a_page_without_recordings_says_whether_the_campaign_has_any(
+    browser: Any, tmp_path: Path, is_recorded: bool
+) -> None:
+    journal, stored = reports.campaign(tmp_path)
+    if not is_recorded:
+        recordings_path(journal).unlink()
+    page = browser.new_page(viewport={"width": 1280, "height": 900})
+    visit = Visit(page, reports.write(tmp_path / "report", journal, stored).page)
+    killed = next(result for result in stored.mutants if result.mutant == samples.REVERSE)
+    visit.open(f"#/mutant/{killed.mutant.number}")
+    said = page.locator("section.robot").inner_text()
+    assert ("Nothing was recorded in this campaign." in said) == (not is_recorded)
+    assert ("own cells" in said) == is_recorded  # which is no reason where recording is off
+    visit.open("#/mutant/2")  # its recordings are told of in the journal
+    assert page.get_by_text("Its recordings were not kept.").is_visible() == (not is_recorded)
+    assert visit.wrong == []
+    page.close()

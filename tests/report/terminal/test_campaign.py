@@ -17,7 +17,14 @@ from mutabot.journal.journal import Journal
 from mutabot.journal.records import Untested
 from mutabot.model import By, Outcome, Span, Verdict
 from mutabot.report.terminal.campaign import print_plan, print_results, print_summary
-from mutabot.report.terminal.console import make_console, mark_of, short_place, terminal_text
+from mutabot.report.terminal.console import (
+    legend,
+    make_console,
+    mark_of,
+    marks_in,
+    short_place,
+    terminal_text,
+)
 from mutabot.report.terminal.mutant import print_mutant
 from mutabot.report.texts import told_text
 from mutabot.results.results import Results, read_results
@@ -76,10 +83,19 @@ def test_every_mutant_has_one_letter_per_round(results: Results, width: int) -> 
 
 
 def test_the_legend_explains_exactly_the_letters_that_occur(results: Results) -> None:
-    text = report(results).replace("\N{NO-BREAK SPACE}", " ")
+    text = report(results)
     for words in ("C killed by a check", "X killed by an exception", "N not covered", "E error"):
         assert words in text
     assert "unstable" not in text
+
+
+@pytest.mark.parametrize("width", [30, 60, 80])
+def test_the_legend_breaks_between_its_entries_only(width: int) -> None:
+    outcomes = [Outcome("m", 0, verdict, By.CHECK) for verdict in Verdict]
+    on = console(width)
+    on.print(legend(outcomes))
+    entries = [entry for line in written(on).splitlines() for entry in line.split("   ")]
+    assert entries == [f"{mark.letter} {mark.text}" for mark, _ in marks_in(outcomes)]
 
 
 def test_every_verdict_has_a_letter_of_its_own() -> None:
@@ -341,7 +357,13 @@ def test_one_screen_shows_the_rounds_that_tell_most(results: Results) -> None:
     text = written(on)
     assert "round 1: S survived" in text
     assert "killed by a check" not in text
-    assert "Use --all for all rounds and checks." in text
+    assert "Use --all for all rounds." in text  # it has no further checks
+
+
+def test_where_the_one_screen_has_everything_it_names_no_option_for_more(results: Results) -> None:
+    on = console(100)
+    print_mutant(on, results.mutant("2"), lambda _: None)
+    assert "--all" not in written(on)
 
 
 @pytest.mark.parametrize(

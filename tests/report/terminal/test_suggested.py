@@ -54,7 +54,7 @@ def test_where_none_was_looked_for_it_is_said_how(tmp_path: Path) -> None:
 
 def test_where_no_test_gets_a_test_is_what_is_missing(tmp_path: Path) -> None:
     text = shown(tmp_path, samples.NOISE, None)
-    assert "No test runs this line. Add one that does." in text
+    assert "Add a test that runs this line." in text
     assert "mutabot suggest" not in text
 
 

@@ -12,6 +12,7 @@ from mutabot.report.texts import (
     ACCEPTED,
     NOT_RUN,
     acceptance_text,
+    next_step,
     one_line,
     places_text,
     reason_of,
@@ -98,7 +99,7 @@ def _case(suite: Xml.Element, result: MutantResult, material: Material) -> None:
     state = state_of(result)
     element = _ELEMENT.get(state)
     place = places_text(mutant.site, lambda span: replace(span, file=material.path(span.file)).place)
-    text = f"{one_line(place)}: {mutant.description}\n{reason_of(result)}"
+    text = f"{one_line(place)}: {mutant.operator}: {mutant.description}\n{reason_of(result)}"
     if element is None:
         Xml.SubElement(case, "system-out").text = text
         return
@@ -108,4 +109,4 @@ def _case(suite: Xml.Element, result: MutantResult, material: Material) -> None:
     child = Xml.SubElement(case, element, {"message": one_line(f"{mutant.description}: {why}")})
     if element != "skipped":
         child.set("type", state.replace(" ", "-"))
-    child.text = text
+    child.text = "\n".join(filter(None, [text, next_step(result)]))

@@ -6,7 +6,8 @@ begins with ``END``. ``mutabot run`` streams them.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 from mutabot.report.mutant_data import end_data, lines_of, mutant_data
 from mutabot.report.texts import one_line, places_text
@@ -31,10 +32,19 @@ def mutant_line(result: MutantResult) -> str:
 
 
 def end_line(results: Results) -> str:
-    """Return the last line: how the campaign ended, and counts of mutants."""
+    """Return the last line: how the campaign ended, counts of mutants, scores, and what no test reaches."""
     data = end_data(results)
     counts = ", ".join(f"{count} {state}" for state, count in data["mutants"].items())
-    return "\t".join(["END", data["state"], counts])
+    scores = ", ".join(map(_score, data["scores"]))
+    return "\t".join(["END", data["state"], counts, scores, *filter(None, [data["untested"]])])
+
+
+def _score(group: Mapping[str, Any]) -> str:
+    shares = (
+        "none" if share is None else f"{100 * share:.1f} %"
+        for share in (group["score"], group["check_score"])
+    )
+    return f"{group['family']} {group['role']} {' by check '.join(shares)}"
 
 
 def _keyword(state: str) -> str:

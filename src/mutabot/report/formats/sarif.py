@@ -25,7 +25,7 @@ _FINGERPRINT = "mutabotMutant/v1"
 _NAMES = 20
 _HELP = (
     "A survivor is a fault that the test suite lets through. Add a check that notices what the robot does "
-    "otherwise, or a case in which the fault matters; `mutabot show ID` tells all about it."
+    "otherwise, or a case in which the fault matters; `mutabot show ID` prints its details."
 )
 
 
@@ -68,7 +68,9 @@ def _rule(name: str, mutant: Mutant, material: Material) -> dict[str, Any]:
     summary = material.campaign.operators.get(name) or f"Operator {name} of family {mutant.family}."
     return {
         "id": name,
-        "shortDescription": {"text": f"The tests let a mutant of {name} through"},
+        "shortDescription": {
+            "text": _message(f"No test notices {name}: {summary.partition('. ')[0].rstrip('.')}")
+        },
         "help": {"text": _message(f"{summary}\n\n{_HELP}")},
         "properties": {"tags": ["mutation-testing", mutant.family]},
     }

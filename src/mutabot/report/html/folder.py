@@ -191,7 +191,8 @@ def write_folder(folder: Path, contents: Contents, limit: int = LIMIT) -> Writte
 def _write_data(folder: Path, contents: Contents, limit: int) -> int:
     """Write all data; return how many recordings had no room."""
     campaign = contents.campaign
-    used = (folder / "campaign.js").write_bytes(script("campaign", campaign_data(campaign, contents.name)))
+    data = {**campaign_data(campaign, contents.name), "recorded": contents.evidence.has_original()}
+    used = (folder / "campaign.js").write_bytes(script("campaign", data))
     used += (folder / "sources.js").write_bytes(script("sources", sources_data(campaign)))
     films = _copy_films(folder / "films", contents)
     for result in campaign.mutants:

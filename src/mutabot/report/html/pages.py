@@ -65,7 +65,9 @@ class LiveReport:
         if self._campaign is None:
             return b""
         if "campaign" not in self._whole:
-            data = {**campaign_data(self._campaign, self._name), "version": self._version}
+            with closing(StoredEvidence(self._journal)) as evidence:
+                of_page = {"recorded": evidence.has_original(), "version": self._version}
+            data = {**campaign_data(self._campaign, self._name), **of_page}
             self._whole["campaign"] = script("campaign", data)
         return self._whole["campaign"]
 

@@ -23,6 +23,8 @@ from mutabot.report.texts import ESCAPES
 if TYPE_CHECKING:
     from mutabot.report.sections import Section
 
+#: between the entries of a legend
+_GAP = "   "
 _CONTROLS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f]")
 
 
@@ -220,11 +222,23 @@ def letters(rounds: Sequence[Outcome | None], *, many: bool = False) -> Text:
     return Text(" ").join(parts)
 
 
+class _Legend(Text):
+    """A text that breaks only between its entries, which three blanks separate."""
+
+    def wrap(self, console: Console, width: int, **options: Any) -> Lines:
+        """Wrap the text to a width."""
+        lines: list[Text] = []
+        for entry in self.split(_GAP):
+            if lines and lines[-1].cell_len + len(_GAP) + entry.cell_len <= width:
+                lines[-1] = Text.assemble(lines[-1], _GAP, entry)
+            else:
+                lines.append(entry)
+        return Lines(lines)
+
+
 def legend(outcomes: Iterable[Outcome | None]) -> Text:
     """Return the explanation of the letters that occur."""
-    # Spaces that do not break keep a letter and its words on one line.
     parts = [
-        Text.assemble((mark.letter, mark.style), f" {mark.text}".replace(" ", "\N{NO-BREAK SPACE}"))
-        for mark, _ in marks_in(outcomes)
+        part for mark, _ in marks_in(outcomes) for part in ((mark.letter, mark.style), f" {mark.text}", _GAP)
     ]
-    return Text("   ").join(parts)
+    return _Legend.assemble(*parts[:-1])

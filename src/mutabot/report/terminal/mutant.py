@@ -11,10 +11,9 @@ from rich.table import Table
 from rich.text import Text
 
 from mutabot.errors import plural
-from mutabot.model.outcome import Verdict
 from mutabot.model.outcome_text import describe_end, numbers_text
 from mutabot.report.sections import Section, between
-from mutabot.report.texts import acceptance_text, effect_text, excerpts, places_text, telling
+from mutabot.report.texts import acceptance_text, effect_text, excerpts, next_step, places_text, telling
 
 from .console import Breakable, below, heading, letters, make_table, mark_of, print_section, terminal_text
 
@@ -52,13 +51,13 @@ def print_mutant(
     if lines:
         text = "\n" + "\n".join(terminal_text(line) for line in lines)
         console.print(Text(text, no_wrap=True, overflow="ellipsis"))
-    rounds = _rounds(result, everything=everything)
-    sections = (rounds, *_happened(result), *_checks(result, everything=everything))
-    for section in (*sections, *suggested_sections(result, suggestion)):
+    rounds, checks = _rounds(result, everything=everything), [*_checks(result, everything=everything)]
+    for section in (rounds, *_happened(result), *checks, *suggested_sections(result, suggestion)):
         print_section(console, section)
-    if not everything:
-        what = "rounds and checks" if len(result.rounds) > 1 else "checks"
-        console.print(Text(f"\nUse --all for all {what}.", style="dim"))
+    more = ["rounds"] if rounds != _rounds(result, everything=True) else []
+    more += ["checks"] if checks != [*_checks(result, everything=True)] else []
+    if more:
+        console.print(Text(f"\nUse --all for all {' and '.join(more)}.", style="dim"))
 
 
 def print_replayed(console: Console, mutant: Mutant, rounds: Iterable[Replayed]) -> None:
@@ -194,20 +193,12 @@ def _checks(result: MutantResult, *, everything: bool) -> Iterator[Section]:
 
 def suggested_sections(result: MutantResult, found: Suggestion | None) -> Iterator[Section]:
     """Yield the section of a survivor's suggested check; nothing for other mutants."""
-    if not result.is_survivor or result.mutant.ladder:
+    if not next_step(result):
         return
     if found is not None and found.code:
         where = f"A check that would catch it, in {found.test}"
         more = "`mutabot suggest` prints it as a diff."
         yield Section(where, code=found.code, lines=[*found.notes, more])
         return
-    if found is not None:
-        lines = [f"None was found: {found.reason}"]
-    elif result.status is Verdict.NOT_COVERED:
-        lines = ["No test runs this line. Add one that does."]
-    elif result.indistinguishable:
-        add = "Add a probe or a test that would show one, or accept it as an equivalent mutant."
-        lines = [f"No measured difference. {add}"]
-    else:
-        lines = [f"Run `mutabot suggest --only {result.mutant.number}` to search for a check and verify it."]
-    yield Section("A check that would catch it", lines=lines)
+    line = f"None was found: {found.reason}" if found is not None else next_step(result)
+    yield Section("A check that would catch it", lines=[line])

@@ -151,11 +151,14 @@
 
   function nothingRecorded(one, page) {
     if (page.withoutRecordings) return empty("There was no room for its recordings.", `The report holds those of the survivors that went farthest first. \`mutabot show ${one.number}\` prints what they tell.`);
+    if (page.rounds.some((outcome) => outcome && outcome.diverged.length)) return empty("Its recordings were not kept.", "There was no room for them (", h("code", null, "evidence"), " in the configuration sets it), or their file was deleted. ", h("code", null, `mutabot show ${one.number}`), " prints what they told.");
     if (one.indistinguishable) return empty("The robot did the same as in the original.", "Nothing that was recorded, read or returned differs; there are no two paths to show.");
     if (!one.valid && !["refused", "guarded"].includes(one.status)) return empty("Nothing to show.", `This mutant was not counted: ${marks.MEANING[one.status]}.`);
     if (one.status === "not covered") return empty("No test runs this line.", "The fault was never executed. Add a test that runs this line.");
-    return empty("Nothing was recorded that differs.", "Paths, contacts and commands are recorded where the simulator feeds them: mutabot's cell does so by itself, and any other in ten lines (",
-      h("code", null, "mutabot.evidence.Feed"), ").");
+    const where = page.rounds.some((outcome) => outcome && outcome.divergence.length) ? "What differs otherwise is listed below, by round. " : "";
+    if (!mutabot.campaign.recorded) return empty("Nothing was recorded in this campaign.", where, "Recording is off (", h("code", null, "evidence = 0"), " in the configuration), or the file of recordings was deleted.");
+    return empty("No recorded command, reading or movement differs.", where, "Movements and contacts are recorded where the simulator has a feed (",
+      h("code", null, "mutabot.api.processes.Feed"), "), as mutabot's own cells have; its lines show the arm.");
   }
 
   function pair(holder, events, one, page, found, usual, mutant, stop) {
