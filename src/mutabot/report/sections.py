@@ -201,7 +201,7 @@ def _survivors(results: Results, place: PlaceName) -> Iterator[Section]:
     ]
     columns = (*MUTANT_COLUMNS, "*effect", ">survived") if rows else ()
     lines = [f"{plural(len(same), 'survivor')} without a measured effect: {numbered(same)}"] if same else []
-    lines += [f"Where no effect stands, {UNKNOWN_END}."] if unknown else []
+    lines += [f"Where no effect is listed, {UNKNOWN_END}."] if unknown else []
     yield Section(f"{plural(len(survivors), 'survivor')}{order}", columns, rows, lines)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, TypedDict
 
 import typer
 
@@ -26,7 +26,20 @@ _Words = Annotated[
 _Folder = Annotated[Path, typer.Argument(metavar="DIR", help="The folder to write to; it must be empty.")]
 
 
-def diff(context: CommandContext, request: Request, words: _Words = None) -> None:
+class _Choice(TypedDict, total=False):
+    """The options that these commands follow: they run nothing, and numbers are those of a plan."""
+
+    family: Annotated[
+        list[str] | None,
+        typer.Option("--family", metavar="NAME", help="Families of mutants. Repeatable, or with commas."),
+    ]
+    settings: Annotated[
+        list[str] | None,
+        typer.Option("-o", metavar="KEY=VALUE", help="Set a key of the configuration for this command."),
+    ]
+
+
+def diff(context: CommandContext, request: Annotated[Request, _Choice], words: _Words = None) -> None:
     """Show mutants of robot programs as differences of their text.
 
     Each is what `patch` takes, below a comment with its id, in the encoding of its file.
@@ -37,7 +50,9 @@ def diff(context: CommandContext, request: Request, words: _Words = None) -> Non
             context.print_bytes(f"{line}\n".encode(plan.program.encoding))
 
 
-def export(context: CommandContext, request: Request, folder: _Folder, words: _Words = None) -> None:
+def export(
+    context: CommandContext, request: Annotated[Request, _Choice], folder: _Folder, words: _Words = None
+) -> None:
     """Write mutated robot programs, a folder each, for the maker's own simulator.
 
     `mutants.json` in the folder says which mutant is in which folder.

@@ -228,6 +228,14 @@ def test_diff_and_export_show_and_write_them(tmp_path: Path) -> None:
     assert exported == original.replace(b"WAIT FOR $IN[25]==TRUE", b"WAIT SEC 0")
     assert (tmp_path / "out/1/pick.dat").read_bytes() == (tmp_path / "pick.dat").read_bytes()
     assert "is not empty" in mutabot("export", "out").stderr
+    for words in (
+        ("--only", "1"),
+        ("--rounds", "1"),
+        ("--sample", "10%"),
+    ):  # nothing runs, nothing has a number
+        refused = mutabot("diff", *words)
+        assert refused.returncode == 2
+        assert f"No such option: {words[0]}" in refused.stderr
 
 
 def test_a_printed_difference_has_the_bytes_of_its_file_so_that_patch_takes_it(tmp_path: Path) -> None:

@@ -493,7 +493,7 @@ def test_an_accepted_survivor_is_a_state_of_its_own_on_each_page(browser: Any, t
 
 
 def test_a_mutant_s_page_gives_the_values_of_its_story_and_fits_a_phone(browser: Any, tmp_path: Path) -> None:
-    found = Diverged("tests/test_a.py::test_told", None, "", "it is late", example=(0.25, 0.75))
+    found = Diverged("tests/test_a.py::test_told", None, "", "it is late", example=(0.25000002, 0.7500000003))
     outcome = Outcome(
         samples.NEGATE.id, 0, Verdict.SURVIVED, example=(0.125, -0.125), hits=3, acted=3, tests=2,
         diverged=(found,), divergence=(f"x: 1 instead of 2 (in {'a_very_long_name_' * 6})",),

@@ -191,9 +191,9 @@ def test_that_no_probe_tells_how_the_world_ended_is_said_once(tmp_path: Path) ->
     with Journal.open(samples.write_journal(tmp_path / "journal.sqlite", outcomes=ends)) as journal:
         text = report(read_results(journal))
     assert text.count("nothing tells how the world ended") == 1
-    assert "\n  Where no effect stands, nothing tells how the world ended" in text
+    assert "\n  Where no effect is listed, nothing tells how the world ended" in text
     with Journal.open(samples.write_journal(tmp_path / "one.sqlite", outcomes=ends[:1])) as journal:
-        assert "Where no effect stands" not in report(read_results(journal))
+        assert "Where no effect is listed" not in report(read_results(journal))
 
 
 def test_survivors_without_a_deviation_are_not_said_to_be_in_its_order(tmp_path: Path) -> None:

@@ -80,7 +80,7 @@ const mutabot = (() => {
     if (value === null || value === undefined) return "–";
     if (typeof value !== "number") return String(value);
     const size = Math.abs(value);
-    if (size !== 0 && (size < 1e-4 || size >= 1e7)) return value.toExponential(2);
+    if (size !== 0 && (size < 1e-4 || size >= 1e7)) return value.toExponential(2).replace(/^-/, "−");
     return String(Number(value.toPrecision(digits))).replace("-", "−");
   }
   /** A length or another amount with its unit; short lengths in mm. */

@@ -96,7 +96,7 @@
 
   function facts(one, page) {
     const rows = [["id", h("code", null, page.id)],
-      one.operation ? ["operation", one.operation + (page.pattern ? `, command ${page.pattern}` : "")] : null,
+      one.operation ? ["operation", one.operation + (page.pattern ? `, command ${page.pattern.replace(/:[^{}]*}/g, "}")}` : "")] : null,
       one.operation ? ["quantity", one.quantity ? `${one.quantity}${page.meaning ? `: ${["kind", "axis", "unit", "frame"].map((name) => page.meaning[name]).filter(Boolean).join(", ")}` : ""}` : "the call as a whole"] : null,
       ["operator", h("span", null, `${one.operator}${one.variant ? ` (${one.variant})` : ""}`, mutabot.campaign.operators[one.operator] ? h("small", null, mutabot.campaign.operators[one.operator]) : null)],
       ["killed", `in ${one.killed} of ${count(one.valid, "valid round")}${page.kill_rate.interval ? `; 95 % interval ${between(page.kill_rate.interval)}` : ""}`],
@@ -192,7 +192,7 @@
     const [before, after] = (diverged && diverged.example) || [];
     const isValue = one.quantity && after !== undefined;
     return { name: isValue ? one.quantity : null, value: after, isSkipped: !one.quantity && Array.isArray(after) && !after.length,
-      text: isValue ? `${one.quantity} ${value(after, one.unit)} instead of ${value(before, one.unit)}` : one.description };
+      text: isValue ? `${one.quantity} ${value(after, one.unit, [before, after])} instead of ${value(before, one.unit, [before, after])}` : one.description };
   }
 
   const key = (usual) => h("ul", { class: "legend" }, usual ? h("li", null, h("span", { class: "swatch of-original", "aria-hidden": "true" }), "original") : null,
@@ -313,9 +313,11 @@
       outcome.kills.length > 1 ? h("p", null, "Also killed by ", outcome.kills.slice(1).map(({ test, by }, index) => [index ? ", " : "", h("code", null, test), ` (${by})`])) : null,
       outcome.divergence.length || outcome.gaps.length ? h("ul", { class: "plain" }, outcome.divergence.slice(0, LINES).map((line) => h("li", null, mutabot.breakable(line))), outcome.divergence.length > LINES ? h("li", null, `and ${count(outcome.divergence.length - LINES, "more difference")}`) : null, outcome.gaps.map((line) => h("li", null, `not compared: ${line}`))) : null,
       values.length ? h("div", { class: "scroll", role: "region", tabindex: "0", "aria-label": "Values" }, h("table", { class: "values" }, h("thead", null, h("tr", null, ["round", "first value", "in its place"].map((name, index) => h("th", { scope: "col", class: "n" }, name)))),
-        h("tbody", null, values.map(([each, pair]) => h("tr", null, h("td", { class: "n" }, each + 1), pair.map((found) => h("td", { class: "n" }, value(found, one.unit)))))))) : null,
+        h("tbody", null, values.map(([each, pair]) => h("tr", null, h("td", { class: "n" }, each + 1), pair.map((found) => h("td", { class: "n" }, value(found, one.unit, pair)))))))) : null,
       h("p", { class: "hint" }, [`acted at ${outcome.acted} of ${count(outcome.hits, "hit")}`, `${count(outcome.tests, "test")} run`, outcome.indistinguishable && "no measured difference",
         `${number(outcome.wall, 2)} s`, outcome.confirmed === false ? "not confirmed by the whole suite" : null, outcome.repeats ? `re-run ${count(outcome.repeats, "time")} with the same result` : null, outcome.beside ? `re-run alone, because beside others it exceeded the wall clock: ${outcome.beside}` : null, ...Object.entries(outcome.away).map(([why, many]) => `left ${count(many, "call")} unchanged: ${why}`)].filter(Boolean).join(" · ")));
   }
-  const value = (found, unit) => `${typeof found === "number" ? number(found, 7) : String(found)}${unit && typeof found === "number" ? ` ${unit}` : ""}`;
+  /** Digits with which both values of a pair differ, as in the terminal. */
+  const digits = ([before, after]) => (typeof before === "number" && typeof after === "number" && number(before, 6) === number(after, 6) ? 12 : 6);
+  const value = (found, unit, pair) => `${typeof found === "number" ? number(found, digits(pair)) : String(found)}${unit && typeof found === "number" ? ` ${unit}` : ""}`;
 })();
