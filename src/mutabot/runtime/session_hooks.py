@@ -43,6 +43,10 @@ if TYPE_CHECKING:
     from mutabot.runtime.isolation.fork_server import ForkServer
 
 
+#: the function of pluggy that calls hooks
+_CALLS_HOOKS = "_multicall"
+
+
 class SessionHooks:
     """Pytest's hooks for one job: the collection of its tests, and the session around them.
 
@@ -219,7 +223,7 @@ class SessionHooks:
 
     def pytest_internalerror(self, excinfo: pytest.ExceptionInfo[BaseException]) -> None:
         """Report a hook that fails: ours, or one that noticed a mutant which acted before any test."""
-        if is_ours(excinfo.traceback[-1].frame.raw):
+        if _is_own_failure(excinfo):
             self._errors.append(f"mutabot failed: {excinfo.exconly()}")
         elif not self.session.test:
             self.import_failed(excinfo.value, "")
@@ -283,6 +287,16 @@ class SessionHooks:
         not_private = self._files.why_not if self.job.private_files else None
         facts = (self._collected, tuple(self._errors), not_private, self._gone)
         self.session.pipe.send(SessionEnd(int(exitstatus), *facts, self.session.evidence.acted > 0))
+
+
+def _is_own_failure(excinfo: pytest.ExceptionInfo[BaseException]) -> bool:
+    """Return whether our code fails: it has raised, or the hook that did, with what it calls, is ours.
+
+    Hooks of ours around that hook are on the way of the exception as well, but farther out.
+    """
+    frames = [entry.frame.raw for entry in excinfo.traceback]
+    calls = [number for number, frame in enumerate(frames) if frame.f_code.co_name == _CALLS_HOOKS]
+    return any(map(is_ours, [frames[-1], *frames[calls[-1] + 1 :][:1]] if calls else frames[-1:]))
 
 
 def _keep_cache_in(config: pytest.Config, home: str) -> None:
