@@ -53,11 +53,16 @@ def files_of(page: Path) -> dict[str, str]:
     return beside | {match[1]: match[2] for match in _BLOCK.finditer(page.read_text(encoding="utf-8"))}
 
 
-def _try(name: str, recipe: dict[str, Any], folder: Path) -> dict[str, Any]:
+def write_project(name: str, folder: Path) -> None:
+    """Write the files of a recipe's project."""
     for file, text in files_of(PAGES / f"{name}.md").items():
         path = folder / file
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text, encoding="utf-8")
+
+
+def _try(name: str, recipe: dict[str, Any], folder: Path) -> dict[str, Any]:
+    write_project(name, folder)
     print(f"{name}: {', '.join(sorted(path.name for path in folder.rglob('*.py')))}")
     figures: dict[str, Any] = {"seconds": {}, "failed": [], "disagree": []}
     plain = time.monotonic()
@@ -66,7 +71,7 @@ def _try(name: str, recipe: dict[str, Any], folder: Path) -> dict[str, Any]:
     figures["seconds"]["pytest"] = round(time.monotonic() - plain, 1)
     for words in (["init"], ["check"], ["run", "--json"]):
         started = time.monotonic()
-        done = _mutabot(folder, *words)
+        done = run_mutabot(folder, *words)
         figures["seconds"][words[0]] = round(time.monotonic() - started, 1)
         if done.returncode:
             figures["failed"].append(f"{words[0]}: exit code {done.returncode}: {done.stderr[-500:]}")
@@ -130,7 +135,8 @@ def _print(figures: dict[str, Any]) -> None:
         print(f"  {word} {said}: {ended.get('description', ended.get('edit'))}")
 
 
-def _mutabot(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
+def run_mutabot(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
+    """Run a command on a project."""
     command = [sys.executable, "-m", "mutabot.cli.app", "-C", str(folder), *words]
     return subprocess.run(command, capture_output=True, text=True, check=False)
 

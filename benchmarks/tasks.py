@@ -6,7 +6,8 @@
 
 A campaign for each family runs the mutants of the program against every test that reaches them. So it tells
 for each mutant what the weak, the medium and the strong suite notice: a suite notices what one of its tests
-does, in the same rounds with the same seeds.
+does, in the same rounds with the same seeds. NAME is an example, or a recipe of docs/recipes: a program that
+drives a robot library or simulator of others, in an environment that has it (``make .venv-shipped/.ready``).
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from comparison.data import comparison_data
 from comparison.families import compare_families
 from comparison.run import campaign
 from comparison.tasks_page import ORDER, ROBOT, TEXT, page
+from foreign_programs import RECIPES, run_mutabot, write_project
 from mutabot.cli.options import Running
 from mutabot.model import Outcome
 from mutabot.report.document import dumps
@@ -84,7 +86,7 @@ def main(arguments: list[str] | None = None, docs: Path = DOCS) -> int:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("what", nargs="?", choices=["run"])
-    parser.add_argument("name", nargs="?", help="of an example")
+    parser.add_argument("name", nargs="?", help="of an example or a recipe")
     parser.add_argument("--robot", metavar="SIZE", help="a sample of the robot family; else all")
     parser.add_argument(
         "--conventional", metavar="SIZE", help="a sample of the conventional family; else all"
@@ -98,7 +100,9 @@ def main(arguments: list[str] | None = None, docs: Path = DOCS) -> int:
     given = parser.parse_args(arguments)
     if given.what == "run":
         if not given.name:
-            parser.error("which example?")
+            parser.error("which example or recipe?")
+        if not (ROOT / "examples" / given.name).is_dir() and given.name not in RECIPES:
+            parser.error(f"no example or recipe {given.name}; recipes are {', '.join(RECIPES)}")
         return _run(given, docs / "data" / "tasks")
     tasks = load(docs / "data" / "tasks")
     text, file = page(tasks), docs / "tasks.md"
@@ -110,22 +114,32 @@ def main(arguments: list[str] | None = None, docs: Path = DOCS) -> int:
     return 0
 
 
+def _project(name: str, folder: Path) -> Path:
+    """The folder of an example, or of a recipe that is written there; raises SystemExit if `init` fails."""
+    if name not in RECIPES:
+        return ROOT / "examples" / name
+    write_project(name, folder)
+    done = run_mutabot(folder, "init")
+    if done.returncode:
+        sys.exit(f"mutabot init on the recipe {name}: {done.stderr}")
+    return folder
+
+
 def _run(given: argparse.Namespace, data: Path) -> int:
     """Run the campaigns of a task, and keep what they find if both are complete."""
     found = {}
     with tempfile.TemporaryDirectory() as temporary:
+        project = _project(given.name, Path(temporary, "project"))
         for family, sample in ((ROBOT, given.robot), (TEXT, given.conventional)):
             if given.family and family not in given.family:
                 continue
             options = Running(
                 family=[family], only=["program"], rounds=given.rounds, seed=given.seed, sample=sample,
-                jobs=given.jobs, settings=weak_first(ROOT / "examples" / given.name),
+                jobs=given.jobs, settings=weak_first(project),
             )  # fmt: skip
             folder = (given.folder or Path(temporary)) / family
             folder.mkdir(parents=True, exist_ok=True)
-            found[family] = kept(
-                campaign(ROOT / "examples" / given.name, folder / given.name, options), family
-            )
+            found[family] = kept(campaign(project, folder / given.name, options), family)
             print(
                 f"{given.name}, {family}: {found[family]['state']}, {len(found[family]['mutants'])} mutants"
             )

@@ -50,6 +50,8 @@ PARTS = (
 )
 #: operators need so many mutants in a task for a score, and so many in all tasks for a row
 LEAST, LEAST_IN_ALL = 2, 4
+#: operators that two tasks must have in common for a row of their own
+FEWEST = 5
 
 HEAD = """\
 # Do operators and suites behave alike on other tasks?
@@ -57,7 +59,8 @@ HEAD = """\
 <!-- Written by benchmarks/tasks.py from docs/data/tasks/*.json. Do not edit. -->
 
 The study "Mutation Testing for Industrial Robotic Systems" names this threat: its operators are "specifically
-tailored for a pick-and-place task". Here the same operators run on examples of other kinds of tasks.
+tailored for a pick-and-place task". Here the same operators run on examples of other kinds of tasks, and on
+recipes (plc, toolbox, ur and the like): programs that drive robot libraries and simulators of others.
 `python benchmarks/tasks.py run NAME` runs the mutants of a program against every test that reaches them;
 `python benchmarks/tasks.py` writes this page. Intervals have a level of 95 %.
 """
@@ -78,15 +81,15 @@ taken together).
 """
 OF_RANKS = f"""\
 Spearman's rank correlation of the operators' scores (all tests) between two tasks, over the operators with at
-least {LEAST} mutants that count in both; the interval after Fieller. Fewer than five operators have none, and
-their correlation may be chance.
+least {LEAST} mutants that count in both; the interval after Fieller. Pairs with fewer than {FEWEST} operators
+count in the mean only: their correlations may be chance.
 """
 TAIL = """\
 ## What this does not say
 
-- Except the published program, all programs and suites were written for this project: others may differ more.
-- Tasks that are not in the table of what was run say nothing. Foreign programs and the examples of ROS were
-  not run.
+- Except the published program, all programs and suites were written for this project, also where they drive
+  robot libraries and simulators of others (the recipes): others may differ more.
+- Tasks that are not in the table of what was run say nothing.
 - Tasks with one suite say nothing of weaker ones.
 - *Equivalent* is what no comparison tells apart, which is no proof. What would change nothing in the baseline
   was left out beforehand.
@@ -139,12 +142,10 @@ def _in_short(tasks: Mapping[str, Task]) -> Iterator[str]:
         for task_name, task in tasks.items():
             if (stance := _stance(task, key)) is not None:
                 by_stance[stance].append(task_name)
-        more, less, open_ = (
-            ", ".join(by_stance[kind]) or "no task" for kind in (Stance.FOR, Stance.AGAINST, Stance.UNDECIDED)
-        )
+        more, less = (", ".join(by_stance[kind]) or "no task" for kind in (Stance.FOR, Stance.AGAINST))
         yield (
             f"- Conventional mutants are *{name}* more often than robot ones in {more},\n"
-            f"  less often in {less}; undecided in {open_}."
+            f"  less often in {less}; undecided in the other {len(by_stance[Stance.UNDECIDED])}."
         )
     if suites := with_suites(tasks):
         ordered = [name for name, task in suites.items() if is_ordered(mutants_of(task, ROBOT))]
@@ -185,7 +186,7 @@ def _drawn(campaign: Mapping[str, Any] | None) -> str:
     own = campaign["families"]
     return (
         f"{own['mutants']} of {own['population']}, drawn at random"
-        if own["population"]
+        if own["population"] not in (None, 0, own["mutants"])
         else f"all {own['mutants']}"
     )
 
@@ -284,7 +285,7 @@ def _between(tasks: Mapping[str, Task]) -> Iterator[str]:
     yield "|---|---:|---:|---:|---:|"
     both = zip(_correlations(tasks, ROBOT), _correlations(tasks, TEXT), strict=True)
     for (pair, count, found), (_, other_count, other) in both:
-        if found is not None or other is not None:
+        if max(count, other_count) >= FEWEST:
             yield f"| {pair} | {count} | {_shown(found)} | {other_count} | {_shown(other)} |"
     means = [_mean_correlation(tasks, family) for family in (ROBOT, TEXT)]
     yield f"| mean | | {means[0]} | | {means[1]} |"
