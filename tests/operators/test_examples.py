@@ -14,6 +14,8 @@ from mutabot.model import Call, Reply
 from mutabot.model.quantity import changes
 from mutabot.operators import Example, Subject, names, operator
 from mutabot.operators.command import CONTROLS
+from mutabot.operators.examples import CLOSE
+from mutabot.operators.kinds.commands import Opposite
 from mutabot.operators.middleware import CallRecord, rehearse
 
 CASES = [(name, index) for name in [*names(), *CONTROLS] for index in range(len(operator(name).examples))]
@@ -151,3 +153,7 @@ def test_the_original_values_are_left_alone() -> None:
         before = repr(example.values), repr(example.replied)
         play(name, example)
         assert (repr(example.values), repr(example.replied)) == before, f"{name}, example {index}"
+
+
+def test_an_opposite_command_is_named_without_its_module() -> None:
+    assert Opposite().describe(Subject(CLOSE), None, None) == "Gripper.open instead"

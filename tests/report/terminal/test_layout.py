@@ -58,3 +58,11 @@ def test_what_lists_each_mutant_that_is_left_out_is_said_once_and_not_above_that
     left_out = [LeftOut("a", "x", f"{NOTHING} in any of 3 calls"), LeftOut("b", "x", "it is always 0")]
     assert [bool(section.lines) for section in skipped(left_out)] == [False, True]
     assert [bool(section.lines) for section in skipped(left_out, are_listed=True)] == [False, False]
+
+
+def test_rows_that_are_left_out_are_counted_below_the_rows_and_lines_below_the_lines() -> None:
+    out = io.StringIO()
+    section = Section("Title", ("no.",), [(str(row),) for row in range(5)], ["first line", "second", "third"])
+    print_section(make_console(out, width=80), section, 2)
+    told = [line.strip() for line in out.getvalue().splitlines() if line.strip()]
+    assert told == ["Title", "no.", "───", "0", "1", "and 3 more", "first line", "second", "and 1 more"]

@@ -102,4 +102,4 @@ class Opposite(CommandOperator):
         pattern, opposite = subject.pattern, subject.opposite
         if opposite is not None and pattern is not None and pattern.notation is not None:
             return f"{Notation.compile(opposite).short} instead"
-        return f"{opposite} instead"
+        return f"{(opposite or '').rpartition(':')[2]} instead"

@@ -163,13 +163,17 @@ def print_section(console: Console, section: Section, at_most: int | None = None
                 )
             )
         console.print(table)
+        _print_more(console, len(section.rows), at_most)
     for line in section.code.splitlines():
         console.print(Text(f"  {terminal_text(line)}"), soft_wrap=True)
     for line in section.lines[:at_most]:
         console.print(below(line.lstrip(), 2 + len(line) - len(line.lstrip())))
-    left = max(len(section.rows), len(section.lines)) - (at_most or 0)
-    if at_most is not None and left > 0:
-        console.print(below(f"and {left} more", style="dim"))
+    _print_more(console, len(section.lines), at_most)
+
+
+def _print_more(console: Console, count: int, at_most: int | None) -> None:
+    if at_most is not None and count > at_most:
+        console.print(below(f"and {count - at_most} more", style="dim"))
 
 
 @frozen
