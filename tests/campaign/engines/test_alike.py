@@ -147,9 +147,31 @@ THROWS_AWAY = """
 """
 
 
-def test_a_finalizer_that_raises_at_the_end_kills_where_warnings_are_errors(tmp_path: Path) -> None:
+#: warnings are errors until pytest's clean-up begins
+FOR_A_TIME = """
+import contextlib
+import warnings
+
+def pytest_configure(config):
+    stack = contextlib.ExitStack()
+    stack.enter_context(warnings.catch_warnings())
+    warnings.simplefilter("error")
+    config.add_cleanup(stack.close)
+"""
+
+
+@pytest.mark.parametrize(
+    ("file", "text"),
+    [
+        ("pytest.ini", "[pytest]\nfilterwarnings = error\n"),
+        pytest.param("conftest.py", FOR_A_TIME, marks=pytest.mark.whole),
+    ],
+)
+def test_a_finalizer_that_raises_at_the_end_kills_where_warnings_are_errors(
+    file: str, text: str, tmp_path: Path
+) -> None:
     folder = write_project(tmp_path, LEAVES + MISSION, THROWS_AWAY)
-    (folder / "pytest.ini").write_text("[pytest]\nfilterwarnings = error\n")
+    (folder / file).write_text(text)
     found = run(folder, engine="fork", only=("skip",))
     assert [outcome.verdict for outcome in found.values()] == [Verdict.KILLED, Verdict.KILLED]
 
