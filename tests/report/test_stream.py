@@ -11,6 +11,7 @@ import pytest
 from mutabot.model import Outcome, Verdict
 from mutabot.model.mutant_end import MutantEnd
 from mutabot.model.suppression import Acceptance
+from mutabot.report.document import shown_data
 from mutabot.report.stream import MutantStream
 from report.material import made, stored
 from results import samples
@@ -91,3 +92,11 @@ def test_texts_of_programs_make_no_other_line(name: str, tmp_path: Path) -> None
     assert "\n" not in line
     assert "\r" not in line
     assert name == "jsonl" or line.count("\t") == 5
+
+
+def test_what_to_do_about_a_survivor_is_the_same_in_every_format_for_scripts(tmp_path: Path) -> None:
+    campaign = stored(tmp_path)
+    streamed = [json.loads(line) for line in made("jsonl", campaign).splitlines()[:-1]]
+    shown = [shown_data(result, lambda _: None, None) for result in campaign.mutants]
+    assert [found["next"] for found in streamed] == [found["next"] for found in shown]
+    assert [found["number"] for found in streamed if found["next"]] == [2, 4, 5]  # survived or not covered

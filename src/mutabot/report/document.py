@@ -16,7 +16,7 @@ from mutabot.journal import records
 from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity, Span
 from mutabot.model.world_difference import Apart, Measurement
 from mutabot.report.mutant_data import SPAN
-from mutabot.report.texts import effect_text, excerpts, state_of, telling
+from mutabot.report.texts import effect_text, excerpts, next_step, state_of, telling
 from mutabot.results.encoder import Encoder
 from mutabot.results.results import MutantResult, Results
 from mutabot.results.score import Group, RoundScores, Score
@@ -105,6 +105,7 @@ def shown_data(
         "story": {"round": round + 1, **data_of(diverged)} if round is not None and diverged else None,
         "checks": data_of(outcome.looked) if outcome is not None else [],
         "suggestion": data_of(suggestion),
+        "next": next_step(result) or None,
     }
 
 
