@@ -62,6 +62,8 @@ def _values_distance(before: Any, after: Any, angles: Mapping[str, Quantity]) ->
 
 #: a number smaller than this part of a difference is rounding
 _ROUNDING = 1e-9
+#: the module of an operation
+_MODULE = re.compile(r"(?<= )[\w.]+:(?=[A-Za-z_])")
 #: how a pattern formats a number
 _FORMAT = re.compile(r":[^{}]*\}")
 #: where a call's text begins and ends
@@ -399,8 +401,8 @@ def _event_text(name: str, value: Any) -> str:
 
 
 def _place_text(key: str) -> str:
-    """Return a call's place without columns, and its command without formats: ``a.py:8 Arm.move_by``."""
-    return _FORMAT.sub("}", _EXTENT.sub(r"\1", key))
+    """Return a call's place without columns, module and formats of its command: ``a.py:8 Arm.move_by``."""
+    return _FORMAT.sub("}", _MODULE.sub("", _EXTENT.sub(r"\1", key), count=1))
 
 
 class _ProbeDifference(NamedTuple):

@@ -144,7 +144,7 @@ class StoredCampaign(Results):
                 f"<p>{escape(repr(self)[1:-1])}</p>",
                 _table(("family · role", "mutants", "score", "check score", "accepted"), scores),
                 _table(("no.", "place", "operator", "survivor", "effect"), survivors),
-                f"<p>and {left} more survivors</p>" if left else "",
+                f"<p>and {plural(left, 'more survivor')}</p>" if left else "",
             ]
         )
 

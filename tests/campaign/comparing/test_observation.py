@@ -95,10 +95,10 @@ def test_of_a_call_only_the_values_that_differ_are_reported() -> None:
     assert line == "call 1, a: wrote x -0.5 instead of 0.5 (off by 1), grip closed instead of open"
 
 
-def test_a_call_is_named_without_columns_and_formats_and_rounding_is_no_digit() -> None:
+def test_a_call_is_named_without_columns_module_and_formats_and_rounding_is_no_digit() -> None:
     key = "sorter.py:16:4-16:23 link:send drop/{height:g}"
     (line,) = compare(seen(TraceCall(key, {"x": 2.4e-15})), seen(TraceCall(key, {"x": -0.25}))).divergence
-    assert line == "call 1, sorter.py:16 link:send drop/{height}: wrote x -0.25 instead of 0 (off by 0.25)"
+    assert line == "call 1, sorter.py:16 send drop/{height}: wrote x -0.25 instead of 0 (off by 0.25)"
 
 
 def test_traces_that_were_cut_off_are_compared_as_far_as_they_go() -> None:

@@ -82,7 +82,7 @@ def test_no_more_than_github_shows_and_the_rest_is_told(
     )
     found = commands(stored(tmp_path, mutants=mutants, outcomes=ends))
     assert [level_shown for level_shown, _, _ in found] == [level] * shown + ["notice"]
-    assert found[-1][2] == f"{30 - shown} more survivors are not shown here; `mutabot results` lists them"
+    assert found[-1][2] == f"not shown here: {30 - shown} more survivors; `mutabot results` lists all"
 
 
 def test_without_survivors_there_is_nothing_to_annotate(tmp_path: Path) -> None:

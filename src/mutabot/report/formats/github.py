@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from mutabot.errors import plural
 from mutabot.report.texts import survivor_text
 
 if TYPE_CHECKING:
@@ -33,7 +34,8 @@ def _lines(material: Material) -> Iterator[str]:
             yield _annotation(level, result, material)
         else:
             hidden += 1
-    notes = [f"{hidden} more survivors are not shown here; `mutabot results` lists them"] if hidden else []
+    more = plural(hidden, "more survivor")
+    notes = [f"not shown here: {more}; `mutabot results` lists all"] if hidden else []
     accepted = len(material.campaign.accepted)
     if accepted:
         notes.append(f"{accepted} accepted survivor{'s are' if accepted != 1 else ' is'} not shown")

@@ -109,6 +109,6 @@
       h("code", null, line.length ? line : " "),
       alive.length ? h("ul", { class: `alive${loud ? "" : " calm"}` }, alive.slice(0, 5).map((one) => h("li", null,
         h("a", { href: address(["mutant", String(one.number)]) }, `${one.number}  ${one.description}`), one.indistinguishable ? " nothing differs" : ` ${one.why}`)),
-      alive.length > 5 ? h("li", null, h("a", { href: address(["mutants"], { file, line: String(at), status: "survived,not covered" }) }, `and ${alive.length - 5} more survivors here`)) : null) : null);
+      alive.length > 5 ? h("li", null, h("a", { href: address(["mutants"], { file, line: String(at), status: "survived,not covered" }) }, `and ${count(alive.length - 5, "more survivor")} here`)) : null) : null);
   }
 })();
