@@ -146,8 +146,12 @@ class Link:
         self.forget(*self._asked)
         self._is_closed.set()
         self._fetching.shutdown(wait=False, cancel_futures=True)
-        with suppress(Exception):
+        try:
             self._client.close(timeout=2)
+        except Exception:  # such as one that was about to connect again
+            self._client.status = (
+                "closed"  # else it closes itself once more, and raises, when it is collected
+            )
         if self._calling.is_alive():
             self._calling.join(2)
 

@@ -86,6 +86,25 @@ def test_nobody_at_an_address(monkeypatch: pytest.MonkeyPatch) -> None:
         link.Link(ClusterSettings("tcp://127.0.0.1:9"), "tcp://127.0.0.1:9")
 
 
+def test_a_client_that_fails_to_close_is_not_closed_again_when_it_is_collected(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As one does whose scheduler has ended while it was connecting to it again."""
+    with cluster(tmp_path, 0) as settings:
+        there = link.Link(settings, settings.address)
+        client = there._client
+        with monkeypatch.context() as patch:
+            patch.setattr(client, "_close", failing)
+            there.close()
+            client.__del__()  # raised ValueError
+        client.status = "running"
+        client.close()
+
+
+async def failing(*given: object, **named: object) -> None:
+    raise ValueError("IOStream is not idle; cannot convert to SSL")
+
+
 NO_ROOM = """
 from mutabot_dask.worker_side import Store
 def take(*given):
