@@ -8,6 +8,7 @@ import time
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path
+from textwrap import dedent
 from types import CodeType
 
 import pytest
@@ -135,6 +136,23 @@ def test_a_function_that_a_changed_text_has_taken_over_is_the_program_s(
         main, other = (part for part in code.co_consts if hasattr(part, "co_code"))
         assert original_code(main).co_firstlineno == 1
         assert (file_of(main), file_of(other), file_of(code)) == (str(program), name, name)
+
+
+def test_of_functions_with_the_same_name_the_equal_one_is_meant_and_of_equal_ones_none(program: Path) -> None:
+    method = "    def main(self, arm):\n        arm.move(20)\n"
+    program.write_text(f"{TEXT}\n\nclass Cell:\n{method}\n\nclass Line:\n{method.replace('20', '30')}")
+    for text, line in (
+        ("import math\n" + TEXT, 1),
+        (dedent(method), 6),
+        (dedent(method.replace("20", "30")), 11),
+    ):
+        code = compile(text, "<string>", "exec")
+        look_at(code)
+        assert original_code(inner(code)).co_firstlineno == line
+    program.with_name("second.py").write_text("import sys\n" + TEXT)
+    code = compile("import math\n" + TEXT, "<string>", "exec")
+    look_at(code)
+    assert file_of(inner(code)) == "<string>"
 
 
 def test_an_older_text_that_has_a_function_of_the_program_is_another_one(

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
+from contextlib import suppress
 from types import CodeType, FrameType
 from typing import Any
 
@@ -51,28 +52,23 @@ def look_at(code: Any) -> None:
         return
     if all(name.startswith("__") for name in code.co_names):  # what dataclasses and the like define
         return
-    for path, text in program_texts():
-        if _take_over(code, path, text):
-            return
-
-
-def _take_over(code: CodeType, path: str, text: str) -> bool:
-    """Note which parts of code come from a file; return whether all of it does."""
-    wanted = [part for part in _parts(code) if _may_be_of(part, text)]
-    if not wanted:
-        return False
-    try:
-        whole = compile_plainly(text, path, code.co_flags & INHERITED)
-    except (SyntaxError, ValueError):
-        return False
-    originals = {part.co_qualname: part for part in _parts(whole)}
-    originals |= {part.co_name: part for part in originals.values()}  # a method taken out of its class
-    for part in wanted:
-        original = originals.get(part.co_qualname)
-        if original is not None and id(part) not in executed and _is_same(part, original):
-            pairs = zip(_parts(part), _parts(original), strict=True)
+    originals = list(_originals(code))
+    for part in _parts(code):
+        same = [found for found in originals if found.co_name == part.co_name and _is_same(part, found)]
+        exact = [found for found in same if found.co_qualname == part.co_qualname]
+        if not exact and not part.co_name.startswith("<"):
+            exact = same  # a method taken out of its class
+        if len(exact) == 1 and id(part) not in executed:  # of several, nobody knows which it was
+            pairs = zip(_parts(part), _parts(exact[0]), strict=True)
             executed.update((id(mine), (mine, yours)) for mine, yours in pairs)
-    return id(code) in executed
+
+
+def _originals(code: CodeType) -> Iterator[CodeType]:
+    """Yield the code of all files of the program from which parts of this code may come, and its parts."""
+    for path, text in program_texts():
+        if any(_may_be_of(part, text) for part in _parts(code)):
+            with suppress(SyntaxError, ValueError):
+                yield from _parts(compile_plainly(text, path, code.co_flags & INHERITED))
 
 
 def _may_be_of(code: CodeType, text: str) -> bool:
