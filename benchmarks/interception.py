@@ -36,7 +36,7 @@ print((time.process_time() - start) * 1e3)
 
 
 class Nowhere:
-    """A pipe that leads nowhere."""
+    """An event writer that writes nothing."""
 
     def send(self, line: Event) -> None:
         """Forget the line."""

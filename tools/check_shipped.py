@@ -64,13 +64,13 @@ def main() -> int:
 
 def compare(vocabulary: Vocabulary) -> Iterator[str]:
     """What does not fit the installed packages. What it wraps stays wrapped in this process."""
-    pipe = Held()
+    writer = Held()
     job = Job(root=".", program=(), oracle=(), vocabulary=vocabulary, seed=1, round=0, inspect=True)
-    session = Session(job, pipe, Locator(job.root, job.program, job.oracle))
+    session = Session(job, writer, Locator(job.root, job.program, job.oracle))
     with contextlib.redirect_stdout(io.StringIO()):
         session.install()
         session.inspect_targets()
-    for line in pipe.events:
+    for line in writer.events:
         if isinstance(line, Problem):
             yield f"{line.source}: {line.text}"
     for operation in vocabulary.operations:

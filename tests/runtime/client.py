@@ -30,7 +30,7 @@ from mutabot.runtime.targets.messages import Messages
 from mutabot.runtime.targets.target import MiddlewareControls, Where
 from tests.runtime.stage import take_away
 
-from .stage import ListPipe
+from .stage import ListWriter
 
 _numbers = count(1)
 NODE = "/mission"
@@ -185,7 +185,7 @@ class ClientStage:
     operations: tuple[Operation, ...]
     sessions: list[Session] = field(default_factory=list)
     counted: int = 0
-    pipe: ListPipe = field(default_factory=ListPipe)
+    writer: ListWriter = field(default_factory=ListWriter)
 
     def program(self, text: str) -> ModuleType:
         """The program's module."""
@@ -215,7 +215,7 @@ class ClientStage:
             oracle_nodes=oracle_nodes,
         )
         locator = Locator(job.root, job.program, job.oracle)
-        session = Session(job, self.pipe, locator)  # type: ignore[arg-type]
+        session = Session(job, self.writer, locator)  # type: ignore[arg-type]
         session.install()
         self.sessions.append(session)
         session.start_test("test")
@@ -253,7 +253,7 @@ class ClientStage:
         oracle_nodes: tuple[str, ...] = (),
     ) -> tuple[Any, Client, MutatedSite]:
         """The same for a program that has run as the original."""
-        seen = [line for line in self.pipe.lines if isinstance(line, SiteSeen)][-1]
+        seen = [line for line in self.writer.lines if isinstance(line, SiteSeen)][-1]
         site = Site(seen.span, "text", 1, Role.PROGRAM)
         mutant = Mutant(1, "middleware", operator, site, seen.operation, seen.pattern, quantity, variant, "")
         session, client = self.session(program, mutant, oracle_nodes)

@@ -1,6 +1,6 @@
 """A small stage for tests of the inside: a robot module, a program, a vocabulary, and a session.
 
-Everything is real (interception, adapters, operators) but the pipe, whose lines are kept in a list.
+Everything is real (interception, adapters, operators) but the event file, whose lines are kept in a list.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ _numbers = count(1)
 _MOCK_CALL = vars(mock)["CallableMixin"].__call__
 
 
-class ListPipe:
-    """Takes report lines like the real pipe and keeps them."""
+class ListWriter:
+    """Takes report lines like an event file, and keeps them."""
 
     def __init__(self) -> None:
         self.lines: list[Event] = []
@@ -53,7 +53,7 @@ class Stage:
     vocabulary_text: str
     early: bool = False
     sessions: list[Session] = field(default_factory=list)
-    pipe: ListPipe = field(default_factory=ListPipe)
+    writer: ListWriter = field(default_factory=ListWriter)
 
     def __post_init__(self) -> None:
         number = next(_numbers)
@@ -107,7 +107,7 @@ class Stage:
             record=record,
         )
         locator = Locator(job.root, job.program, job.oracle)
-        session = Session(job, self.pipe, locator)  # type: ignore[arg-type]  # it has the one method
+        session = Session(job, self.writer, locator)  # type: ignore[arg-type]  # it has the one method
         session.install()
         session.start_test("test")
         self.sessions.append(session)
@@ -125,7 +125,7 @@ class Stage:
         return getattr(self.load_program(), function)(*args)
 
     def sites(self) -> list[SiteSeen]:
-        return [line for line in self.pipe.lines if isinstance(line, SiteSeen)]
+        return [line for line in self.writer.lines if isinstance(line, SiteSeen)]
 
     def mutated(
         self,

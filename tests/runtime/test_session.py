@@ -103,7 +103,7 @@ def test_a_call_through_library_code_counts_for_the_programs_line(make_stage: Ma
 def test_the_first_act_is_reported_at_once(make_stage: Make) -> None:
     stage = make_stage(ROBOT, "from robot import move\n\ndef run():\n    move(0.1)\n", VOCABULARY)
     stage.mutated("reverse", "x")
-    told = [line for line in stage.pipe.lines if isinstance(line, Acted)]
+    told = [line for line in stage.writer.lines if isinstance(line, Acted)]
     assert told == [Acted("test", in_call=True), Acted("test", in_call=False), Acted("test")]
 
 
@@ -113,14 +113,14 @@ def test_the_fatal_control_reports_that_it_acts_before_anybody_can_wait_for_what
     stage = make_stage(ROBOT, "from robot import move\n\ndef run():\n    move(0.1)\n", VOCABULARY)
     with pytest.raises(FatalFault):
         stage.mutated("fatal", None)
-    assert [line for line in stage.pipe.lines if isinstance(line, Acted)] == [Acted("test")]
+    assert [line for line in stage.writer.lines if isinstance(line, Acted)] == [Acted("test")]
 
 
 def test_a_mutant_that_changes_nothing_has_hits_but_did_not_act(make_stage: Make) -> None:
     stage = make_stage(ROBOT, "from robot import move\n\ndef run():\n    move(0.0)\n", VOCABULARY)
     _, activation = stage.mutated("reverse", "x")
     assert (activation.evidence.hits, activation.evidence.acted) == (1, 0)
-    assert not any(isinstance(line, Acted) for line in stage.pipe.lines)
+    assert not any(isinstance(line, Acted) for line in stage.writer.lines)
 
 
 def test_a_refusal_of_the_mutated_call_is_noted(make_stage: Make) -> None:
@@ -241,7 +241,7 @@ def test_a_clock_that_gives_no_number_is_a_problem_and_leaves_the_program_alone(
     stage = make_stage(robot, program, f'clock = {clock}\n[[operation]]\ncall = "robot:Simulation.step"\n')
     session = stage.session()
     assert stage.run(session) == [None, 10.0]
-    (problem,) = [line for line in stage.pipe.lines if isinstance(line, Problem)]
+    (problem,) = [line for line in stage.writer.lines if isinstance(line, Problem)]
     assert (problem.source, problem.key) == ("robot.toml:1 · clock", "time")
     assert all(word in problem.text for word in [*words, "step = …"])
 
@@ -270,7 +270,7 @@ def test_an_operator_that_fails_is_a_failure_of_the_tool_not_of_the_program(make
 def test_an_exception_that_does_not_exist_is_reported(make_stage: Make, name: str, words: str) -> None:
     stage = make_stage(ROBOT, "X = 1\n", VOCABULARY.replace("robot:Refused", name))
     stage.session().inspect_targets()
-    assert any(isinstance(line, Problem) and words in line.text for line in stage.pipe.lines)
+    assert any(isinstance(line, Problem) and words in line.text for line in stage.writer.lines)
 
 
 @pytest.mark.parametrize(
@@ -284,7 +284,7 @@ def test_a_function_that_is_to_make_an_answer_must_be_one(make_stage: Make, name
         """
     stage = make_stage("LIMIT = 3\n\ndef move():\n    pass\n", "X = 1\n", vocabulary)
     stage.session().inspect_targets()
-    (problem,) = [line for line in stage.pipe.lines if isinstance(line, Problem)]
+    (problem,) = [line for line in stage.writer.lines if isinstance(line, Problem)]
     assert problem.key == "idle"
     assert words.rpartition(":")[2] in problem.text
 

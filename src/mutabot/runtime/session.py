@@ -52,7 +52,7 @@ class Session:
 
     Args:
         job: what to do.
-        pipe: where reports go.
+        writer: where reports go.
         locator: finds the site of a frame, and of a function that is called back.
 
     Attributes:
@@ -79,8 +79,8 @@ class Session:
     call_sites: CallSites
     call_targets: CallTargets
 
-    def __init__(self, job: Job, pipe: EventWriter, locator: Locator) -> None:
-        self.job, self.pipe, self.locator = job, pipe, locator
+    def __init__(self, job: Job, writer: EventWriter, locator: Locator) -> None:
+        self.job, self.writer, self.locator = job, writer, locator
         self.recorder = Recorder(self._site_seen)
         self.recording = TestRecording(self._simulated, self.untracked, job.vocabulary.clock is not None)
         self.instances = Instances()
@@ -114,7 +114,7 @@ class Session:
 
     def install(self) -> None:
         """Intercept all operations of the vocabulary, and activate the mutant."""
-        self.text = SessionText.of(self.job, self.pipe, self.acted)
+        self.text = SessionText.of(self.job, self.writer, self.acted)
         if self.returns is not None:
             self.returns.install()  # after the alternatives, which are found by where they stand
         vocabulary = self.job.vocabulary
@@ -294,15 +294,15 @@ class Session:
             self.text.alternatives.activate()
         self._take_on(mutant, activation)
 
-    def take_on(self, job: Job, pipe: EventWriter) -> None:
+    def take_on(self, job: Job, writer: EventWriter) -> None:
         """Continue with a job of the same program and vocabulary. What was installed stays."""
-        self.job, self.pipe = job, pipe
+        self.job, self.writer = job, writer
         self.inspection.is_asked = job.inspect
         self._find_answer_readers()
         self.dispatcher.on_end = self.inspection.note if job.inspect else None
         self._report_replacements()
         if self.text is not None:
-            self.text.pipe = pipe
+            self.text.writer = writer
 
     def start_test(self, test: str, fixtures: Callable[[], Iterable[Any]] | None = None) -> None:
         """Begin a test, before its fixtures.
@@ -311,7 +311,7 @@ class Session:
         """
         if self.meter is not None and not self.test:  # the first test
             for call in self.recorder.trace:
-                self.pipe.send(Called(*call))
+                self.writer.send(Called(*call))
         self.test = test
         self.note_modules()
         self.dispatcher.meter = Meter(self.job.simulated.get(test), self.job.spare)
@@ -485,11 +485,11 @@ class Session:
         return frozenset((*operation.refusals, *self.job.vocabulary.refusals))
 
     def _send(self, line: Event) -> None:
-        self.pipe.send(line)  # which is another one once a copy knows its job
+        self.writer.send(line)  # which is another one once a copy knows its job
 
     def _site_seen(self, site: SiteSeen) -> None:
         if not self.is_fork:  # a fork sends its sites with its end
-            self.pipe.send(site)
+            self.writer.send(site)
 
     def acted(self) -> None:
         """Report that the fault changed something in the running test."""
@@ -501,7 +501,7 @@ class Session:
 
     def _report_acted(self, seconds: float | None) -> None:
         self.recording.note_fault(len(self.recorder.trace), seconds)
-        self.pipe.send(Acted(self.test))
+        self.writer.send(Acted(self.test))
 
     def _simulated(self) -> float | None:
         meter = self.dispatcher.meter
@@ -509,7 +509,7 @@ class Session:
 
     def in_mutated_call(self, began: bool) -> None:
         """Mark the start of a mutated call, by its time, or its end, by None."""
-        self.pipe.send(Acted(self.test, began))
+        self.writer.send(Acted(self.test, began))
 
     def _clock_is_wrong(self, key: str, text: str) -> None:
         clock = self.job.vocabulary.clock

@@ -52,7 +52,7 @@ class SessionHooks:
 
     Args:
         job: the job at hand.
-        pipe: what takes the events; those of a server's session wait for its copies.
+        event_file: what takes the events; those of a server's session wait for its copies.
         server: forks a copy of this process for each job that comes; None if it runs its job itself.
 
     Attributes:
@@ -62,11 +62,11 @@ class SessionHooks:
 
     _files: PrivateFiles
 
-    def __init__(self, job: Job, pipe: EventFile, server: ForkServer | None = None) -> None:
+    def __init__(self, job: Job, event_file: EventFile, server: ForkServer | None = None) -> None:
         self.config: pytest.Config | None = None
         self._held = Held()
         self.locator = Locator(job.root, job.program, job.oracle)
-        self.session = Session(job, pipe if server is None else self._held, self.locator)
+        self.session = Session(job, event_file if server is None else self._held, self.locator)
         self.tests = TestHooks(self.session)
         self._server = server
         self._collected: tuple[str, ...] = ()
@@ -91,7 +91,7 @@ class SessionHooks:
             limit_memory(job.memory)
         # what the program draws while it is imported is the same in all rounds: a server imports it once
         seeds.seed_all(seeds.derive(job.seed, "import"))
-        pipe = EventFile.of_session(home, job.key, descriptor)
+        event_file = EventFile.of_session(home, job.key, descriptor)
         if job.serving is not None:
             from mutabot.runtime.isolation import collector  # noqa: PLC0415  # of no use to others
             from mutabot.runtime.isolation.fork_server import ForkServer  # noqa: PLC0415
@@ -101,11 +101,11 @@ class SessionHooks:
                 preload()
             hooks = cls(
                 job,
-                pipe,
-                ForkServer(job.serving, pipe, LOG, home, job.private_files, not _tests_us(job)),
+                event_file,
+                ForkServer(job.serving, event_file, LOG, home, job.private_files, not _tests_us(job)),
             )
         else:
-            hooks = cls(job, pipe)
+            hooks = cls(job, event_file)
             if job.pictures is not None:  # before its folder is hidden from this process
                 hooks.session.recording.film(job.pictures)
             hooks._make_private(job, home)
@@ -138,10 +138,10 @@ class SessionHooks:
             fault_runner.preload(job.active.values())
             compile_all()
             track_event_loops()
-            pipe, tests = self.session.pipe, job.tests or ()
-            assert isinstance(pipe, EventFile)
+            event_file, tests = self.session.writer, job.tests or ()
+            assert isinstance(event_file, EventFile)
             more = (job.active, self._become, has_nodes, members.have_begun)
-            self.session.grow(ForkParent(job.forking, tests, pipe, self._files, *more))
+            self.session.grow(ForkParent(job.forking, tests, event_file, self._files, *more))
 
     def _become(self, mutant: Mutant, folder: str) -> None:
         """Continue as this mutant, in a process that was just forked."""
@@ -219,7 +219,7 @@ class SessionHooks:
             if self.tests.fork is not None:
                 self.tests.fork.end_test(end)
             else:
-                self.session.pipe.send(end)
+                self.session.writer.send(end)
 
     def pytest_internalerror(self, excinfo: pytest.ExceptionInfo[BaseException]) -> None:
         """Report a hook that fails: ours, or one that noticed a mutant which acted before any test."""
@@ -256,10 +256,10 @@ class SessionHooks:
         self._server = None
         job = read_job(home)
         self._make_private(job, home)
-        pipe = EventFile.of_session(home, job.key, descriptor)
-        self.session.take_on(job, pipe)
+        event_file = EventFile.of_session(home, job.key, descriptor)
+        self.session.take_on(job, event_file)
         for event in self._held.events:
-            pipe.send(event)
+            event_file.send(event)
         self._select(session.items)
         _keep_cache_in(session.config, home)
         self._begin(home)
@@ -286,7 +286,7 @@ class SessionHooks:
             self._errors.append(members.children.doubt)
         not_private = self._files.why_not if self.job.private_files else None
         facts = (self._collected, tuple(self._errors), not_private, self._gone)
-        self.session.pipe.send(SessionEnd(int(exitstatus), *facts, self.session.evidence.acted > 0))
+        self.session.writer.send(SessionEnd(int(exitstatus), *facts, self.session.evidence.acted > 0))
 
 
 def _is_own_failure(excinfo: pytest.ExceptionInfo[BaseException]) -> bool:

@@ -77,7 +77,7 @@ class ForkedRun:
         """Report the end of the session; the parent reports the exit code."""
         self._parent.note_test(self.mutant.id)
         self._parent.note_finished(self.mutant.id)
-        self._session.pipe.send(
+        self._session.writer.send(
             ForkSessionEnd((self.mutant.id,), 0, tuple(errors), gone, self._session.evidence.acted > 0)
         )
 
@@ -89,7 +89,7 @@ class ForkedRun:
         fork_end = ForkTestEnd(
             self.mutant.id, end, tuple(sites), self._shared, self._is_early, is_test_control
         )
-        self._session.pipe.send(fork_end)
+        self._session.writer.send(fork_end)
 
     def _on_audit_event(self, event: str, arguments: tuple[Any, ...]) -> None:
         """Make the first process that the program starts the mutant as well."""
@@ -186,7 +186,7 @@ class TestHooks:
         if self.fork is None:
             if session.fork_parent is not None:
                 session.fork_parent.end_test()
-            session.pipe.send(end)
+            session.writer.send(end)
         if session.job.stop_at_kill and end.is_decided:
             # as after a failure with ``-x``: of an interruption pytest would lay out a traceback, which takes
             # longer than a short suite
@@ -199,10 +199,10 @@ class TestHooks:
         self.looks.clear()
         session = self.session
         if self.fork is None:  # else the controller would take it for the parent's test
-            session.pipe.send(TestStart(test))
+            session.writer.send(TestStart(test))
         limit = watched_by_faulthandler(item)
         if limit is not None:
-            session.pipe.send(limit)
+            session.writer.send(limit)
         seeds.seed_all(seeds.derive(session.job.seed, session.job.round, test))
         if session.fork_parent is not None:
             session.fork_parent.begin_test(test)
@@ -230,7 +230,7 @@ class TestHooks:
     def pytest_timeout_set_timer(self, item: pytest.Item, settings: Any) -> None:
         """Report that pytest-timeout watches a test, as its thread ends the process without a report."""
         if settings.method == "thread":
-            self.session.pipe.send(watched(node_id(item), settings.timeout, "pytest-timeout"))
+            self.session.writer.send(watched(node_id(item), settings.timeout, "pytest-timeout"))
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_call(self, item: pytest.Item) -> None:

@@ -31,7 +31,7 @@ NODE = """
     program.run(client)
     take_away(session)
     member._member = object()
-    stage.pipe.send = told
+    stage.writer.send = told
     print("begins", flush=True)
     for _ in range(2):
         _, client, activation = stage.again(program, sys.argv[2])

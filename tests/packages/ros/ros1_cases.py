@@ -495,7 +495,7 @@ def problems(stage: Stage) -> list[tuple[str, str]]:
     session = stage.session(inspect=True)
     stage.run(session)
     session.inspect_targets()
-    return [(line.key, line.text) for line in stage.pipe.lines if isinstance(line, Problem)]
+    return [(line.key, line.text) for line in stage.writer.lines if isinstance(line, Problem)]
 
 
 @pytest.mark.parametrize(

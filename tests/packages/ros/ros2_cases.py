@@ -644,7 +644,7 @@ def test_what_does_not_fit_a_type_is_told_with_the_nearest_name(make: Making) ->
     session = stage.session(inspect=True)
     stage.run(session)
     session.finish()
-    said = [line for line in stage.pipe.lines if isinstance(line, Problem)]
+    said = [line for line in stage.writer.lines if isinstance(line, Problem)]
     texts = " ".join(str(finding) for finding in said)
     assert "geometry_msgs/Twist has no field 'liner'" in texts
     assert "std_srvs has no SetBol among its services" in texts

@@ -113,7 +113,7 @@ def test_a_path_leads_into_a_container(make_stage: Make, given: str, path: str) 
         assert Path.parse(path, rooted=False).get(changed) == -0.25
         assert Path.parse(path, rooted=False).get(original) == 0.25
         assert type(changed) is type(original)
-    assert not [line for line in stage.pipe.lines if isinstance(line, Problem)]
+    assert not [line for line in stage.writer.lines if isinstance(line, Problem)]
 
 
 @pytest.mark.needs("catalogue")

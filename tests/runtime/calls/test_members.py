@@ -100,7 +100,7 @@ def test_a_mutant_hands_over_a_real_member(
     assert (changed, type(changed)) == (expected, type(expected))
     assert kept != expected
     assert activation.evidence.acted == 1
-    assert not [line for line in stage.pipe.lines if isinstance(line, Problem)]
+    assert not [line for line in stage.writer.lines if isinstance(line, Problem)]
 
 
 @pytest.mark.parametrize(
@@ -129,7 +129,7 @@ def test_a_value_that_no_member_fits_is_a_problem(
     session = stage.session(inspect=True)
     stage.run(session)
     session.inspect_targets()
-    told = {(line.key, line.text) for line in stage.pipe.lines if isinstance(line, Problem)}
+    told = {(line.key, line.text) for line in stage.writer.lines if isinstance(line, Problem)}
     assert told == {("arguments.state", words), ("result.[0]", words)}
 
 

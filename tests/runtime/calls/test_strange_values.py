@@ -70,9 +70,9 @@ def test_it_is_said_once_what_to_describe_instead(stage: Stage) -> None:
     for _ in range(2):
         stage.run(session, "run", stage.load_robot().Arm())
     session.finish()
-    said = [line for line in stage.pipe.lines if isinstance(line, Remark) and "not plain data" in line.text]
+    said = [line for line in stage.writer.lines if isinstance(line, Remark) and "not plain data" in line.text]
     assert sorted(line.key for line in said) == ["arguments.dx", "result.result"]
-    (problem,) = (line for line in stage.pipe.lines if isinstance(line, Problem))
+    (problem,) = (line for line in stage.writer.lines if isinstance(line, Problem))
     assert "the bus is down" in problem.text
 
 

@@ -159,7 +159,7 @@ def test_a_command_that_no_pattern_takes_is_left_alone(
 
 
 def problems(stage: Stage) -> list[Problem]:
-    return [line for line in stage.pipe.lines if isinstance(line, Problem)]
+    return [line for line in stage.writer.lines if isinstance(line, Problem)]
 
 
 @pytest.mark.parametrize(

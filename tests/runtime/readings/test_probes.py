@@ -199,7 +199,7 @@ def test_a_current_of_the_same_object_can_be_asked(make_stage: Make) -> None:
         f'{moving}current = "robot:Arm.pose"\n{reading}',
     )
     inspect(stage)
-    assert not [line for line in stage.pipe.lines if isinstance(line, Problem)]
+    assert not [line for line in stage.writer.lines if isinstance(line, Problem)]
 
 
 def test_a_result_path_is_refused_only_if_no_result_has_it(make_stage: Make) -> None:
@@ -208,7 +208,7 @@ def test_a_result_path_is_refused_only_if_no_result_has_it(make_stage: Make) -> 
     program = "import robot\n\ndef run():\n    robot.locate(False)\n    robot.locate(True)\n"
     good, bad = (make_stage(robot, program, vocabulary.format(index)) for index in (0, 1))
     inspect(good)
-    assert not [line for line in good.pipe.lines if isinstance(line, Problem)]
+    assert not [line for line in good.writer.lines if isinstance(line, Problem)]
     assert problem_of(bad).key == "result.[1]"
 
 
@@ -220,7 +220,7 @@ def inspect(stage: Stage) -> None:
 
 def problem_of(stage: Stage) -> Problem:
     inspect(stage)
-    return next(line for line in stage.pipe.lines if isinstance(line, Problem))
+    return next(line for line in stage.writer.lines if isinstance(line, Problem))
 
 
 CALLED = {

@@ -139,7 +139,7 @@ def test_a_target_that_does_not_exist_is_reported_with_what_there_is(
     stage = make_stage(ROBOT, "import robot\n\ndef run():\n    robot.move(1.0)\n", operation(target))
     session = stage.session()
     stage.run(session)
-    problem = next(line for line in stage.pipe.lines if isinstance(line, Problem))
+    problem = next(line for line in stage.writer.lines if isinstance(line, Problem))
     assert problem.name == name
     assert known in problem.known
     assert "robot.toml" in problem.source
@@ -148,7 +148,7 @@ def test_a_target_that_does_not_exist_is_reported_with_what_there_is(
 def test_a_class_is_not_an_operation(make_stage: Make) -> None:
     stage = make_stage(ROBOT, "import robot\n\ndef run():\n    robot.Arm()\n", operation("Arm"))
     stage.run(stage.session())
-    assert any(isinstance(line, Problem) and "is a class" in line.text for line in stage.pipe.lines)
+    assert any(isinstance(line, Problem) and "is a class" in line.text for line in stage.writer.lines)
 
 
 def test_an_argument_that_does_not_exist_is_reported(make_stage: Make) -> None:
@@ -157,7 +157,7 @@ def test_an_argument_that_does_not_exist_is_reported(make_stage: Make) -> None:
     session = stage.session()
     stage.run(session)
     session.inspect_targets()
-    problem = next(line for line in stage.pipe.lines if isinstance(line, Problem))
+    problem = next(line for line in stage.writer.lines if isinstance(line, Problem))
     assert (problem.name, problem.known) == ("dx", ("x",))
 
 
@@ -165,7 +165,7 @@ def test_a_module_that_cannot_be_imported_is_reported(make_stage: Make) -> None:
     stage = make_stage(ROBOT, "X = 1\n", operation("move").replace("robot:", "no_such_robot:"))
     session = stage.session()
     session.inspect_targets()
-    assert any(isinstance(line, Problem) and "no_such_robot" in line.text for line in stage.pipe.lines)
+    assert any(isinstance(line, Problem) and "no_such_robot" in line.text for line in stage.writer.lines)
 
 
 def test_two_tasks_at_once_do_not_hide_each_others_operations(make_stage: Make) -> None:

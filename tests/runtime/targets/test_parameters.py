@@ -130,7 +130,7 @@ def test_a_decorated_method_is_read_by_the_signature_that_the_vocabulary_gives(
 
 
 def remarks(stage: Stage) -> list[Remark]:
-    return [line for line in stage.pipe.lines if isinstance(line, Remark)]
+    return [line for line in stage.writer.lines if isinstance(line, Remark)]
 
 
 def looked_at(stage: Stage) -> list[Remark]:
@@ -174,7 +174,7 @@ def test_nothing_is_remarked_where_the_arguments_can_be_told_apart(
 ) -> None:
     stage = make_stage(robot, "import robot\n", vocabulary)
     assert not looked_at(stage)
-    assert not stage.pipe.lines
+    assert not stage.writer.lines
 
 
 @pytest.mark.parametrize("when", ["", 'when = { argument = "data", value = "x" }\n'], ids=["", "some calls"])
@@ -183,7 +183,7 @@ def test_a_signature_that_does_not_take_a_call_is_a_problem(make_stage: Make, wh
         NATIVE, program_with(f"group({DATA}, ':', 2)"), vocabulary_with("(data, bytes_per_sep)") + when
     )
     assert stage.run(stage.session()) == FROM_RIGHT
-    (problem,) = [line for line in stage.pipe.lines if isinstance(line, Problem)]
+    (problem,) = [line for line in stage.writer.lines if isinstance(line, Problem)]
     assert problem.key == "signature"
     assert problem.text == "(data, bytes_per_sep) does not take the call (…, …, …)"
 
@@ -194,11 +194,11 @@ def test_a_call_that_the_callable_itself_refuses_is_no_problem(make_stage: Make,
     stage = make_stage(NATIVE, program_with("swap()"), vocabulary)
     with pytest.raises(TypeError):
         stage.run(stage.session())
-    assert not [line for line in stage.pipe.lines if isinstance(line, Problem)]
+    assert not [line for line in stage.writer.lines if isinstance(line, Problem)]
 
 
 def test_an_argument_that_is_none_is_one_that_the_call_does_not_give(make_stage: Make) -> None:
     robot = "def move(pose=None):\n    return pose\n"
     stage = make_stage(robot, program_with("move()"), vocabulary_with(None, "move", '"pose[0]"'))
     assert stage.run(stage.session()) is None
-    assert not [line for line in stage.pipe.lines if isinstance(line, Problem)]
+    assert not [line for line in stage.writer.lines if isinstance(line, Problem)]

@@ -205,7 +205,7 @@ def test_check_says_what_stood_in_and_what_was_left_alone(stage: Stage) -> None:
         stage.run(session, "run" if number < 2 else "by_keyword", arm)
         session.end_test()
     session.finish()
-    told = {line.key: line.text for line in stage.pipe.lines if isinstance(line, Remark)}
+    told = {line.key: line.text for line in stage.writer.lines if isinstance(line, Remark)}
     assert told["call"] == "it is replaced by a mock in 2 tests"
     assert "1 call of this name left alone" in told["method"]
     assert told["method"].endswith('if it is, write method = "move_by"')
@@ -219,7 +219,7 @@ def test_check_calls_no_operation_left_alone_that_is_kept_under_the_name_of_anot
     session.end_test()
     session.finish()
     assert [written for _, written, *_ in session.recorder.trace] == [{"dx": 0.5}]
-    assert not [line for line in stage.pipe.lines if isinstance(line, Remark) and line.key == "method"]
+    assert not [line for line in stage.writer.lines if isinstance(line, Remark) and line.key == "method"]
 
 
 def test_a_method_counts_for_whatever_object_has_it(make_stage: Make) -> None:

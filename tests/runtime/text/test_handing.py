@@ -283,7 +283,7 @@ def test_check_says_what_cannot_be_placed(stage: Stage) -> None:
         pool.submit(action, 0.5).result()
     session.end_test()
     session.finish()
-    told = [line.text for line in stage.pipe.lines if isinstance(line, Remark)]
+    told = [line.text for line in stage.writer.lines if isinstance(line, Remark)]
     assert session.recorder.trace == []
     several = "handed on in several places and called in a thread or by an operation in 1 test"
     assert told == [f"it is replaced by a mock in 1 test; {several}: such calls are not mutated"]

@@ -89,7 +89,7 @@ class ForkParent:
     Attributes:
         forking: the mutants, and what children may use.
         tests: the tests of the session, in their order.
-        pipe: the file of events.
+        event_file: the file of events.
         files: those of this process, which keep a child apart from it.
         active: how each mutant becomes active, by its id.
         become: called in a child, with its mutant and its folder: it goes on as that mutant.
@@ -99,7 +99,7 @@ class ForkParent:
 
     forking: Forking
     tests: tuple[str, ...]
-    pipe: EventFile
+    event_file: EventFile
     files: PrivateFiles
     active: Mapping[str, Activation]
     become: Callable[[Mutant, str], None]
@@ -137,7 +137,7 @@ class ForkParent:
         due = {mutant.id for mutant in self._live.get(key, ())} - self._gone
         if due and self.has_nodes:
             self._gone |= due
-            self.pipe.send(Unforked(test, tuple(sorted(due)), _NODES))
+            self.event_file.send(Unforked(test, tuple(sorted(due)), _NODES))
         self.reach(key)
 
     @property
@@ -179,7 +179,7 @@ class ForkParent:
             for mutant in self._live[at_text(place, index)]
         }
         if same:
-            self.pipe.send(Undiverged(self._test, same))
+            self.event_file.send(Undiverged(self._test, same))
 
     def _fork(self, mutants: Iterable[Mutant]) -> None:
         due = [mutant for mutant in mutants if mutant.id not in self._gone]
@@ -194,7 +194,7 @@ class ForkParent:
             due = self._wanted(due)
             reason = forkable.STARTED if self._is_overtaken() else self.files.forbids_fork()
             if due and (reason := reason or forkable.why_not(own, self._known)) is not None:
-                self.pipe.send(Unforked(self._test, tuple(mutant.id for mutant in due), reason))
+                self.event_file.send(Unforked(self._test, tuple(mutant.id for mutant in due), reason))
             elif due:
                 self._fork_each([self._test_control_of(due[0]), *due] if self._number >= 0 else due)
 
@@ -204,7 +204,7 @@ class ForkParent:
             return mutants
         unwanted = tuple(mutant.id for mutant in mutants if mutant.family != Identity.family)
         if unwanted:
-            self.pipe.send(Unforked(self._test, unwanted, _INTERRUPTED))
+            self.event_file.send(Unforked(self._test, unwanted, _INTERRUPTED))
         return [mutant for mutant in mutants if mutant.family == Identity.family]
 
     def _test_control_of(self, mutant: Mutant) -> Mutant:
@@ -235,7 +235,7 @@ class ForkParent:
                     self._give_back()
             self._take_token()
         if self._test_controls:
-            self.pipe.send(TestControls(self._test, self._test_controls))
+            self.event_file.send(TestControls(self._test, self._test_controls))
 
     def _is_overtaken(self) -> bool:
         """Return whether processes were started before any test, which ran as the original."""
@@ -259,7 +259,7 @@ class ForkParent:
             is_test_control = self.is_test_control(mutant)
             is_control = mutant.family == Identity.family
             child = Child(
-                mutant.id, is_control, is_test_control, self.pipe.forks, pids, self._number, deadline
+                mutant.id, is_control, is_test_control, self.event_file.forks, pids, self._number, deadline
             )
             self._children[pids.fork] = child
             self._take_token()
@@ -275,7 +275,7 @@ class ForkParent:
         state, loop = random.getstate(), forkable.running_loop()
         sys.stdout.flush()
         sys.stderr.flush()
-        self.pipe.forks += 1
+        self.event_file.forks += 1
         reading, writing = os.pipe()
         self._forking = True
         try:
@@ -302,10 +302,10 @@ class ForkParent:
     def _begin_child(self, mutant: Mutant, began: float) -> None:
         """Release what belongs to the parent, and become the mutant."""
         os.setsid()  # it leads its group and session, as a test process does
-        self.pipe.continue_separately()
+        self.event_file.continue_separately()
         try:
-            folder = self.files.enter(self.pipe.name)
-            self.pipe.keep_number()
+            folder = self.files.enter(self.event_file.name)
+            self.event_file.keep_number()
             namespaces.leave_out(monotonic() - began)
         except OSError as error:
             try:
@@ -316,7 +316,7 @@ class ForkParent:
 
     def _report_unforked(self, mutant: Mutant, error: OSError) -> None:
         why = f"a fork cannot be isolated: {error.strerror or error}"
-        self.pipe.send(Unforked(self._test, (mutant.id,), why))
+        self.event_file.send(Unforked(self._test, (mutant.id,), why))
 
     def _note_copy(self) -> None:
         """Note that this process is about to be forked."""
@@ -405,7 +405,7 @@ class ForkParent:
 
     def _hold(self, count: int) -> None:
         self._held = count
-        self.pipe.send(TokensHeld(count))
+        self.event_file.send(TokensHeld(count))
 
     def _wait(self, other: int | None = None) -> list[int]:
         """Wait until children end or exceed their limit, or ``other`` is readable. Return the ended ones."""
@@ -451,11 +451,11 @@ class ForkParent:
         is_told = code in (DECIDED, STOPPED) or child.is_test_control or (code >= 0 and self._finished[slot])
         died = None
         if child.is_unwanted and not is_told:
-            self.pipe.send(Unforked(self._test, (child.mutant,), _INTERRUPTED))
+            self.event_file.send(Unforked(self._test, (child.mutant,), _INTERRUPTED))
         elif not is_told or (child.overdue and not child.is_test_control):
             test, deadline = self._name_of(self._tests[slot]), child.deadline
             died = ForkDied(
                 child.mutant, test, code, deadline.overdue(test) if child.overdue else None,
                 hindered=deadline.hindered, is_starved=deadline.is_starved,
             )  # fmt: skip
-        self.pipe.send(ForkEnded(child.fork, code, died))
+        self.event_file.send(ForkEnded(child.fork, code, died))

@@ -37,7 +37,7 @@ class ForkServer:
 
     Attributes:
         descriptor: a socket on which each message is the folder of a job, with the writing end of a pipe.
-        pipe: where the server itself reports.
+        event_file: where the server itself reports.
         log: name of the file for what a process prints, in its folder.
         home: the server's folder.
         is_private: whether the files of copies are to be private.
@@ -45,7 +45,7 @@ class ForkServer:
     """
 
     descriptor: int
-    pipe: EventFile
+    event_file: EventFile
     log: str
     home: str
     is_private: bool
@@ -63,7 +63,7 @@ class ForkServer:
         if reason is None and not (self.is_private and may_be_private()):
             reason = "its files are not private"
         reason = reason or why_not((), self._known)
-        self.pipe.send(Serving(reason))
+        self.event_file.send(Serving(reason))
         if reason is not None:
             return None
         if self.may_remember:
@@ -102,7 +102,7 @@ class ForkServer:
                 end(pid, signal.SIGKILL)
         _, status = os.waitpid(pid, 0)
         os.close(pidfd)
-        self.pipe.send(ForkEnded(pid, os.waitstatus_to_exitcode(status)))
+        self.event_file.send(ForkEnded(pid, os.waitstatus_to_exitcode(status)))
 
     def _fork(self, jobs: socket.socket) -> bool:
         """Fork for the next job. Return True in the copy."""
@@ -112,14 +112,14 @@ class ForkServer:
         pid = os.fork()
         if pid:
             self._copies[os.pidfd_open(pid)] = pid
-            self.pipe.send(Serving(copy=pid))
+            self.event_file.send(Serving(copy=pid))
             return False
         os.setsid()
         die_with_parent(server)
         jobs.close()
         for pidfd in self._copies:
             os.close(pidfd)
-        self.pipe.close()
+        self.event_file.close()
         return True
 
     def _begin(self, home: str) -> str:

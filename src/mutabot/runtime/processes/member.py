@@ -45,7 +45,7 @@ class TextOnly:
 
     Args:
         job: what to do.
-        pipe: where reports go.
+        writer: where reports go.
 
     Attributes:
         text: the program text, if it is instrumented.
@@ -59,8 +59,8 @@ class TextOnly:
     is_fork = False
     seconds: float | None = None
 
-    def __init__(self, job: Job, pipe: EventWriter) -> None:
-        self.job, self.pipe = job, pipe
+    def __init__(self, job: Job, writer: EventWriter) -> None:
+        self.job, self.writer = job, writer
         self.text: SessionText | None = None
         self.test = ""
         self.meter = Meter()
@@ -68,7 +68,7 @@ class TextOnly:
 
     def install(self) -> None:
         """Instrument the program from now on, with the mutant."""
-        self.text = SessionText.of(self.job, self.pipe, self.acted)
+        self.text = SessionText.of(self.job, self.writer, self.acted)
         if self.job.mutant is not None:
             activation = self.job.active[self.job.mutant.id]
             self._fault = TextMutant(self.job.mutant, activation.data, self)
@@ -103,7 +103,7 @@ class TextOnly:
 
     def acted(self) -> None:
         """Report that the mutant changed something for the first time in a test."""
-        self.pipe.send(events.Acted(self.test))
+        self.writer.send(events.Acted(self.test))
 
 
 #: what a session tells that is written down as it is
@@ -176,9 +176,9 @@ class Member:
         if session.meter is not None:
             session.meter.continue_in_copy()
         self._attend()
-        session.pipe, session.is_fork = self, False  # it tells its own sites, also below a fork
+        session.writer, session.is_fork = self, False  # it tells its own sites, also below a fork
         if session.text is not None:
-            session.text.pipe = self
+            session.text.writer = self
         self._watch_text()
 
     def _attend(self) -> None:
@@ -386,19 +386,19 @@ class Member:
         )
 
 
-def _session(job: Job, pipe: Member) -> Session | TextOnly:
+def _session(job: Job, writer: Member) -> Session | TextOnly:
     text = job.instrumentation
     if text is not None and job.mutant is None and not text.record:
         text = None  # those below a fork parent are the original, and fork for nobody
     job = replace(job, inspect=False, moments={}, evidence=False, instrumentation=text)
     if job.is_of_text:
-        return TextOnly(job, pipe)
+        return TextOnly(job, writer)
     from mutabot import extensions  # noqa: PLC0415  # see above
     from mutabot.runtime.interception.trace import Locator  # noqa: PLC0415
     from mutabot.runtime.session import Session  # noqa: PLC0415
 
     extensions.use(job.extensions)
-    return Session(job, pipe, Locator(job.root, job.program, job.oracle))
+    return Session(job, writer, Locator(job.root, job.program, job.oracle))
 
 
 _watched: tuple[str, Session | TextOnly] | None = None

@@ -66,7 +66,7 @@ class Members:
         self._acted = self._acted or end.acted > 0
         for origin in (events.STARTED, events.FORKED):
             if places := {place for record in here if record.origin == origin for place in record.places}:
-                self._session.pipe.send(events.PlacesReached(end.test, tuple(sorted(places)), origin))
+                self._session.writer.send(events.PlacesReached(end.test, tuple(sorted(places)), origin))
         end = replace(end, processes=tuple((record.began.pid, record.name) for record in here))
         for child in here:
             child.forget()
@@ -115,7 +115,7 @@ class Members:
                     self._session.inspection.elsewhere.update(event.modules)
                     self._read.update(event.texts)
                 case events.CallsAsked() | events.NotInstrumented() | events.Problem() | events.Remark():
-                    self._session.pipe.send(event)
+                    self._session.writer.send(event)
 
     def _with_recorded(
         self, end: events.TestEnd, here: list[ChildRecord], facts: FactsOfTest
@@ -135,7 +135,7 @@ class Members:
             return
         self._unseen.add(name)
         text = f"nothing in this process is seen or mutated: {why}"
-        self._session.pipe.send(events.Remark("processes", name, text))
+        self._session.writer.send(events.Remark("processes", name, text))
 
 
 def _write_wake(folder: str, job: Job) -> None:

@@ -303,7 +303,7 @@ class SessionText:
     Args:
         root: absolute path of the project.
         instrumentation: what is to stand in the text.
-        pipe: where reports go; a copy of a fork server gets its own.
+        writer: where reports go; a copy of a fork server gets its own.
         on_act: told when the active alternative changes something for the first time in a test.
 
     Attributes:
@@ -317,7 +317,7 @@ class SessionText:
         self,
         root: str,
         instrumentation: Instrumentation,
-        pipe: EventWriter | None = None,
+        writer: EventWriter | None = None,
         on_act: Callable[[], None] = lambda: None,
     ) -> None:
         texts = instrumentation.texts
@@ -329,7 +329,7 @@ class SessionText:
         self.sightings: Sightings | None = None
         if instrumentation.record:
             self.sightings = Sightings(size, self._places)
-        self.pipe: EventWriter = pipe or Held()
+        self.writer: EventWriter = writer or Held()
         self.imported: list[str] = []
         self.problems: dict[str, str] = {}
         self._originals: _Nodes = {}
@@ -337,11 +337,11 @@ class SessionText:
         self._test: str | None = None
 
     @classmethod
-    def of(cls, job: Job, pipe: EventWriter, on_act: Callable[[], None]) -> SessionText | None:
+    def of(cls, job: Job, writer: EventWriter, on_act: Callable[[], None]) -> SessionText | None:
         """Instrument the program from now on; return None if the job has no places in its text."""
         if job.instrumentation is None:
             return None
-        text = cls(job.root, job.instrumentation, pipe, on_act)
+        text = cls(job.root, job.instrumentation, writer, on_act)
         text.install()
         return text
 
@@ -406,7 +406,7 @@ class SessionText:
 
     def _refuse(self, text: ProgramText, reason: str) -> None:
         self.problems[text.file] = reason
-        self.pipe.send(NotInstrumented(text.file, reason))
+        self.writer.send(NotInstrumented(text.file, reason))
 
     @property
     def is_mutant(self) -> bool:
@@ -443,7 +443,7 @@ class SessionText:
             self._note_unseen()
             imported = dict.fromkeys([*self.imported, *(file for other in others for file in other.imported)])
             seen = [*self.sightings.seen(), *(seen for other in others for seen in other.sightings)]
-            self.pipe.send(TextsSeen(tuple(imported), tuple(seen)))
+            self.writer.send(TextsSeen(tuple(imported), tuple(seen)))
 
     def _note_unseen(self) -> None:
         """Report files that were imported without being compiled here."""
@@ -464,7 +464,7 @@ class SessionText:
 
     def _report_reached(self) -> None:
         assert self.sightings is not None
-        self.pipe.send(PlacesReached(self._test or "", tuple(sorted(self.sightings.entered))))
+        self.writer.send(PlacesReached(self._test or "", tuple(sorted(self.sightings.entered))))
 
 
 def _file_of(module: Any) -> str:
