@@ -72,9 +72,9 @@ class WorldFault(ActiveFault):
             self._restore(world)
         while self._undo:
             self._undo.pop()()
-        if self.context.test == self.mutant.site.span.file and not self.evidence.acted:
+        if self.context.test == self.mutant.site.span.file and not self.activity.acted:
             self.reached()
-            self.evidence.away[self._missing or _NEVER] = 1
+            self.activity.away[self._missing or _NEVER] = 1
 
     def _wrap(self, reference: str, **what: Any) -> None:
         try:

@@ -22,7 +22,7 @@ from tests.plugins.test_plugins import ERRORS, mutabot
 from mutabot.model import Mutant, Site
 from mutabot.model.activation import Activation
 from mutabot.runtime.active_fault import ActiveFault
-from mutabot.runtime.evidence import Evidence
+from mutabot.runtime.activity import Activity
 from mutabot.runtime.fault_runner import FaultRunner
 from mutabot.runtime.interception.trace import Locator
 
@@ -139,17 +139,17 @@ def test_a_fault_that_cannot_be_taken_away_has_failed(lab: ModuleType, error: st
     exec(f"def end_test(self): raise {error}", found := {})  # type: ignore[var-annotated]
     lab.Slow.end_test = found["end_test"]
     fault = placed(None)
-    assert fault.evidence.failure is None
+    assert fault.activity.failure is None
     fault.end_test()
-    assert (fault.evidence.failure or "").startswith("slow cannot be taken away: ")
+    assert (fault.activity.failure or "").startswith("slow cannot be taken away: ")
 
 
-@pytest.mark.parametrize("evidence", [None, Evidence(hits="many")])  # type: ignore[arg-type]
-def test_evidence_that_cannot_be_read_is_a_failure(lab: ModuleType, evidence: Any) -> None:
+@pytest.mark.parametrize("activity", [None, Activity(hits="many")])  # type: ignore[arg-type]
+def test_activity_that_cannot_be_read_is_a_failure(lab: ModuleType, activity: Any) -> None:
     fault = placed(None)
     own: Any = fault._fault
-    own._evidence = evidence
-    assert "slow cannot be asked what it did: TypeError" in (fault.evidence.failure or "")
+    own._activity = activity
+    assert "slow cannot be asked what it did: TypeError" in (fault.activity.failure or "")
 
 
 #: by its name, what a parameter's fault does wrong, and when
@@ -157,7 +157,7 @@ WRONG = {
     "gravity": "setattr(self.world, 'seconds_to_fall', lambda height: 1 + '1')",
     "colour": "raise SystemExit(0)",
     "mass": "self.end_test = lambda: 1 / 0",
-    "wind": "self._evidence = None",
+    "wind": "self._activity = None",
 }
 
 

@@ -140,7 +140,7 @@ class Stage:
 
         ``index`` counts the sites in the order in which the run came to them, or is the operation of a site:
         messages that come on several ways have no order.
-        Returns the program's result and the activation with its evidence.
+        Returns the program's result and the activation with its activity.
         """
         recording = self.session()
         self.run(recording)

@@ -73,4 +73,4 @@ def test_a_joint_turns_the_other_way(make_stage: Make, arguments: str, signature
     stage = make_stage(ROBOT, program, VOCABULARY.format(signature=line))
     turned, activation = stage.mutated("reverse", "targetPosition")
     assert turned == pytest.approx(-0.5, abs=0.05)
-    assert activation.evidence.example == (0.5, -0.5)
+    assert activation.activity.example == (0.5, -0.5)

@@ -1,4 +1,4 @@
-"""Sites, nesting, evidence, budgets and noise."""
+"""Sites, nesting, activity, budgets and noise."""
 
 from __future__ import annotations
 
@@ -119,20 +119,20 @@ def test_the_fatal_control_reports_that_it_acts_before_anybody_can_wait_for_what
 def test_a_mutant_that_changes_nothing_has_hits_but_did_not_act(make_stage: Make) -> None:
     stage = make_stage(ROBOT, "from robot import move\n\ndef run():\n    move(0.0)\n", VOCABULARY)
     _, activation = stage.mutated("reverse", "x")
-    assert (activation.evidence.hits, activation.evidence.acted) == (1, 0)
+    assert (activation.activity.hits, activation.activity.acted) == (1, 0)
     assert not any(isinstance(line, Acted) for line in stage.writer.lines)
 
 
 def test_a_refusal_of_the_mutated_call_is_noted(make_stage: Make) -> None:
     stage = make_stage(ROBOT, HANDLES_REFUSAL.format(0.9), VOCABULARY)
     _, activation = stage.mutated("reverse", "x")
-    assert activation.evidence.refusal == "-0.9"
+    assert activation.activity.refusal == "-0.9"
 
 
 def test_a_refusal_of_the_original_call_is_no_refusal_of_the_mutant(make_stage: Make) -> None:
     stage = make_stage(ROBOT, HANDLES_REFUSAL.format(2.0), VOCABULARY)
     _, activation = stage.mutated("identity")
-    assert activation.evidence.refusal is None
+    assert activation.activity.refusal is None
 
 
 def test_noise_is_the_same_for_the_same_seed_and_differs_between_hits(make_stage: Make) -> None:
@@ -144,7 +144,7 @@ def test_noise_is_the_same_for_the_same_seed_and_differs_between_hits(make_stage
     again = first.run(first.sessions[-1])
     activation.start(7, 0, "", None, frozenset())
     assert first.run(first.sessions[-1]) == again
-    assert activation.evidence.acted == 3
+    assert activation.activity.acted == 3
 
 
 CLOCKED = """
@@ -256,7 +256,7 @@ def test_an_operator_that_fails_is_a_failure_of_the_tool_not_of_the_program(make
         stage.mutated("by-to", "x")
     activation = stage.sessions[-1].mutant
     assert activation is not None
-    assert "operator by-to" in (activation.evidence.failure or "")
+    assert "operator by-to" in (activation.activity.failure or "")
 
 
 @pytest.mark.parametrize(
@@ -307,7 +307,7 @@ RE_EXPORTING = """
 def test_an_exception_is_known_by_the_name_it_was_re_exported_as(make_stage: Make) -> None:
     stage = make_stage(RE_EXPORTING, HANDLES_REFUSAL.format(0.5), VOCABULARY)
     _, activation = stage.mutated("reverse", "x")
-    assert activation.evidence.refusal is not None
+    assert activation.activity.refusal is not None
 
 
 def test_an_argument_that_cannot_be_read_does_not_hide_later_calls(make_stage: Make) -> None:

@@ -1,4 +1,4 @@
-"""Outcomes: the verdict on a mutant in a round, its place in the score, and its evidence."""
+"""Outcomes: the verdict on a mutant in a round, its place in the score, and how it came about."""
 
 from __future__ import annotations
 
@@ -141,7 +141,7 @@ class Kill:
 
 @frozen
 class Outcome:
-    """The verdict on one mutant in one round, with its evidence.
+    """The verdict on one mutant in one round, and how it came about.
 
     Attributes:
         mutant: the mutant's id.

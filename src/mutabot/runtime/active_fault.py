@@ -11,7 +11,7 @@ from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from mutabot.model.activation import NTH, TEST, Key
-from mutabot.runtime.evidence import Evidence
+from mutabot.runtime.activity import Activity
 
 if TYPE_CHECKING:
     from random import Random
@@ -87,12 +87,12 @@ class ActiveFault(ABC):
         self.mutant, self.data, self.context = mutant, data, context
         self.keys: tuple[Key, ...] = ()
         self.meant: list[BaseException] = []
-        self._evidence = Evidence()
+        self._activity = Activity()
 
     @property
-    def evidence(self) -> Evidence:
+    def activity(self) -> Activity:
         """What the fault did in the running test."""
-        return self._evidence
+        return self._activity
 
     def prepare_process(self) -> None:  # noqa: B027  # most have nothing to prepare
         """Prepare this process, as soon as what the fault awaits exists."""
@@ -114,19 +114,19 @@ class ActiveFault(ABC):
         """Take the fault away, as the test and its fixtures are over."""
 
     def begin_count(self) -> None:
-        """Reset the evidence of the fault for a new test."""
-        self._evidence = Evidence()
+        """Reset the activity of the fault for a new test."""
+        self._activity = Activity()
 
     def reached(self) -> None:
         """Report that the running test used the fault's target unchanged."""
-        self._evidence.hits += 1
+        self._activity.hits += 1
 
     def acts(self, before: Any = None, after: Any = None) -> None:
         """Report that the running test used the fault's target, and that the fault changed it."""
-        self._evidence.hits += 1
-        self._evidence.acted += 1
-        if self._evidence.acted == 1:
-            self._evidence.example = (_plain(before), _plain(after))
+        self._activity.hits += 1
+        self._activity.acted += 1
+        if self._activity.acted == 1:
+            self._activity.example = (_plain(before), _plain(after))
             self.context.acted()
 
     def raising(self, error: BaseException) -> BaseException:

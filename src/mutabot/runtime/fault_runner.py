@@ -21,7 +21,7 @@ from mutabot.model import Mutant
 from mutabot.model.activation import Activation, Key
 from mutabot.operators.command import FatalFault
 from mutabot.runtime.active_fault import ActiveFault, FatalControl, FaultContext
-from mutabot.runtime.evidence import Evidence
+from mutabot.runtime.activity import Activity
 from mutabot.runtime.exceptions import Refusal, everything
 from mutabot.runtime.executed_text import file_of
 from mutabot.runtime.interception.active_mutant import with_refusal
@@ -80,12 +80,12 @@ class FaultRunner:
             wrapt.register_post_import_hook(lambda module: self._imported(is_later=is_later), awaited)
 
     @property
-    def evidence(self) -> Evidence:
+    def activity(self) -> Activity:
         """What the fault did in the running test."""
-        found = Evidence()
+        found = Activity()
         if self._fault is not None:
             with self._guarded("asked what it did"):
-                found = _checked(self._fault.evidence)
+                found = _checked(self._fault.activity)
                 if self._fault.is_of_text:
                     refusals, unknown = self._refusals, self._is_unknown
                     found = replace(found, is_of_text=True, refusals=refusals, is_unknown=unknown)
@@ -127,13 +127,13 @@ class FaultRunner:
 
     def refused(self, error: BaseException, call: Call) -> None:
         """Note that the robot refuses a call, and not in the original: a changed program may cause that."""
-        if self._fault is not None and self._fault.is_of_text and self.evidence.acted:
+        if self._fault is not None and self._fault.is_of_text and self.activity.acted:
             self._refusals = with_refusal(self._refusals, error)
             # the vocabulary says what commands there are; this is none of them
             self._is_unknown = call.operation.message is not None and call.pattern is None
 
     def end_test(self) -> None:
-        """End a test and its fixtures; the fault's evidence is read after this."""
+        """End a test and its fixtures; the fault's activity is read after this."""
         self._is_in_test = False
         if self._fault is not None:
             with self._guarded("taken away"), self.context.untracked():
@@ -214,7 +214,7 @@ def _is_within(name: str, package: str) -> bool:
     return name == package or name.startswith(f"{package}.")
 
 
-def _checked(evidence: Any) -> Evidence:
-    if not isinstance(evidence, Evidence) or {type(evidence.hits), type(evidence.acted)} != {int}:
-        raise TypeError(f"its evidence is {type(evidence).__name__}, not as ActiveFault keeps it")
-    return evidence
+def _checked(activity: Any) -> Activity:
+    if not isinstance(activity, Activity) or {type(activity.hits), type(activity.acted)} != {int}:
+        raise TypeError(f"its activity is {type(activity).__name__}, not as ActiveFault keeps it")
+    return activity

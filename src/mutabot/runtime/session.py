@@ -39,8 +39,8 @@ if TYPE_CHECKING:  # processes below the tests fork for nobody
     from mutabot.model.activation import Activation, Key
     from mutabot.model.job import Job
     from mutabot.model.quantity import Value
+    from mutabot.runtime.activity import Activity
     from mutabot.runtime.event_file import EventWriter
-    from mutabot.runtime.evidence import Evidence
     from mutabot.runtime.interception.active_mutant import MutatedSite
     from mutabot.runtime.isolation.files import PrivateFiles
     from mutabot.runtime.isolation.fork_parent import ForkParent
@@ -232,9 +232,9 @@ class Session:
         return self.dispatcher.meter
 
     @property
-    def evidence(self) -> Evidence:
+    def activity(self) -> Activity:
         """What the mutant did in the running test."""
-        return self.fault.evidence
+        return self.fault.activity
 
     def look_back(self, *, at_all: bool = False) -> None:
         """Check whether the program has written to copies that the mutant passed on."""

@@ -36,7 +36,7 @@ from mutabot.runtime.program_text.returns import Returns
 from mutabot.runtime.seeds import node_id
 from mutabot.runtime.session import Session
 from mutabot.runtime.targets.target import prepare
-from mutabot.runtime.test_end import classify, of_evidence
+from mutabot.runtime.test_end import classify, of_activity
 from mutabot.runtime.test_hooks import ForkedRun, TestHooks
 
 if TYPE_CHECKING:
@@ -177,7 +177,7 @@ class SessionHooks:
         self._errors += [f"several tests are called {name} once that is written in UTF-8" for name in alike]
         missing = [test for test in self.job.tests if test not in by_id]
         new: set[str] = set()
-        if self.session.evidence.acted:  # it is the mutant's doing, and for its suite to judge
+        if self.session.activity.acted:  # it is the mutant's doing, and for its suite to judge
             self._gone = tuple(missing)
             new = by_id.keys() - {*self.job.tests, *self.job.aside}
         elif missing:
@@ -207,15 +207,15 @@ class SessionHooks:
             error: what was raised.
             node: id of what could not be collected; empty for all there is.
         """
-        evidence = self.session.evidence
-        if error is None or not evidence.acted:
+        activity = self.session.activity
+        if error is None or not activity.acted:
             return
         below = (f"{node}::", f"{node}/") if node not in ("", ".") else ("",)
         tests = [test for test in self.job.tests or () if test.startswith(below)]
         for test in tests[:1] if self.job.stop_at_kill else tests:
             file = os.path.join(self.job.root, test.partition("::")[0])
-            end = classify(error, test, file, self.locator, self.job.vocabulary, evidence)
-            end = replace(end, **of_evidence(end, evidence))
+            end = classify(error, test, file, self.locator, self.job.vocabulary, activity)
+            end = replace(end, **of_activity(end, activity))
             if self.tests.fork is not None:
                 self.tests.fork.end_test(end)
             else:
@@ -286,7 +286,7 @@ class SessionHooks:
             self._errors.append(members.children.doubt)
         not_private = self._files.why_not if self.job.private_files else None
         facts = (self._collected, tuple(self._errors), not_private, self._gone)
-        self.session.writer.send(SessionEnd(int(exitstatus), *facts, self.session.evidence.acted > 0))
+        self.session.writer.send(SessionEnd(int(exitstatus), *facts, self.session.activity.acted > 0))
 
 
 def _is_own_failure(excinfo: pytest.ExceptionInfo[BaseException]) -> bool:

@@ -26,7 +26,7 @@ from mutabot.runtime.targets.target import is_named
 if TYPE_CHECKING:
     import doctest
 
-    from mutabot.runtime.evidence import Evidence
+    from mutabot.runtime.activity import Activity
     from mutabot.runtime.interception.trace import Locator
 
 #: where an object lies in memory differs from run to run and says nothing
@@ -40,7 +40,7 @@ FAILED = "failed"
 
 
 def classify(
-    error: BaseException, test: str, file: str, locator: Locator, vocabulary: Vocabulary, evidence: Evidence
+    error: BaseException, test: str, file: str, locator: Locator, vocabulary: Vocabulary, activity: Activity
 ) -> TestEnd:
     """Return the test end that an exception means: why the test failed, and nothing else.
 
@@ -53,7 +53,7 @@ def classify(
         file: its file, whose folder holds the test's own helpers.
     """
     found = leaves(error)
-    culprits = evidence.culprits
+    culprits = activity.culprits
     is_refused = is_due_to(error, culprits)
     counting = [leaf for leaf in found if is_refused or not is_due_to(leaf, culprits)]
     no_checks = [leaf for leaf in counting if not _is_check(leaf, file, locator, vocabulary)]
@@ -69,32 +69,32 @@ def classify(
         place=_place(shown, locator),
         timeout=_lines(shown)[0] if overdue is not None else None,
         failure=failure_in(error, vocabulary.failures),
-        refused=evidence.refusal if is_refused else None,
+        refused=activity.refusal if is_refused else None,
         # a mutant of the program text made a text that is no program or no command
-        invalid=evidence.is_of_text and (is_syntax or (evidence.is_unknown and is_refused)),
+        invalid=activity.is_of_text and (is_syntax or (activity.is_unknown and is_refused)),
     )
 
 
-def of_evidence(end: TestEnd, evidence: Evidence, cause: TestEnd | None = None) -> dict[str, Any]:
-    """Return a mutant's evidence as fields of the end of a test.
+def of_activity(end: TestEnd, activity: Activity, cause: TestEnd | None = None) -> dict[str, Any]:
+    """Return a mutant's activity as fields of the end of a test.
 
     ``cause``: what ended it otherwise: also what a test said that it would do.
     """
     cause = cause or end
-    refusal = evidence.refusal
-    if evidence.is_of_text and cause.refused is None:
+    refusal = activity.refusal
+    if activity.is_of_text and cause.refused is None:
         refusal = None
     # what follows a refusal that is data follows from what the program makes of it
-    is_caught = refusal is not None and evidence.refusing_answer is None
+    is_caught = refusal is not None and activity.refusing_answer is None
     return {
-        "failure": evidence.failure or cause.failure,
+        "failure": activity.failure or cause.failure,
         "invalid": cause.invalid,
         "refused": refusal,
         "caught": is_caught and end.outcome == FAILED and cause.refused is None,
-        "hits": evidence.hits,
-        "acted": evidence.acted,
-        "away": evidence.away,
-        "example": evidence.example,
+        "hits": activity.hits,
+        "acted": activity.acted,
+        "away": activity.away,
+        "example": activity.example,
     }
 
 

@@ -32,7 +32,7 @@ from mutabot.runtime.processes.environment import FORKINGS, STARTS, listen
 from mutabot.runtime.processes.member import watch_forks
 from mutabot.runtime.processes.members import Members
 from mutabot.runtime.seeds import node_id
-from mutabot.runtime.test_end import FAILED, PASSED, classify, of_evidence, outcome_so_far
+from mutabot.runtime.test_end import FAILED, PASSED, classify, of_activity, outcome_so_far
 
 if TYPE_CHECKING:
     from mutabot.runtime.session import Session
@@ -78,7 +78,7 @@ class ForkedRun:
         self._parent.note_test(self.mutant.id)
         self._parent.note_finished(self.mutant.id)
         self._session.writer.send(
-            ForkSessionEnd((self.mutant.id,), 0, tuple(errors), gone, self._session.evidence.acted > 0)
+            ForkSessionEnd((self.mutant.id,), 0, tuple(errors), gone, self._session.activity.acted > 0)
         )
 
     def _report(self, end: TestEnd) -> None:
@@ -140,7 +140,7 @@ class TestHooks:
         self.members: Members | None = None
         self.fork: ForkedRun | None = None
         self.left_out: frozenset[str] = frozenset()
-        self.looks = Looks(lambda: session.evidence.hits > 0)
+        self.looks = Looks(lambda: session.activity.hits > 0)
         self.units = ExecutedUnits(session.job.root)
         self._address: str | None = None
         self._failure: TestEnd | None = None
@@ -282,7 +282,7 @@ class TestHooks:
         if call.excinfo is None:
             return None
         session = self.session
-        known = (session.locator, session.job.vocabulary, session.evidence)
+        known = (session.locator, session.job.vocabulary, session.activity)
         end = classify(call.excinfo.value, node_id(item), str(item.path), *known)
         return replace(end, failure=end.failure or session.failure_in(call.excinfo.value))
 
@@ -290,17 +290,17 @@ class TestHooks:
         if self._outcome == FAILED and self._logged is False:
             self._failure, self._outcome = None, PASSED
         session, returns = self.session, self.session.returns
-        evidence, meter = session.evidence, session.meter
+        activity, meter = session.activity, session.meter
         wall, cpu = monotonic() - self._started[0], self._ran() - self._started[1]
         assert meter is not None
         # of a test that a mutant neither reached nor failed, it is told what was executed in that test alone
         is_mutant = session.job.mutant is not None or self.fork is not None
-        is_alone = is_mutant and not evidence.hits and self._outcome != FAILED
+        is_alone = is_mutant and not activity.hits and self._outcome != FAILED
         is_compared = session.job.record
         end = self._failure or TestEnd(test, self._outcome)
         return replace(
             end,
-            **of_evidence(end, evidence, self._failure or self._expected),
+            **of_activity(end, activity, self._failure or self._expected),
             timeout=meter.exceeded or end.timeout,
             guarded=meter.guarded,
             # what the machine had to do with a time-out of the suite's own

@@ -40,7 +40,7 @@ class TextDifference(ActiveFault):
         """Go on, and say of which file it is not known whether it is the mutant's."""
         for missed in self._edits.missed:
             self.reached()
-            self.evidence.away[missed] = 1
+            self.activity.away[missed] = 1
         self._edits.missed.clear()
 
     def _reached(self) -> None:

@@ -35,7 +35,7 @@ NODE = """
     print("begins", flush=True)
     for _ in range(2):
         _, client, activation = stage.again(program, sys.argv[2])
-        print("done", activation.evidence.away, flush=True)
+        print("done", activation.activity.away, flush=True)
 """
 
 

@@ -104,7 +104,7 @@ def test_waiting_on_is_one_call_however_many_messages_are_lost(tmp_path: Path) -
     stage = ClientStage(tmp_path, (RECEIVE,))
     result, _, activation = stage.mutated(WAIT, "drop", coming=coming)
     assert isinstance(result, TimeoutError)
-    assert activation.evidence.hits == 5
+    assert activation.activity.hits == 5
     assert stage.counted == 1
 
 
@@ -112,7 +112,7 @@ def test_a_request_that_is_lost_is_never_answered(stage: ClientStage) -> None:
     result, client, activation = stage.mutated(ASK, "drop")
     assert isinstance(result, LostAnswerError)
     assert client.log == []
-    assert (activation.evidence.acted, activation.evidence.failure) == (1, None)
+    assert (activation.activity.acted, activation.activity.failure) == (1, None)
 
 
 def test_a_duplicate_comes_twice(stage: ClientStage) -> None:
@@ -123,8 +123,8 @@ def test_a_duplicate_comes_twice(stage: ClientStage) -> None:
 def test_who_waits_for_one_message_hears_no_second(stage: ClientStage) -> None:
     result, _, activation = stage.mutated(WAIT, "duplicate", coming=coming())
     assert result == [0.1, 0.2]
-    assert (activation.evidence.hits, activation.evidence.acted) == (2, 0)
-    assert activation.evidence.away == {"who waits for one message hears no second": 2}
+    assert (activation.activity.hits, activation.activity.acted) == (2, 0)
+    assert activation.activity.away == {"who waits for one message hears no second": 2}
 
 
 @pytest.mark.parametrize("fresh", [True, False])
@@ -140,9 +140,9 @@ def test_a_stale_message_is_heard_as_it_came(stage: ClientStage) -> None:
 
 def test_what_cannot_be_known_before_is_said(stage: ClientStage) -> None:
     _, _, activation = stage.mutated(SEND.replace("{fresh}", "True"), "stale", "first")
-    assert activation.evidence.hits == 4
-    assert activation.evidence.acted == 3
-    assert activation.evidence.away == {"no call came before it": 1}
+    assert activation.activity.hits == 4
+    assert activation.activity.acted == 3
+    assert activation.activity.away == {"no call came before it": 1}
 
 
 def test_what_is_published_late_goes_out_by_itself(stage: ClientStage) -> None:
@@ -167,7 +167,7 @@ def test_messages_change_places(stage: ClientStage) -> None:
 def test_a_message_that_comes_after_the_one_waited_for_is_lost(stage: ClientStage) -> None:
     result, _, activation = stage.mutated(WAIT, "reorder", coming=coming())
     assert result == [0.2, 0.4]
-    assert activation.evidence.acted == 2
+    assert activation.activity.acted == 2
 
 
 def test_a_goal_is_cancelled_once_it_is_sent(stage: ClientStage) -> None:
@@ -186,8 +186,8 @@ def test_the_process_of_the_tests_is_never_killed(stage: ClientStage) -> None:
     for operator in ("kill-node", "restart-node"):
         result, _, activation = stage.mutated(ASK, operator)
         assert result == "now"
-        assert activation.evidence.acted == 0
-        assert activation.evidence.away == {"the program runs in the tests' own process": 1}
+        assert activation.activity.acted == 0
+        assert activation.activity.away == {"the program runs in the tests' own process": 1}
 
 
 @pytest.mark.parametrize(("variant", "expected"), [("10", 10.0), ("-10", -10.0)])
@@ -202,7 +202,7 @@ def check(event):
 """
     _, client, activation = ClientStage(tmp_path, (TICK,)).mutated(text, "jump-clock", variant)
     assert client.jumped == expected
-    assert activation.evidence.acted == 1
+    assert activation.activity.acted == 1
 
 
 SET_UP = """
@@ -231,13 +231,13 @@ def test_one_setting_is_another(
     _, client, activation = stage.mutated(SET_UP, operator, variant, setting)
     usual = {"name": "target", "depth": 10, "reliability": "reliable", "deadline": 0.0, "latch": False}
     assert client.log == [{**usual, setting: expected}]
-    assert activation.evidence.example == (usual[setting], expected)
+    assert activation.activity.example == (usual[setting], expected)
 
 
 def test_a_setting_that_the_middleware_does_not_have_stays_away(tmp_path: Path) -> None:
     stage = ClientStage(tmp_path, (ADVERTISE,))
     _, _, activation = stage.mutated(SET_UP, "wrong-durability", "", "durability")
-    assert activation.evidence.away == {"its middleware has no such setting, or chooses it itself": 1}
+    assert activation.activity.away == {"its middleware has no such setting, or chooses it itself": 1}
 
 
 @pytest.mark.parametrize(("default", "expected"), [(1, 1), (5, 5)])
@@ -245,7 +245,7 @@ def test_a_parameter_has_its_default(tmp_path: Path, default: int, expected: int
     text = f"def run(client):\n    return client.parameter('speed', default={default})\n"
     result, _, activation = ClientStage(tmp_path, (SPEED,)).mutated(text, "use-default", "", "value")
     assert result == expected
-    assert activation.evidence.acted == int(default != 5)
+    assert activation.activity.acted == int(default != 5)
 
 
 HEADER = f"""{POINT}
@@ -305,5 +305,5 @@ def test_a_refusal_belongs_to_the_command_that_is_due(
     refusing = replace(PUBLISH, refused=(Refused(".status", (6,), "/arm/status"),))
     stage = ClientStage(tmp_path, (refusing,))
     _, _, activation = stage.mutated(TOLD, operator, quantity=quantity)
-    assert activation.evidence.acted == 1
-    assert activation.evidence.refusing_answer == said
+    assert activation.activity.acted == 1
+    assert activation.activity.refusing_answer == said

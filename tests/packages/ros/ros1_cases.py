@@ -90,7 +90,7 @@ def test_what_is_published_is_mutated_however_its_fields_are_given(make: Making,
     (came, given), activation = stage.mutated("reverse", "linear.y", index=1)
     assert (came.x, came.y, came.z) == (0.1, -0.2, 0.3)
     assert given.y == 0.2, "the program's own message stays as it is"
-    assert activation.evidence.acted == 1
+    assert activation.activity.acted == 1
 
 
 def test_publishing_and_setting_up_are_sites_of_the_resolved_name(make: Making) -> None:
@@ -115,7 +115,7 @@ def test_what_is_left_out_is_not_published(make: Making) -> None:
         return len(received)
     """
     came, activation = make(program, GOAL).mutated("skip", index=1, idle=None)
-    assert (came, activation.evidence.acted) == (0, 1)
+    assert (came, activation.activity.acted) == (0, 1)
 
 
 @pytest.mark.parametrize("asked", ["True", "data=True", "SetBoolRequest(True)", "SetBoolRequest(data=True)"])
@@ -229,7 +229,7 @@ def test_a_message_that_was_kept_for_who_comes_later_is_received(make: Making) -
     """
     seen, activation = make(program, LEVEL).mutated("negate", "data", index=1)
     assert seen == [-0.5, -0.5]
-    assert activation.evidence.hits == 2
+    assert activation.activity.hits == 2
 
 
 def test_waiting_for_a_message_is_a_site(make: Making) -> None:
@@ -263,7 +263,7 @@ def test_a_message_that_is_kept_and_was_lost_does_not_come_again(make: Making) -
     """
     told, activation = make(program, LEVEL).mutated("drop", None)
     assert "timeout exceeded" in told
-    assert activation.evidence.acted == 1
+    assert activation.activity.acted == 1
 
 
 def test_waiting_in_vain_ends_as_it_does_without_us(make: Making) -> None:
@@ -388,7 +388,7 @@ def test_a_goal_that_is_aborted_is_refused_if_the_vocabulary_says_so(
     program = program.replace("run(angle=30)", "run(angle=13)")  # the server turns no 13 degrees back
     (_, _, state), activation = make(program, vocabulary).mutated("reverse", "goal", index=1)
     assert (turning, state) == ([13, -13], 4)
-    assert activation.evidence.refusing_answer == "/cell/turn: ABORTED"
+    assert activation.activity.refusing_answer == "/cell/turn: ABORTED"
 
 
 def test_a_message_that_follows_says_that_a_command_is_refused(make: Making) -> None:
@@ -411,7 +411,7 @@ def test_a_message_that_follows_says_that_a_command_is_refused(make: Making) -> 
     """
     end, activation = make(program, vocabulary).mutated("reverse", "linear.y", index=1)
     assert end == 5
-    assert activation.evidence.refusing_answer == "/cell/ended: data 5"
+    assert activation.activity.refusing_answer == "/cell/ended: data 5"
 
 
 PARAMETER = """

@@ -104,7 +104,7 @@ def test_what_is_published_is_mutated(make: Making) -> None:
     (came, given), activation = make(PUBLISHING, GOAL).mutated("reverse", "linear.y", index=1)
     assert (came.x, came.y, came.z) == (0.1, -0.2, 0.3)
     assert given.y == 0.2, "the program's own message stays as it is"
-    assert activation.evidence.acted == 1
+    assert activation.activity.acted == 1
 
 
 def test_publishing_and_setting_up_are_sites_of_the_resolved_name(make: Making) -> None:
@@ -146,7 +146,7 @@ def test_a_publisher_of_a_lifecycle_node_publishes_while_it_is_active(make: Maki
     """
     stage = make(program, GOAL)
     came, activation = stage.mutated("reverse", "linear.y", index=1)
-    assert (came, activation.evidence.acted) == ([-0.2], 1)
+    assert (came, activation.activity.acted) == ([-0.2], 1)
 
 
 @pytest.mark.parametrize("spun", ["SingleThreadedExecutor", "MultiThreadedExecutor"])
@@ -218,7 +218,7 @@ def test_a_message_that_is_kept_and_was_lost_does_not_come_again(make: Making) -
     (found, waited), activation = make(program, LEVEL).mutated("drop", None)
     assert not found
     assert waited > 0.9, "the wait has its whole time"
-    assert activation.evidence.acted == 1
+    assert activation.activity.acted == 1
 
 
 CALLING = """
@@ -273,7 +273,7 @@ def test_a_call_that_waits_is_one_call(make: Making, closing: list[bool]) -> Non
     """
     stage = make(program, CLOSE)
     success, activation = stage.mutated("opposite", "data", index=1)
-    assert (success, closing, activation.evidence.hits) == (True, [True, False], 1)
+    assert (success, closing, activation.activity.hits) == (True, [True, False], 1)
 
 
 def test_a_coroutine_that_awaits_a_service_goes_on(make: Making, closing: list[bool]) -> None:
@@ -434,7 +434,7 @@ def test_a_goal_that_ends_badly_is_refused_if_the_vocabulary_says_so(
     vocabulary = ACTION.replace("goal.order", f'refused = ["{word}"]\n    goal.order')
     program = TURN.replace("angle=30", f"angle={angle}")
     _, activation = make(program, vocabulary).mutated("reverse", "order", index=1)
-    assert activation.evidence.refusing_answer == f"/cell/turn: {word}"
+    assert activation.activity.refusing_answer == f"/cell/turn: {word}"
 
 
 PARAMETER = """
@@ -536,7 +536,7 @@ def test_a_goal_that_is_not_sent_is_never_answered(make: Making, turning: list[i
     idle = Idle((LOST,)).data()
     result, activation = named.mutated("skip", idle=idle, index=1)
     assert result == (rclpy.task.Future, False)
-    assert (activation.evidence.acted, activation.evidence.failure, turning) == (1, None, [30])
+    assert (activation.activity.acted, activation.activity.failure, turning) == (1, None, [30])
 
 
 def test_a_call_that_returns_a_future_of_ros_is_kept_as_one_that_is_never_done() -> None:
@@ -617,7 +617,7 @@ def test_a_publisher_is_set_up_with_other_qualities(
         )
     """
     came, activation = make(program, GOAL).mutated(operator, quantity, variant=variant)
-    assert activation.evidence.acted == 1, activation.evidence
+    assert activation.activity.acted == 1, activation.activity
     if seen is not None:
         assert came == seen
     else:

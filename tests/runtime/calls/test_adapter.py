@@ -34,7 +34,7 @@ def test_a_written_value_is_found_and_replaced(
     program = f"import robot\n\ndef run():\n    robot.move({arguments})\n    return robot.seen[-1]\n"
     stage = make_stage(robot, program, f'[[operation]]\ncall = "robot:move"\narguments.{key} = {X}\n')
     result, activation = stage.mutated("reverse", key.strip('"'))
-    assert activation.evidence.acted == 1
+    assert activation.activity.acted == 1
     assert expected in (_flat(result), next(iter(result.values())))
 
 
@@ -110,7 +110,7 @@ def test_a_mutated_reading_is_a_copy_of_the_same_type(
     assert get(mutated) == -value
     assert type(mutated) is type(original)
     assert type(get(mutated)) is type(value)
-    assert activation.evidence.example == (value, -value)
+    assert activation.activity.example == (value, -value)
 
 
 def test_a_call_that_fits_no_signature_fails_as_it_would_without_mutabot(make_stage: Make) -> None:
@@ -147,7 +147,7 @@ def test_a_missing_part_of_a_reading_is_left_alone(make_stage: Make) -> None:
     )
     result, activation = stage.mutated("negate", "result")
     assert result is None
-    assert (activation.evidence.hits, activation.evidence.acted) == (1, 0)
+    assert (activation.activity.hits, activation.activity.acted) == (1, 0)
 
 
 GRIPPER = """
@@ -219,7 +219,7 @@ def test_by_to_reads_where_the_robot_is_in_the_units_of_both(
     stage = make_stage(ARM, program, vocabulary)
     result, activation = stage.mutated("by-to", "dx" if "by" in call else "x")
     assert result == expected
-    assert len(activation.evidence.example or ()) == 2
+    assert len(activation.activity.example or ()) == 2
 
 
 SEND = """

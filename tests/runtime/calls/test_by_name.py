@@ -75,7 +75,7 @@ def test_a_hidden_relative_move_starts_at_what_was_received_last(
     result, client, activation = stage.mutated(program(PUBLISH, RECEIVED), operator, quantity="x")
     assert result == 0.75  # the program's own message
     assert [message.x for _, _, message in client.log] == [sent]  # 2 · 0.5 − 0.75, and 0.75 − 0.5
-    assert activation.evidence.acted == 1
+    assert activation.activity.acted == 1
 
 
 def test_a_pose_that_another_file_receives_is_known_as_well(stage: ClientStage) -> None:
@@ -87,8 +87,8 @@ def test_a_pose_that_another_file_receives_is_known_as_well(stage: ClientStage) 
 def test_nothing_is_mirrored_as_long_as_nothing_has_told_where_it_is(stage: ClientStage) -> None:
     _, client, activation = stage.mutated(program(PUBLISH, "hear(Message(x=500))"), "reverse", quantity="x")
     assert [message.x for _, _, message in client.log] == [0.75]
-    assert activation.evidence.away == {"the position of the robot is not known yet": 1}
-    assert activation.evidence.failure is None
+    assert activation.activity.away == {"the position of the robot is not known yet": 1}
+    assert activation.activity.failure is None
 
 
 def test_a_parameter_may_tell_where_the_robot_is(stage: ClientStage) -> None:
@@ -110,19 +110,19 @@ def test_a_message_after_a_mutated_command_says_that_it_is_refused(
 ) -> None:
     text = program(PUBLISH, "; ".join(filter(None, (RECEIVED, before))), after)
     _, _, activation = stage.mutated(text, "reverse", quantity="x")
-    assert activation.evidence.refusal == refusal
+    assert activation.activity.refusal == refusal
 
 
 def test_the_end_of_a_goal_says_that_it_is_refused(stage: ClientStage) -> None:
     text = program(GOAL, 'client.parameter("home")', 'client.tell("/arm/follow", "ABORTED")')
     _, _, activation = stage.mutated(text, "reverse", quantity="x")
-    assert activation.evidence.refusal == "/arm/follow: ABORTED"
+    assert activation.activity.refusal == "/arm/follow: ABORTED"
 
 
 def test_a_command_that_the_mutant_leaves_alone_is_refused_for_its_own_reasons(stage: ClientStage) -> None:
     text = program(PUBLISH, "hear(Message(x=500))", 'client.tell("/arm/note", Message(code=7))')
     _, _, activation = stage.mutated(text, "reverse", quantity="x")
-    assert activation.evidence.refusal is None
+    assert activation.activity.refusal is None
 
 
 def test_what_is_done_in_a_node_of_the_tests_is_the_oracles(stage: ClientStage) -> None:
@@ -141,4 +141,4 @@ def test_a_site_of_both_roles_is_mutated_in_its_own_alone(stage: ClientStage) ->
     text = program(PUBLISH, RECEIVED)
     _, client, activation = stage.mutated(text, "reverse", quantity="x", oracle_nodes=("/mission",))
     assert [message.x for _, _, message in client.log] == [0.75]
-    assert activation.evidence.hits == 0
+    assert activation.activity.hits == 0

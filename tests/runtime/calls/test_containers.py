@@ -108,7 +108,7 @@ def test_a_path_leads_into_a_container(make_stage: Make, given: str, path: str) 
 
     for operator, quantity, index in (("reverse", f"positions{path}", 0), ("negate", path, 1)):
         both, activation = stage.mutated(operator, quantity, index=index)
-        assert activation.evidence.acted == 1
+        assert activation.activity.acted == 1
         changed, original = both[index], both[1 - index]
         assert Path.parse(path, rooted=False).get(changed) == -0.25
         assert Path.parse(path, rooted=False).get(original) == 0.25
@@ -131,7 +131,7 @@ def test_an_array_of_whole_numbers_takes_what_it_could_not_hold(
 ) -> None:
     stage = make_stage(ROBOT, PROGRAM.format(given=given), VOCABULARY.format(path="[0]"))
     (sent, _), activation = stage.mutated(operator, "positions[0]", variant=variant)
-    assert (activation.evidence.acted, list(sent)) == (1, [pytest.approx(changed), 1])
+    assert (activation.activity.acted, list(sent)) == (1, [pytest.approx(changed), 1])
 
 
 def test_a_property_that_is_computed_cannot_be_replaced() -> None:

@@ -139,4 +139,4 @@ def test_a_program_without_end_to_its_calls_is_no_fault_of_the_operator(
     """
     stage = make_stage(ROBOT, program, vocabulary("move"))
     result, mutated = stage.mutated(operator, "x" if operator == "reverse" else None)
-    assert (result, mutated.evidence.failure) == ("caught", None)
+    assert (result, mutated.activity.failure) == ("caught", None)

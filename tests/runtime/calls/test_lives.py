@@ -225,7 +225,7 @@ def test_no_mutant_keeps_what_a_call_was_given(
             gc.collect()
             found = survivors_of(stage, session, refuses=refuses)
             assert session.mutant is not None
-            if session.mutant.evidence.acted:
+            if session.mutant.activity.acted:
                 acted.add(mutant.operator)
             if found not in (plain, NOTHING):  # a mutant may also keep the robot from refusing
                 wrong.append((mutant.operator, mutant.operation, mutant.quantity, mutant.variant, found))

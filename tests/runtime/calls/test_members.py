@@ -99,7 +99,7 @@ def test_a_mutant_hands_over_a_real_member(
     changed, kept = (sent, seen) if operator == "opposite" else (seen, sent)
     assert (changed, type(changed)) == (expected, type(expected))
     assert kept != expected
-    assert activation.evidence.acted == 1
+    assert activation.activity.acted == 1
     assert not [line for line in stage.writer.lines if isinstance(line, Problem)]
 
 
@@ -137,7 +137,7 @@ def test_a_member_that_is_none_of_the_values_is_left_alone(make_stage: Make) -> 
     stage = stage_of(make_stage, "Light.GREEN", "0", '["RED", "BLUE"]')
     (seen, _, _), activation = stage.mutated("misread", "[0]")
     assert seen.name == "GREEN"
-    assert (activation.evidence.acted, list(activation.evidence.away)) == (
+    assert (activation.activity.acted, list(activation.activity.away)) == (
         0,
         ["it is not one of the values that the vocabulary gives"],
     )

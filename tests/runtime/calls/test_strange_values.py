@@ -81,9 +81,9 @@ def test_a_mutated_call_asks_its_values_nothing(make_stage: Make, operator: str)
     program = PROGRAM.replace("def run(arm):", "ARM = robot.Arm()\ndef run(arm=ARM):")
     stage = make_stage(ROBOT, program, VOCABULARY)
     _, active = stage.mutated(operator)
-    assert active.evidence.hits == 1
-    assert active.evidence.acted == (operator == "repeat")
-    assert active.evidence.failure is None
+    assert active.activity.hits == 1
+    assert active.activity.acted == (operator == "repeat")
+    assert active.activity.failure is None
     assert stage.load_robot().ASKED == []
 
 
@@ -103,7 +103,7 @@ def test_operators_leave_exact_numbers_what_they_are(make_stage: Make, kind: str
     stage = make_stage(ROBOT, program, VOCABULARY)
     quantity, index = ("dx", 0) if operator == "reverse" else ("result", 1)
     (told, read), active = stage.mutated(operator, quantity, index=index)
-    assert active.evidence.acted == 1
+    assert active.activity.acted == 1
     assert type(told).__name__ == type(read).__name__ == name
     assert (told == -0.25) is (operator == "reverse")
     assert (read == 0.5) is (operator == "reverse")

@@ -37,7 +37,7 @@ def test_a_mutated_call_goes_through_few_files(make_stage: Make) -> None:
     program.run(arm)  # the first call makes what later ones find
     visited = files_of(lambda: program.run(arm))
     assert session.mutant is not None
-    assert session.mutant.evidence.acted == 2
+    assert session.mutant.activity.acted == 2
     ours = [name for name in visited if name.startswith("runtime/") or name == "operators/middleware.py"]
     assert len(ours) <= MOST, ours
 

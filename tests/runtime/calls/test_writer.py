@@ -93,7 +93,7 @@ def test_a_value_beside_the_text_is_found_and_replaced(
     stage = make_stage(ROBOT, program(f"robot.{call}"), vocabulary("write", "node"))
     result, activation = stage.mutated(operator, "value")
     assert result == [expected]
-    assert activation.evidence.acted == 1
+    assert activation.activity.acted == 1
 
 
 @pytest.mark.parametrize(
@@ -112,7 +112,7 @@ def test_an_object_tells_the_command_by_what_it_prints(
     (found,), activation = stage.mutated("reverse", "value")
     assert found[1] == -1.5
     assert str(found[0]) == "ns=2;s=Arm.X"
-    assert activation.evidence.example == (1.5, -1.5)
+    assert activation.activity.example == (1.5, -1.5)
     assert {seen.pattern for seen in stage.sites()} == {"ns=2;s=Arm.X"}
 
 
@@ -238,7 +238,7 @@ def test_one_site_with_both_modes_has_a_mutant_for_each(make_stage: Make) -> Non
         stage = make_stage(ROBOT, program(call), moving("go", RELATIVE))
         result, activation = stage.mutated("by-to", "dx", index=index)
         assert [dx for dx, _ in result] == expected
-        assert (activation.evidence.hits, activation.evidence.acted) == (1, 1)
+        assert (activation.activity.hits, activation.activity.acted) == (1, 1)
 
 
 def test_the_opposite_of_an_operation_with_cases_is_its_opposite(make_stage: Make) -> None:

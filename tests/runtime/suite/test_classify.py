@@ -21,7 +21,7 @@ from hypothesis import strategies
 
 from mutabot.model import By, Vocabulary
 from mutabot.model.events import TestEnd
-from mutabot.runtime.evidence import Evidence
+from mutabot.runtime.activity import Activity
 from mutabot.runtime.exceptions import KnownError, Refusal, is_due_to, leaves
 from mutabot.runtime.interception.active_mutant import with_refusal
 from mutabot.runtime.interception.trace import Locator
@@ -45,9 +45,9 @@ def ending(error: BaseException, *refusals: BaseException, root: Path = Path("/n
     noted: tuple[Refusal, ...] = ()
     for refusal in refusals:
         noted = with_refusal(noted, refusal)
-    evidence = Evidence(refusals=noted)
+    activity = Activity(refusals=noted)
     return classify(
-        error, "tests/test_it.py::test_it", str(root / "tests" / "test_it.py"), locator, VOCABULARY, evidence
+        error, "tests/test_it.py::test_it", str(root / "tests" / "test_it.py"), locator, VOCABULARY, activity
     )
 
 

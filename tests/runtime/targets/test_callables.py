@@ -90,7 +90,7 @@ def test_a_mutant_reaches_this_kind_of_callable(make_stage: Make, target: str, c
     stage = make_stage(ROBOT, program, operation(target, 'signature = "(x)"', X))
     result, activation = stage.mutated("reverse", "x")
     assert result == -0.25
-    assert (activation.evidence.hits, activation.evidence.acted) == (1, 1)
+    assert (activation.activity.hits, activation.activity.acted) == (1, 1)
 
 
 @pytest.mark.parametrize(("name", "value"), [("height", 0.5), ("reach", 0.9)])

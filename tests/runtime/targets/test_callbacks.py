@@ -141,7 +141,7 @@ def test_a_mutant_acts_on_a_call_in_a_callback(make_stage: Make, name: str) -> N
     stage = make_stage(dedent(ROBOT), text, VOCABULARY)
     begun_first = name in ("a timer of the loop", "a task")  # what begins it is over before
     _, mutant = stage.mutated("reverse", "x", index=1 if begun_first else 0)
-    assert mutant.evidence.acted == 1
+    assert mutant.activity.acted == 1
     assert ("beep", -2.0) in stage.load_robot().LOG
 
 

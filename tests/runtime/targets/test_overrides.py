@@ -95,7 +95,7 @@ def test_with_overrides_a_mutant_reaches_the_methods_of_subclasses(
     stage = make_stage(ROBOT, program(*lines), COVERED)
     result, activation = stage.mutated("reverse", "x")
     assert result == expected
-    assert (activation.evidence.hits, activation.evidence.acted) == (1, 1)
+    assert (activation.activity.hits, activation.activity.acted) == (1, 1)
     assert {seen.operation for seen in stage.sites()} == {f"{stage.robot_name}:Arm.move"}
 
 

@@ -57,13 +57,13 @@ def test_an_argument_of_a_native_function_is_found_and_replaced(
     )
     result, activation = stage.mutated("reverse", "bytes_per_sep")
     assert result == FROM_LEFT
-    assert activation.evidence.example == (2, -2)
+    assert activation.activity.example == (2, -2)
 
 
 def test_positional_arguments_of_a_native_function_are_not_guessed(make_stage: Make) -> None:
     stage = make_stage(NATIVE, program_with(f"group({DATA}, ':', 2)"), vocabulary_with(None))
     result, activation = stage.mutated("reverse", "bytes_per_sep")
-    assert (result, activation.evidence.acted) == (FROM_RIGHT, 0)
+    assert (result, activation.activity.acted) == (FROM_RIGHT, 0)
 
 
 def test_a_native_function_is_never_given_what_the_program_left_out(make_stage: Make) -> None:
@@ -71,7 +71,7 @@ def test_a_native_function_is_never_given_what_the_program_left_out(make_stage: 
     vocabulary = vocabulary_with("(x, mode=0, …)", target="swap", argument="x")
     stage = make_stage(NATIVE, program_with("swap(1)"), vocabulary)
     result, activation = stage.mutated("repeat")
-    assert (result, activation.evidence.acted) == (256, 1)
+    assert (result, activation.activity.acted) == (256, 1)
 
 
 DECORATED = """

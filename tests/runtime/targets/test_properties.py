@@ -98,7 +98,7 @@ def test_an_assignment_is_a_site(make_stage: Make, line: str, expected: list[flo
     stage = make_stage(ROBOT, program, dedent(SET))
     log, mutant = stage.mutated("reverse", "value")
     assert list(log) == expected
-    assert mutant.evidence.acted == 1
+    assert mutant.activity.acted == 1
     assert {seen.span.line for seen in stage.sites()} == {6}
 
 

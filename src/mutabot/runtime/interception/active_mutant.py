@@ -25,7 +25,7 @@ from mutabot.operators import Need, Subject, operator
 from mutabot.operators.command import FatalFault
 from mutabot.operators.middleware import CallRecord, Carried, run_middleware
 from mutabot.operators.operator import subject_of
-from mutabot.runtime.evidence import REFUSALS, Evidence
+from mutabot.runtime.activity import REFUSALS, Activity
 from mutabot.runtime.exceptions import KnownError, Refusal, leaves
 from mutabot.runtime.interception import call_faults
 from mutabot.runtime.interception.adapter import Adapter, SiteCall, call_context, snapshot
@@ -193,7 +193,7 @@ class MutatedSite:
         on_act: told when it changes something for the first time in a test.
         on_call: told when a mutated call begins (True) and when it has returned or raised (False).
         time: tells simulated seconds since the test's first tick; None without a clock.
-        evidence: what it did in the running test.
+        activity: what it did in the running test.
         rule: its operator.
         watched: how the robot says that it refuses the last mutated call of the running test.
         usual: numbers of the calls of its site in the running test that the robot refuses in the original.
@@ -209,7 +209,7 @@ class MutatedSite:
     time: Callable[[], float | None] = lambda: None
 
     def __post_init__(self) -> None:
-        self.evidence, self.early = Evidence(), Evidence()
+        self.activity, self.early = Activity(), Activity()
         self._told_by: tuple[Refused, ...] = ()
         self._commands, self._reported, self._is_passed = 0, 0, False
         self._forget()
@@ -230,7 +230,7 @@ class MutatedSite:
             usual: numbers of the calls of its site that the robot refuses in the original too.
         """
         self.usual = usual
-        self.evidence = self.early.copy()
+        self.activity = self.early.copy()
         self._test = (round, test)
         self._moment = moment
         self._forget()
@@ -253,7 +253,7 @@ class MutatedSite:
     def _fails(self, error: BaseException, how: str = "") -> None:
         """Report that the operator or the vocabulary failed, not the robot or the program."""
         text = f"operator {self.mutant.operator}{how}: {error_text(error)}"
-        self.evidence.failure = self.evidence.failure or text
+        self.activity.failure = self.activity.failure or text
 
     def is_here(self, site: CallPlace, call: Call) -> bool:
         """Return whether the mutant acts at this place and on this operation and text command."""
@@ -269,7 +269,7 @@ class MutatedSite:
         robot's last answer.
         """
         self.look_back()
-        hit = self.evidence.hits = self.evidence.hits + 1
+        hit = self.activity.hits = self.activity.hits + 1
         call = replace(made.call, payload=made.call.payload.copied()) if self.copies else made.call
         is_due = self._moment is None or self._moment.holds(made.number, self.time())
         if self.mutant.by_number:
@@ -328,10 +328,10 @@ class MutatedSite:
 
     def look_back(self, *, at_all: bool = False) -> None:
         """Check whether the program has written to a copy that it got instead of the robot's own memory."""
-        if self._handed is None or self.evidence.failure is not None:
+        if self._handed is None or self.activity.failure is not None:
             return
         if self._handed.look(at_all=at_all):
-            self.evidence.failure = (
+            self.activity.failure = (
                 f"the program writes to what {self.operation.name} returns, which is the robot's own memory; "
                 "with the mutant it wrote to a copy, so the robot did not get it"
             )
@@ -371,8 +371,8 @@ class MutatedSite:
 
     def refused_as(self, text: str | None) -> None:
         """Note the text with which the robot refused a mutated call; None if it did not."""
-        if text is not None and self.evidence.refusing_answer is None:
-            self.evidence.refusing_answer = text
+        if text is not None and self.activity.refusing_answer is None:
+            self.activity.refusing_answer = text
 
     def _subject(self) -> Subject:
         mutant = self.mutant
@@ -403,16 +403,16 @@ class MutatedSite:
         if passage.acted_at_once:
             self._acts(passage)
         elif passage.away:
-            self.evidence.away[passage.away] = self.evidence.away.get(passage.away, 0) + 1
+            self.activity.away[passage.away] = self.activity.away.get(passage.away, 0) + 1
 
     def _acts(self, passage: CallRecord) -> None:
-        if not self.evidence.acted:
-            self.evidence.example = self._example(passage)
+        if not self.activity.acted:
+            self.activity.example = self._example(passage)
         self._count_act()
 
     def _count_act(self) -> None:
-        self.evidence.acted += 1
-        if self.evidence.acted == 1:
+        self.activity.acted += 1
+        if self.activity.acted == 1:
             self.on_act()
 
     def _example(self, passage: CallRecord) -> tuple[Any, ...]:
@@ -476,8 +476,8 @@ class _MutatedCall:
         mutant = self.mutant
         if self.does_nothing:
             name = mutant.mutant.operator
-            mutant.evidence.failure = f"operator {name} is to do nothing, but would have made the call"
-            raise OperatorError(mutant.evidence.failure)
+            mutant.activity.failure = f"operator {name} is to do nothing, but would have made the call"
+            raise OperatorError(mutant.activity.failure)
         is_changed = self.passage.changed_command
         mutant.count(call)
         if is_changed:
@@ -489,7 +489,7 @@ class _MutatedCall:
             raised = error.error if isinstance(error, Carried) else error
             self.raised.append(KnownError(raised))
             if is_changed and is_refusal(raised, mutant.refusals) and not self._is_usual:
-                mutant.evidence.refusals = with_refusal(mutant.evidence.refusals, raised)
+                mutant.activity.refusals = with_refusal(mutant.activity.refusals, raised)
             del raised
             raise
         finally:

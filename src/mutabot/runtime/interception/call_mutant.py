@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from mutabot.runtime.active_fault import ActiveFault
-from mutabot.runtime.evidence import Evidence
+from mutabot.runtime.activity import Activity
 from mutabot.runtime.interception.active_mutant import MutatedSite
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ class CallMutant(ActiveFault):
     def start_test(self, test: str, random: Random) -> None:
         """Begin a test, or continue it in this process, which was forked in it."""
         if self._active is not None and self._is_early:
-            self._active.early = self._active.evidence
+            self._active.early = self._active.activity
         self._is_early = False
         self._start()
 
@@ -56,12 +56,12 @@ class CallMutant(ActiveFault):
         """Leave the mutant active, since calls between tests are mutated as well."""
 
     def begin_count(self) -> None:
-        """Do nothing, as the mutant resets its own evidence."""
+        """Do nothing, as the mutant resets its own activity."""
 
     @property
-    def evidence(self) -> Evidence:
+    def activity(self) -> Activity:
         """What the mutant did in the running test."""
         if self._active is None:
-            return Evidence()
+            return Activity()
         self._active.look_back()
-        return self._active.evidence
+        return self._active.activity

@@ -251,7 +251,7 @@ class Dispatcher:
                     self.on_reach(Activation.at_call(*key), made.number)
                 # 3. The robot does what the program says, or what a mutant at this site makes of it.
                 mutant = self.mutant
-                hits = mutant.evidence.hits if mutant is not None else 0
+                hits = mutant.activity.hits if mutant is not None else 0
                 if mutant is not None and mutant.is_here(site, call):
                     result, reply = await mutant.apply(adapter, made)
                 else:

@@ -24,8 +24,8 @@ from mutabot.model.event_file import ANYBODY
 from mutabot.model.job import Job, read_job
 from mutabot.runtime import FOLDER as OURS
 from mutabot.runtime import executed_text
+from mutabot.runtime.activity import Activity
 from mutabot.runtime.event_file import EventFile
-from mutabot.runtime.evidence import Evidence
 from mutabot.runtime.exceptions import failure_in, is_due_to, leaves
 from mutabot.runtime.meter import Meter, TimeExceeded
 from mutabot.runtime.paths import watch_copies
@@ -85,9 +85,9 @@ class TextOnly:
         """Do nothing, as no mutant has passed on a copy."""
 
     @property
-    def evidence(self) -> Evidence:
+    def activity(self) -> Activity:
         """What the mutant did in the running test."""
-        return self._fault.evidence if self._fault is not None else Evidence()
+        return self._fault.activity if self._fault is not None else Activity()
 
     @property
     def round(self) -> int:
@@ -152,7 +152,7 @@ class Member:
             executed_text.install()
         self.session = session or _session(job, self)
         self._targets: set[str] = set()
-        self._reported = Evidence()
+        self._reported = Activity()
         self._places: set[int] = set()
         self._texts: set[str] = set()
         self._exceeded = False
@@ -172,7 +172,7 @@ class Member:
         session = self.session
         for site in () if isinstance(session, TextOnly) else session.recorder.sites:
             self.file.send(site)
-        self._reported = session.evidence.copy()
+        self._reported = session.activity.copy()
         if session.meter is not None:
             session.meter.continue_in_copy()
         self._attend()
@@ -198,9 +198,9 @@ class Member:
             self.file.send(events.Called(site, written, read, answer, monotonic()))
 
         def heard(hear: Callable[[str, Any], None], name: str, message: Any) -> None:
-            before = session.evidence.refusing_answer
+            before = session.activity.refusing_answer
             hear(name, message)
-            if session.evidence.refusing_answer != before:
+            if session.activity.refusing_answer != before:
                 self.poll()
 
         session.recorder.on_hit, session.dispatcher.turn = hit, self.turn
@@ -226,7 +226,7 @@ class Member:
             self.poll()
             self._use()
             self._test = self._now.number
-            self._reported, self._exceeded = Evidence(), False
+            self._reported, self._exceeded = Activity(), False
             self._places.clear()
             self.session.start_test(self._now.name_of(self._test))
 
@@ -249,7 +249,7 @@ class Member:
     def poll(self) -> None:
         """Report what the mutant did, and which targets were found, since the last report."""
         session = self.session
-        now, before = session.evidence, self._reported
+        now, before = session.activity, self._reported
         if now.hits != before.hits or now != before:
             self._reported = now.copy()
             self.file.send(self._did(before, now))
@@ -272,7 +272,7 @@ class Member:
                 session.inspection.check_target(operation, session.targets)
         self.file.send(events.Found(targets=tuple(sorted(targets))))
 
-    def _did(self, before: Evidence, now: Evidence) -> events.Did:
+    def _did(self, before: Activity, now: Activity) -> events.Did:
         away = {why: count - before.away.get(why, 0) for why, count in now.away.items()}
         is_refused = now.refusals != before.refusals or now.refusing_answer != before.refusing_answer
         return events.Did(
@@ -305,7 +305,7 @@ class Member:
 
     def _take_back(self) -> None:
         """Report that an alternative changed nothing, if it was reported while that was not known."""
-        if self.session.evidence.acted < self._reported.acted:
+        if self.session.activity.acted < self._reported.acted:
             self.poll()
 
     def _reached(self, places: tuple[int, ...]) -> None:
@@ -379,7 +379,7 @@ class Member:
         self.file.send(
             events.Raised(
                 f"{type(first).__qualname__}: {text_of(first)[:2000].strip()}",
-                is_refusal=is_due_to(error, self.session.evidence.culprits),
+                is_refusal=is_due_to(error, self.session.activity.culprits),
                 failure=failure_in(error, self.session.job.vocabulary.failures) or self._own_failure(error),
                 in_thread=in_thread,
             )

@@ -26,8 +26,8 @@ from mutabot.model.events import NotInstrumented, PlacesReached, TextsSeen
 from mutabot.model.mutant import Extent
 from mutabot.model.program_text import RUNTIME, Alternative
 from mutabot.model.source_units import digest
+from mutabot.runtime.activity import Activity
 from mutabot.runtime.event_file import EventWriter, Held
-from mutabot.runtime.evidence import Evidence
 from mutabot.runtime.paths import real_path
 from mutabot.runtime.processes.environment import listen
 from mutabot.runtime.program_text import compiling, loading
@@ -454,9 +454,9 @@ class SessionText:
                 self._refuse(text, f"{loading.UNSEEN} ({loading.loader_name(loader)})")
 
     @property
-    def evidence(self) -> Evidence:
+    def activity(self) -> Activity:
         """What the mutant did in the running test."""
-        return Evidence(
+        return Activity(
             hits=self.alternatives.hits.get(self.alternatives.place, 0),
             acted=self.alternatives.acted,
             example=self.alternatives.example,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, ClassVar, Protocol
 
 from mutabot.runtime.active_fault import ActiveFault, FaultContext
-from mutabot.runtime.evidence import Evidence
+from mutabot.runtime.activity import Activity
 
 if TYPE_CHECKING:
     from random import Random
@@ -32,15 +32,15 @@ class TextMutant(ActiveFault):
             self.context.text.alternatives.activate(*self.data)
 
     def start_test(self, test: str, random: Random) -> None:
-        """Do nothing, as the text resets its own evidence."""
+        """Do nothing, as the text resets its own activity."""
 
     def end_test(self) -> None:
         """Leave the alternative active between tests."""
 
     def begin_count(self) -> None:
-        """Do nothing, as the text resets its own evidence."""
+        """Do nothing, as the text resets its own activity."""
 
     @property
-    def evidence(self) -> Evidence:
+    def activity(self) -> Activity:
         """What the mutant did in the running test."""
-        return self.context.text.evidence if self.context.text is not None else Evidence()
+        return self.context.text.activity if self.context.text is not None else Activity()

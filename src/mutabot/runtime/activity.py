@@ -1,4 +1,4 @@
-"""Evidence of a mutant at work in a test."""
+"""Activity of a mutant at work in a test."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ REFUSALS = 16
 
 
 @dataclass(slots=True)
-class Evidence:
+class Activity:
     """What a mutant did in the running test.
 
     Attributes:
@@ -38,8 +38,8 @@ class Evidence:
     is_unknown: bool = False
     away: dict[str, int] = field(default_factory=dict)
 
-    def copy(self) -> Evidence:
-        """Return an independent copy of the evidence."""
+    def copy(self) -> Activity:
+        """Return an independent copy."""
         return replace(self, away=dict(self.away))
 
     @property
