@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime
 import math
+import sys
 from array import array
 from collections import deque, namedtuple
 from dataclasses import dataclass
@@ -176,9 +177,20 @@ def test_a_new_value_is_of_the_class_of_what_was_there(before: Any, value: Any, 
             ]
 
 
-@pytest.mark.parametrize("number", [Fraction(10**400), Decimal("sNaN")])
+class Count(int):
+    """An integer of a class of its own."""
+
+
+@pytest.mark.parametrize("number", [Fraction(10**400), Decimal("sNaN"), 10**400, -(10**4000), Count(10**400)])
 def test_an_exact_number_that_is_no_floating_point_number_is_left_alone(number: Any) -> None:
     assert data_of(number) is UNKNOWN
+    assert data_of([1, number]) is UNKNOWN
+
+
+def test_the_largest_integers_that_are_floating_point_numbers_are_data() -> None:
+    largest = int(sys.float_info.max)
+    assert data_of(largest) == largest
+    assert data_of(-largest) == -largest
 
 
 @pytest.mark.parametrize("number", [Decimal("0.5"), Fraction(1, 2), Metres(0.5)])

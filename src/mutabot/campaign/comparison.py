@@ -611,8 +611,8 @@ def _without_noise(first: Any, second: Any) -> tuple[Any, Any]:
     """Return values; 0 for a number that is but rounding beside the difference of both."""
     if not (is_number(first) and is_number(second)):
         return first, second
-    least = _ROUNDING * abs(first - second)
-    return (0 if abs(first) < least else first), (0 if abs(second) < least else second)
+    least = abs(_ROUNDING * first - _ROUNDING * second)  # beside an infinite number, none is rounding
+    return (0 if abs(first) < least < math.inf else first), (0 if abs(second) < least < math.inf else second)
 
 
 def _change(before: Any, after: Any, quantity: Quantity | None = None) -> str:

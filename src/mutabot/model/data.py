@@ -22,6 +22,8 @@ from mutabot.model.enumeration import is_member
 UNKNOWN = object()
 #: levels of containers in containers that are looked at
 DEPTH = 20
+#: an integer beyond it is no number for operators, which calculate with floating-point numbers
+_LARGEST = int(sys.float_info.max)
 #: what nobody can change, and what is its own data
 _FIXED = frozenset({type(None), bool, int, float, complex, str, bytes, range, slice})
 #: modules of the standard library whose objects say by their texts what they are
@@ -51,6 +53,12 @@ def is_textual(value: Any) -> bool:
     return module in _TEXTUAL and getattr(sys.modules.get(module), kind.__name__, None) is kind
 
 
+def is_unchangeable(kind: type[Any]) -> bool:
+    """Return whether objects of a class cannot be other ones in part: numbers, texts, dates, views."""
+    is_dated = kind.__module__ in _TEXTUAL and kind in vars(sys.modules[kind.__module__]).values()
+    return kind in _FIXED or kind is MappingProxyType or is_dated
+
+
 def _is_exact(value: Any) -> bool:
     """Return whether a value is a decimal or fraction, which cannot be combined with operators' floats."""
     return type(value).__name__ in ("Decimal", "Fraction") and is_textual(value)
@@ -60,7 +68,8 @@ def data_of(value: Any) -> Any:
     """Return a value as operators see it; ``UNKNOWN`` if it is opaque.
 
     It is the value itself where it is plain, or of numpy, or a member of an enumeration. Decimals and
-    fractions become floating-point numbers, of which ``in_place_of`` makes the like of what was there.
+    fractions become floating-point numbers, of which ``in_place_of`` makes the like of what was there. An
+    integer, decimal or fraction beyond all floating-point numbers is opaque.
     """
     return _data_of(value, DEPTH)
 
@@ -68,7 +77,7 @@ def data_of(value: Any) -> Any:
 def _data_of(value: Any, depth: int) -> Any:
     kind = type(value)
     if kind in _FIXED or kind is bytearray or kind is array:
-        return value
+        return UNKNOWN if kind is int and abs(value) > _LARGEST else value
     if is_of_numpy(value):
         return value if value.shape or not hasattr(value, "__array_finalize__") else value[()]
     if is_textual(value):
@@ -77,7 +86,7 @@ def _data_of(value: Any, depth: int) -> Any:
         return value
     for base, plainly in _PLAINLY:
         if issubclass(kind, base):
-            return plainly(value)
+            return _data_of(plainly(value), depth)
     for base in (list, tuple):
         if issubclass(kind, base):
             return _items(value, base, depth)

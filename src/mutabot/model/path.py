@@ -22,6 +22,8 @@ from typing import Any
 
 from mutabot.errors import PathError, error_text, nearest_name, text_of
 from mutabot.frozen import frozen
+from mutabot.model.data import is_of_numpy, is_unchangeable
+from mutabot.model.enumeration import is_member
 
 _STEP = re.compile(r"\.(?P<attribute>[^\W\d]\w*)|\[(?P<item>[^\[\]]*)\]")
 _NAME = re.compile(r"[^\W\d]\w*")
@@ -104,6 +106,18 @@ class Path:
         Raises PathError if a step does not fit or an object on the way cannot be copied and changed.
         """
         return self._put(value, new, 0)
+
+    def fixed_part(self, value: Any) -> str:
+        """Return the step whose part cannot be replaced, as ``.imag of complex``; empty if there is none.
+
+        The objects on the way are told by their classes: what one with code of its own does shows when it is
+        changed. Raises PathError if a step does not fit.
+        """
+        for step in self.steps:
+            if _is_fixed(value, step):
+                return f"{step} of {type(value).__name__}"
+            value = self._advance(value, step)
+        return ""
 
     def _put(self, value: Any, new: Any, depth: int) -> Any:
         if depth == len(self.steps):
@@ -235,6 +249,20 @@ def _with_attribute(value: Any, name: str, inner: Any) -> Any:
         # shows what is stored under another name, or is computed: then object.__setattr__ refuses it.
         object.__setattr__(copied, _stored_as(value, name), inner)
     return copied
+
+
+def _is_fixed(value: Any, step: Step) -> bool:
+    """Return whether a step of an object is a part of it that Python lets nobody change, or is computed."""
+    if is_member(value) or (is_of_numpy(value) and type(value).__name__ != "ndarray"):
+        return True
+    if step.attribute is None:
+        return is_unchangeable(type(value))
+    owner = next((base for base in type(value).__mro__ if step.attribute in vars(base)), None)
+    if owner is None:
+        return False
+    shown = vars(owner)[step.attribute]
+    is_computed = issubclass(type(shown), property) and shown.fset is None
+    return is_unchangeable(owner) or (is_computed and _stored_as(value, step.attribute) == step.attribute)
 
 
 def _stored_as(value: Any, name: str) -> str:

@@ -101,6 +101,15 @@ def test_a_call_is_named_without_columns_module_and_formats_and_rounding_is_no_d
     assert line == "call 1, sorter.py:16 send drop/{height}: wrote x -0.25 instead of 0 (off by 0.25)"
 
 
+@pytest.mark.parametrize(
+    ("before", "after", "told"),
+    [(5.0, math.inf, "inf instead of 5 (off by inf)"), (1.5e308, -1.5e308, "-1.5e+308 instead of 1.5e+308")],
+)
+def test_beside_an_infinite_difference_no_number_is_rounding(before: float, after: float, told: str) -> None:
+    (line,) = compare(seen(TraceCall("a", {"x": before})), seen(TraceCall("a", {"x": after}))).divergence
+    assert f"wrote x {told}" in line
+
+
 def test_traces_that_were_cut_off_are_compared_as_far_as_they_go() -> None:
     assert compare(
         seen(TraceCall("a")), seen(TraceCall("a"), TraceCall("b"), truncated=True)

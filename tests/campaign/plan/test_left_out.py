@@ -91,6 +91,44 @@ def test_a_quantity_that_names_an_object_is_told_with_its_place_and_what_to_do(t
     assert f"left out  1: {reason}" in report.lines
 
 
+@pytest.mark.parametrize("number", ["10**400", "-10**5000", "Fraction(10**400, 3)"])
+def test_a_number_beyond_floating_point_numbers_is_told_and_left_out(tmp_path: Path, number: str) -> None:
+    program = f"""
+        from fractions import Fraction
+
+        def run(base):
+            base.drive({number})
+            return 1
+        """
+    robot = "class Base:\n    def drive(self, speed): self.y = speed\n"
+    folder = write_project(tmp_path, program, TESTS, robot=robot, vocabulary=DRIVE)
+    report = check(request_for(folder, engine="fork", rounds=1), Quiet())
+    (note,) = (line for line in report.lines if line.startswith("note "))
+    assert "no floating-point number can stand for speed, so its value is left as it is" in note
+    assert report.data["left_out_because"] == {"the call passes no such plain value here": 1}
+
+
+@pytest.mark.parametrize(
+    ("answer", "path", "part"),
+    [("3200 + 4j", ".imag", ".imag of complex"), ("[b'ab']", "[0][1]", "[1] of bytes")],
+)
+def test_a_part_that_cannot_be_replaced_is_told_and_left_out(
+    tmp_path: Path, answer: str, path: str, part: str
+) -> None:
+    robot = f"class Base:\n    def force(self): return {answer}\n"
+    vocabulary = f"""
+        [[operation]]
+        call = "robot:Base.force"
+        result."{path}" = {{ kind = "force", unit = "N" }}
+        """
+    program = "def run(base): return 1 if base.force() else 0\n"
+    folder = write_project(tmp_path, program, TESTS, robot=robot, vocabulary=vocabulary)
+    told = Quiet()
+    with pytest.raises(NothingToDoError):
+        plan_only(request_for(folder, engine="fork", rounds=1), told)
+    assert any(f"{part} cannot be replaced, so the value is left as it is" in line for line in told.lines)
+
+
 def test_noise_on_what_no_operator_adds_it_to_is_told(tmp_path: Path) -> None:
     told = Quiet()
     request = request_for(project(tmp_path, FORCE), engine="fork", rounds=1)

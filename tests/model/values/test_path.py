@@ -5,6 +5,9 @@ from __future__ import annotations
 import copy
 from collections import OrderedDict, namedtuple
 from dataclasses import dataclass
+from datetime import datetime
+from enum import Enum
+from fractions import Fraction
 from types import MappingProxyType, SimpleNamespace
 from typing import Any, NamedTuple
 
@@ -221,13 +224,59 @@ def test_a_path_that_does_not_fit_names_what_would(value: Any, text: str, words:
     assert [word for word in words if word not in str(caught.value)] == [], str(caught.value)
 
 
+class Kept:
+    def __init__(self) -> None:
+        self._x = 1.0
+
+    @property
+    def x(self) -> float:
+        return self._x
+
+
+class Level(Enum):
+    HIGH = 2.0
+
+
+class Measured(float):
+    error = 0.1
+
+
+FIXED: list[tuple[Any, str, str]] = [
+    (Computed(), ".x", ".x of Computed"),
+    (MappingProxyType({"x": 1}), "['x']", "['x'] of mappingproxy"),
+    ("abc", "[1]", "[1] of str"),
+    (b"abc", "[1]", "[1] of bytes"),
+    (range(3), "[1]", "[1] of range"),
+    (2j, ".imag", ".imag of complex"),
+    ([SimpleNamespace(z=2j)], "[0].z.imag", ".imag of complex"),
+    (Measured(2.0), ".real", ".real of Measured"),
+    (np.float64(2.0), ".real", ".real of float64"),
+    (Level.HIGH, ".value", ".value of Level"),
+    (datetime(2026, 1, 2), ".day", ".day of datetime"),
+    (Fraction(1, 2), ".numerator", ".numerator of Fraction"),
+]
+
+
+@pytest.mark.parametrize(("value", "text", "part"), FIXED)
+def test_what_cannot_be_copied_and_changed_is_known_and_refused(value: Any, text: str, part: str) -> None:
+    path = Path.parse(text, rooted=False)
+    assert path.fixed_part(value) == part
+    with pytest.raises(PathError, match="cannot replace"):
+        path.put(value, 0)
+
+
 @pytest.mark.parametrize(
     ("value", "text"),
-    [(Computed(), ".x"), (MappingProxyType({"x": 1}), "['x']"), ("abc", "[1]"), (range(3), "[1]")],
+    [
+        *((wrap(1.0), step) for wrap, step in WRAPPERS.values()),
+        (Kept(), ".x"),
+        (np.array([1j, 2.0]), ".real[0]"),
+    ],
 )
-def test_what_cannot_be_copied_and_changed_is_refused(value: Any, text: str) -> None:
-    with pytest.raises(PathError, match="cannot replace"):
-        Path.parse(text, rooted=False).put(value, 0)
+def test_what_a_copy_can_have_otherwise_is_not_fixed(value: Any, text: str) -> None:
+    path = Path.parse(text, rooted=False)
+    assert path.fixed_part(value) == ""
+    assert path.get(path.put(value, 5.0)) == 5.0
 
 
 class MuteError(Exception):

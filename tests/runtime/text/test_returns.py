@@ -189,6 +189,7 @@ def test_only_so_many_are_noted_and_those_of_fixtures_are_told_apart(program: No
         (b"ab", "b'ab'"),
         ({1: {"b", "a"}}, {"1": ["a", "b"]}),
         (1 + 2j, "(1+2j)"),
+        (-(2**1024), "-0x1" + 256 * "0"),  # 1024 bits are 256 hexadecimal digits
         ([object()], [{"opaque": "builtins:object"}]),
         (list(range(MOST + 1)), {"opaque": "builtins:list"}),
     ],

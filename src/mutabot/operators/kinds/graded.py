@@ -6,6 +6,7 @@ and readings come late.
 
 from __future__ import annotations
 
+import math
 from abc import abstractmethod
 from collections.abc import Callable, Iterable
 from dataclasses import replace
@@ -122,7 +123,8 @@ def _turned(quantity: Quantity, axis: str, value: Value, change: Callable[[float
 
 def _like(quantity: Quantity, before: Value, after: float) -> float:
     """Return the new number, rounded if the quantity is a count."""
-    return round(after) if quantity.kind is Kind.COUNT and isinstance(before, int) else after
+    is_count = quantity.kind is Kind.COUNT and isinstance(before, int) and math.isfinite(after)
+    return round(after) if is_count else after
 
 
 #: angles that say where something is: a share of them means nothing, as their zero is anywhere
@@ -264,13 +266,15 @@ class Quantise(NumberOperator):
         Example.changed(_MOVE, 0.23, 0.25, size=("", 50.0, "mm")),
         Example.changed(LOCATE, 0.55, 0.56, size=("", 20.0, "mm")),
         Example.unchanged(_MOVE, 0.2, "it is a multiple of the step", size=("", 50.0, "mm")),
+        Example.unchanged(_MOVE, math.inf, "no multiple of the step is near", size=("", 50.0, "mm")),
     )
 
     def magnitudes(self, quantity: Quantity) -> Magnitudes | None:
         return None if quantity.is_whole or quantity.kind is Kind.COUNT else own_ladder(quantity)
 
     def number(self, size: float, value: float, context: Context) -> float:
-        return round(value / size) * size if size else value
+        steps = value / size if size else math.inf
+        return round(steps) * size if math.isfinite(steps) else value
 
 
 class Deadband(NumberOperator):

@@ -23,7 +23,7 @@ from typing import Any, Protocol
 from mutabot.errors import PathError, StrangeValueError, error_text
 from mutabot.model import Call, Operation, Path, Pattern, Quantity, Reply, Unchanged, Vocabulary
 from mutabot.model.answer import keep, restore
-from mutabot.model.data import UNKNOWN, is_of_numpy
+from mutabot.model.data import UNKNOWN, is_of_numpy, is_textual
 from mutabot.model.enumeration import is_member, name_of
 from mutabot.model.notation import Notation
 from mutabot.model.operation import Form
@@ -209,6 +209,7 @@ class Adapter:
         self._declared = parse_signature(operation.signature) if operation.signature is not None else None
         self._parts = {pattern.text: _parts(pattern) for pattern in operation.patterns}
         self._own: Signature | None = None
+        self._fixed_parts: dict[tuple[str, type[Any]], str] = {}
         self._last_answers: dict[str | None, Callable[[Mapping[str, Any]], Any]] = {}
         self._last_written: dict[str | None, dict[str, Value]] = {}
 
@@ -315,9 +316,19 @@ class Adapter:
                 continue
             if value is UNKNOWN:
                 self.on_problem(f"{key}.{quantity.name}", _strange_value_error(quantity, found))
+            elif quantity.path.steps and (fixed := self._fixed_part(quantity, start)):
+                text = f"{fixed} cannot be replaced, so the value is left as it is"
+                self.on_problem(f"{key}.{quantity.name}", StrangeValueError(text))
             elif value is not None:
                 values[quantity.name] = value
         return values
+
+    def _fixed_part(self, quantity: Quantity, start: Any) -> str:
+        """Return what on a quantity's path cannot be replaced, as in the first object of this class."""
+        seen = quantity.name, type(start)
+        if seen not in self._fixed_parts:
+            self._fixed_parts[seen] = quantity.path.fixed_part(start)
+        return self._fixed_parts[seen]
 
     def _report_undecided(self, patterns: list[Pattern], invocation: Invocation) -> None:
         """Report the argument whose value fits no mode of the vocabulary."""
@@ -573,6 +584,9 @@ def _unread(quantity: Quantity, error: Exception) -> PathError:
 def _strange_value_error(quantity: Quantity, found: Any) -> StrangeValueError:
     """Return an error that says what to describe instead of an object that is no plain data."""
     path, kind = str(quantity.path), class_name(type(found))
+    if issubclass(type(found), int) or is_textual(found):
+        text = f"no floating-point number can stand for {path or 'the result'}, so its value is left as it is"
+        return StrangeValueError(text)
     what = f"{path or 'the result'} is of {kind}, which is not plain data, so its value is left as it is"
     part = next((name for name in ("x", "y", "z") if hasattr(type(found), name)), "magnitude")
     return StrangeValueError(f"{what}; describe the part of it that is a number, such as {path}.{part}")

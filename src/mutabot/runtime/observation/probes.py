@@ -337,6 +337,8 @@ def _data_of(value: Any, depth: int) -> Any:
         data = data_of(value)
         if isinstance(data, int | float):
             return data
+        if issubclass(kind, int):  # too large to be one
+            return _text(hex(value))
         if isinstance(data, str | bytes | bytearray):
             return _text(data)
         items = items_of(data)
