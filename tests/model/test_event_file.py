@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import json
 import os
 import random
@@ -445,3 +446,17 @@ def test_a_process_that_cannot_write_ends_and_says_so_by_its_exit_code(tmp_path:
         assert in_fork(file, fill) == UNWRITTEN
         file.send(EVENTS[0])
         assert stream.read(is_last=True) == EVENTS[:1]
+
+
+def test_the_bell_takes_the_lowest_descriptor_that_is_free(tmp_path: Path) -> None:
+    reading, writing = os.pipe()
+    high = fcntl.fcntl(writing, fcntl.F_DUPFD, 200)
+    os.close(writing)
+    file = EventFile(str(tmp_path), NAME, KEY, bell=high)
+    with pytest.raises(OSError, match="Bad file descriptor"):
+        os.fstat(high)
+    file.send(ForkEnded(1, 0))
+    assert os.read(reading, 1)
+    file.close()
+    assert os.read(reading, 1) == b""  # nobody else has it open
+    os.close(reading)

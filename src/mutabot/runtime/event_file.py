@@ -40,22 +40,22 @@ class EventFile:
         key: of the seals.
         fail: called if something could not be written; by default it ends the process, of which nobody could
             know anything any more.
-        bell: descriptor of the pipe by which the controller is told that there is something to read.
+        bell: descriptor of the pipe by which the controller is told that there is something to read. It is
+            replaced by the lowest one that is free: tests may expect theirs to follow one upon another.
     """
 
     def __init__(
         self, folder: str, name: str, key: str, fail: Callable[[], None] = _die, bell: int | None = None
     ) -> None:
         self._folder, self.name, self._key, self._fail = folder, name, key, fail
-        self._bell = bell
+        self._bell = None if bell is None else _lowest(bell)
         self._lock = threading.RLock()
         self._last = self.forks = 0
         self._file = -1
         self._status: os.stat_result
         self._open()
-        if bell is not None:
-            os.set_inheritable(bell, False)
-            os.set_blocking(bell, False)
+        if self._bell is not None:
+            os.set_blocking(self._bell, False)
 
     @classmethod
     def of_session(cls, home: str, key: str, bell: int) -> EventFile:
@@ -131,6 +131,14 @@ class EventFile:
             return os.path.samestat(os.fstat(self._file), self._status)
         except OSError:
             return False
+
+
+def _lowest(descriptor: int) -> int:
+    """Return the descriptor under the lowest number that is free; no program that is started inherits it."""
+    os.set_inheritable(descriptor, False)
+    copy = os.dup(descriptor)
+    os.close(max(copy, descriptor))
+    return min(copy, descriptor)
 
 
 class Held:

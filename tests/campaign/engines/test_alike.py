@@ -96,6 +96,29 @@ def test_a_fork_has_the_descriptors_of_its_parent_and_what_the_collector_sees(tm
     assert {outcome.verdict for outcome in found.values()} == {Verdict.SURVIVED}
 
 
+OPENS = """
+    import os
+
+    import mission
+    from robot import Arm
+
+    FILE = open(__file__)
+
+    def test_what_is_opened_gets_one_number_after_the_other():
+        numbers = [os.open(os.devnull, os.O_RDONLY) for _ in range(50)]
+        assert numbers == list(range(numbers[0], numbers[0] + 50))
+        mission.run(Arm())
+        for number in numbers:
+            os.close(number)
+"""
+
+
+@pytest.mark.parametrize("engine", ["fork", "replay"])
+def test_descriptors_of_ours_leave_no_holes_in_the_numbers_of_the_tests(tmp_path: Path, engine: str) -> None:
+    found = run(write_project(tmp_path, MISSION, OPENS), engine=engine, only=("skip",))
+    assert {outcome.verdict for outcome in found.values()} == {Verdict.SURVIVED}
+
+
 @pytest.mark.parametrize(
     "test", [COLLECTS, *(pytest.param(other, marks=pytest.mark.whole) for other in OTHERS)]
 )
