@@ -152,7 +152,8 @@ class Station:
     def line(self, target: Frame, speed: float) -> ArmMotion:
         """A straight motion of the tool point to a pose, at a speed in m/s."""
         at = self.to_cell(target)
-        z, y, x = at.euler()
+        # to 0.0001 degrees: programs write π with six digits, and what is left of a zero angle is no angle
+        z, y, x = (round(angle, 4) for angle in at.euler())
         pose = self._pose_type(*at.position, x, y, z)
         return "move_to", (pose,), _part(speed / self.model.tool_limits.speed)
 
