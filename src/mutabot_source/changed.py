@@ -1,4 +1,4 @@
-"""Mutants of files that tests read as text: the file is changed, as compiled code would not show there."""
+"""Mutants of files that tests read as text: the file is changed too, as compiled code does not show there."""
 
 from __future__ import annotations
 
@@ -6,12 +6,11 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
-from mutabot.api.faults import Activation, Original, Planned, PlannedMutant, ProgramText
+from mutabot.api.faults import Original, Planned, PlannedMutant, ProgramText
 
 from .refine import planned_mutant
 from .written import TextWriter
 
-ACTIVE = "mutabot_source.active:ChangedText"
 _NOT_WRITTEN = "tests read its file as text, and there is no text that says it there"
 
 
@@ -24,10 +23,11 @@ def reach_readers(planned: Planned, original: Original, texts: Iterable[ProgramT
                 planned.reach(round, place.site, tests)
 
 
-def changing(root: Path, text: ProgramText) -> Iterator[PlannedMutant]:
-    """Yield the mutants of a file, each as a real change of the file for its own processes."""
+def changing(root: Path, text: ProgramText, original: Original) -> Iterator[PlannedMutant]:
+    """Yield the mutants of a file, each with the text that the file has in its processes."""
     content = (root / text.file).read_bytes()
     writer, shared = TextWriter(content), content.decode("latin-1")
+    tests = _tests_before_readers(original, text.file)
     for place in text.places:
         for index, alternative in enumerate(place.alternatives):
             edit = writer.edit(place, alternative)
@@ -35,6 +35,22 @@ def changing(root: Path, text: ProgramText) -> Iterator[PlannedMutant]:
                 yield replace(planned_mutant(place, index, _NOT_WRITTEN), active=None)
                 continue
             start, end, written = edit
-            data = {"file": text.file, "content": shared, "edit": [start, end, written.decode("latin-1")]}
-            active = Activation(ACTIVE, data, (), Activation.AT_ONCE)
-            yield replace(planned_mutant(place, index), active=active)
+            planned = planned_mutant(place, index)
+            assert planned.active is not None
+            changed = start, end, written.decode("latin-1")
+            yield replace(planned, active=planned.active.with_file(text.file, shared, changed, tests))
+
+
+def _tests_before_readers(original: Original, file: str) -> list[str] | None:
+    """Return, of each round in which a file is read, the test before the first that reads it.
+
+    None if it may be read before any test: what is read while tests are collected is told by the first.
+    """
+    found: list[str] = []
+    for round, tests in enumerate(original.tests):
+        readers = original.readers(round, file)
+        if readers and readers[0] not in tests[1:]:
+            return None
+        # hooks of the suite may read it after that test
+        found += [tests[tests.index(reader) - 1] for reader in readers[:1]]
+    return found

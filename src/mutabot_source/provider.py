@@ -76,7 +76,7 @@ class SourceFaults(FaultProvider):
             for index in range(len(place.alternatives))
         ]
         found = (
-            changing(project.root, text) if original.is_read(text.file) else plan_mutants([text])
+            changing(project.root, text, original) if original.is_read(text.file) else plan_mutants([text])
             for text in texts
         )
         mutants = [

@@ -113,6 +113,25 @@ class Activation:
         )
         return replace(own, identity=identity, fatal=fatal)
 
+    def with_file(
+        self, file: str, content: str, edit: tuple[int, int, str], tests: Iterable[str] | None
+    ) -> Activation:
+        """Return the activation of this alternative for tests that read its file, which then has it as well.
+
+        Args:
+            file: path of the program's file, relative to the project's root.
+            content: what the file holds, in Latin-1; the same object for all alternatives of the file.
+            edit: what stands where in it with the alternative: the first byte, the one after the last, and
+                the text, in Latin-1.
+            tests: tests before which nothing has read the file; None if something may have read it before
+                any test, so that no process can be forked.
+        """
+        keys = () if tests is None else (*self.keys, *map(at_test, tests))
+        # tests that read the file need not evaluate the place
+        identity, fatal = Activation(IDENTITY_CONTROL), Activation(FATAL_CONTROL)
+        data = (*self.data, file, content, edit)
+        return replace(self, data=data, keys=keys, identity=identity, fatal=fatal)
+
     def control(self, *, is_fatal: bool = False) -> Activation:
         """Return the activation of the identity control at the same place, or of the fatal one."""
         own, reference = (self.fatal, FATAL_CONTROL) if is_fatal else (self.identity, IDENTITY_CONTROL)

@@ -24,13 +24,15 @@ PROGRAM = """
 """
 PROJECT = {
     "mutabot.toml": """
-        program = ["in_process.py", "below.py", "copied.py", "only_imported.py"]
+        program = ["in_process.py", "below.py", "copied.py", "reloaded.py", "early.py", "only_imported.py"]
         tests = ["tests"]
         families = ["conventional"]
         """,
     "in_process.py": PROGRAM,
     "below.py": PROGRAM,
     "copied.py": PROGRAM,
+    "reloaded.py": PROGRAM,
+    "early.py": PROGRAM,
     "only_imported.py": PROGRAM,
     "tests/test_it.py": """
         import importlib
@@ -43,14 +45,17 @@ PROJECT = {
 
         import below
         import copied
+        import early
         import in_process
         import only_imported
+        import reloaded
 
         HERE = Path(__file__).parents[1]
+        EARLY = (HERE / "early.py").read_text()
         CODE = "s = {}; exec(open('below.py').read(), s); print(s['limited'](3), s['idle'](3))"
 
         def test_imports():
-            for module in (below, copied, in_process, only_imported):
+            for module in (below, copied, early, in_process, only_imported, reloaded):
                 assert module.limited(2) == 4
                 assert len(traceback.format_stack()) > 1
 
@@ -68,6 +73,17 @@ PROJECT = {
             monkeypatch.syspath_prepend(tmp_path)
             other = importlib.import_module("other")
             assert (other.limited(3), other.idle(3)) == (6, 6)
+
+        def test_reloads():
+            assert reloaded.limited(2) == 4
+            assert "limited" in Path(reloaded.__file__).read_text()
+            importlib.reload(reloaded)
+            assert (reloaded.limited(3), reloaded.idle(3)) == (6, 6)
+
+        def test_has_read():
+            space = {}
+            exec(EARLY, space)
+            assert (space["limited"](3), space["idle"](3)) == (6, 6)
         """,
 }
 #: what stands for ``x * 2`` in each function
@@ -83,14 +99,22 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Outcome]:
 
 
 @pytest.mark.parametrize(
-    ("file", "test"),
-    [("in_process", "test_reads"), ("below", "test_reads_below"), ("copied", "test_copies")],
+    ("file", "test", "engine"),
+    [
+        ("in_process", "test_reads", "fork"),
+        ("below", "test_reads_below", "fork"),
+        ("copied", "test_copies", "fork"),
+        ("reloaded", "test_reloads", "fork"),
+        ("early", "test_has_read", "replay"),  # it is read before any process can be forked
+    ],
 )
-def test_who_reads_the_text_notices_a_mutant(found: dict[str, Outcome], file: str, test: str) -> None:
+def test_who_reads_the_text_notices_a_mutant(
+    found: dict[str, Outcome], file: str, test: str, engine: str
+) -> None:
     for function in ("limited", "idle"):
         outcome = found[f"{file}.py:{function}"]
         assert (outcome.verdict, outcome.test) == (Verdict.KILLED, f"tests/test_it.py::{test}")
-        assert outcome.engine == "replay"
+        assert outcome.engine == engine
 
 
 def test_a_file_that_is_only_imported_is_judged_as_ever(found: dict[str, Outcome]) -> None:

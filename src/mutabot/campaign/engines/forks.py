@@ -281,7 +281,8 @@ class _ForkRound:
             for test in self._baseline.tests_reaching(self._round, mutant)
             if Activation.EACH_TEST in keys or self._baseline.ends[self._round, test].processes
         ]
-        return (*(key for key in keys if key != Activation.EACH_TEST), *tests)
+        # each once: a mutant is forked for each time that it stands at a key
+        return tuple(dict.fromkeys([*(key for key in keys if key != Activation.EACH_TEST), *tests]))
 
     def take(self, event: events.Event) -> Iterator[Outcome]:
         """Process an event. Yield the outcomes that it settles.

@@ -356,6 +356,10 @@ class SessionText:
         loading.hook_pytest_first(self)
         listen(("exec",), self._on_audit_event)
 
+    def leave_out(self, file: str) -> None:
+        """Compile a file, given by its path in the project, as it stands from now on."""
+        self._texts = {path: text for path, text in self._texts.items() if text.file != file}
+
     def wants(self, path: str) -> bool:
         """Return whether there are alternatives for a file."""
         return self._text_of(path) is not None

@@ -20,7 +20,12 @@ class TextContext(FaultContext, Protocol):
 
 
 class TextMutant(ActiveFault):
-    """A mutant of program text; its data are the number of its place, and its index there."""
+    """A mutant of program text.
+
+    ``data``: the number of its place, and its index there. If tests read the file as text, also what
+    ``Activation.with_file`` adds: then the file is changed as well, as compiled code would not show there.
+    Code of it that is loaded in a process has the alternative; what is loaded later has the text.
+    """
 
     context: TextContext
     is_checked: ClassVar[bool] = False
@@ -28,19 +33,37 @@ class TextMutant(ActiveFault):
 
     def prepare_process(self) -> None:
         """Activate the alternative in place of the original."""
-        if self.context.text is not None:
-            self.context.text.alternatives.activate(*self.data)
+        place, index, *changed = self.data
+        text = self.context.text
+        if changed:
+            file, content, (start, end, written) = changed
+            self.context.change_file(file, f"{content[:start]}{written}{content[end:]}".encode("latin-1"))
+            if text is not None:
+                text.leave_out(file)
+            self.acts()  # whatever reads the file from here on gets the mutant
+        if text is not None:
+            text.alternatives.activate(place, index)
+
+    @property
+    def _changes_file(self) -> bool:
+        return len(self.data) > len(("place", "index"))
 
     def start_test(self, test: str, random: Random) -> None:
-        """Do nothing, as the text resets its own activity."""
+        """Note that a changed file is active; the text resets its own activity."""
+        if self._changes_file:
+            self.acts()
 
     def end_test(self) -> None:
         """Leave the alternative active between tests."""
 
     def begin_count(self) -> None:
-        """Do nothing, as the text resets its own activity."""
+        """Reset the activity of a changed file; the text resets its own."""
+        if self._changes_file:
+            super().begin_count()
 
     @property
     def activity(self) -> Activity:
         """What the mutant did in the running test."""
+        if self._changes_file:
+            return self._activity
         return self.context.text.activity if self.context.text is not None else Activity()
