@@ -9,16 +9,18 @@ from __future__ import annotations
 
 import linecache
 import os
+import re
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from functools import wraps
+from glob import glob
 from types import FrameType
 from typing import Any
 
 from mutabot.extensions import packages
 from mutabot.languages.registry import unit_parser
 from mutabot.runtime.paths import real_folder
-from mutabot.runtime.processes.environment import FRAMES, listen
+from mutabot.runtime.processes.environment import FRAMES, STARTS, listen
 
 #: our own audit event: lines of a file are taken, from the cache or not
 _LINES = "mutabot.getlines"
@@ -34,6 +36,11 @@ _IMPORTING = ("_frozen_importlib", "importlib._bootstrap", "zipimport", "_pytest
 _HARMLESS = (
     "_pytest", "traceback", "warnings", "logging", "doctest", "unittest", "pdb", "bdb", "runpy", "hypothesis",
 )  # fmt: skip
+
+
+#: between the words of a command line, which a shell may read
+_BETWEEN_WORDS = re.compile(r"[\s;|&<>()='\"]+")
+_PYTHON = re.compile(r"python[\d.]*")
 
 
 class TextReads:
@@ -52,6 +59,7 @@ class TextReads:
         """Report from now on."""
         _tell_of_lines()
         listen(("open", _LINES), self._on_audit_event)
+        listen(STARTS, self._on_start)
 
     def name(self, path: str) -> str | None:
         """Return the path of a file of the project, relative to it; None for others."""
@@ -85,6 +93,32 @@ class TextReads:
             package = _reader(frame, _TEXT_FOR_OTHERS).partition(".")[0]
             # packages beside the core run programs, with the mutant in them
             self._tell(name, package not in _HARMLESS and package not in packages())
+
+    def _on_start(self, event: str, arguments: tuple[Any, ...]) -> None:
+        """Report program files that the command line of another program names, as it may read them.
+
+        Python is none: it runs them with the mutant in them.
+        """
+        if is_own(sys._getframe(FRAMES)):
+            return
+        given = arguments[0 if event == "os.system" else 1]
+        lines = [given] if isinstance(given, str | bytes | os.PathLike) else list(given or ())
+        words = [word for line in lines for word in _BETWEEN_WORDS.split(os.fsdecode(line)) if word]
+        if any(_PYTHON.fullmatch(os.path.basename(word)) for word in words):
+            return
+        folder = arguments[2] if event == "subprocess.Popen" and arguments[2] else "."
+        for path in _python_files(os.fsdecode(folder), words[1:] if len(lines) > 1 else words):
+            name = self.name(path)
+            if name is not None:
+                self._tell(name, True)
+
+
+def _python_files(folder: str, words: Iterable[str]) -> Iterator[str]:
+    """Yield the Python files that words of a command line name, also by patterns, and that are no command."""
+    for word in words:
+        for path in glob(os.path.join(folder, word)) if word.endswith(".py") else ():
+            if os.path.isfile(path) and not os.access(path, os.X_OK):
+                yield path
 
 
 def _tell_of_lines() -> None:

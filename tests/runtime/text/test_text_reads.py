@@ -15,7 +15,7 @@ from tests.plugins.test_faults import write
 #: each reads the program in its way, in a function of its own
 READERS = """
     import codecs, importlib.util, importlib.resources, inspect, linecache, logging, os, pkgutil
-    import py_compile, runpy, shutil, tokenize, traceback, zipfile
+    import py_compile, runpy, shutil, subprocess, sys, tokenize, traceback, zipfile
     from pathlib import Path
 
     HERE = Path(__file__).parent
@@ -68,6 +68,22 @@ READERS = """
         shutil.copytree(HERE / "package", HERE / "other")
     def compiles():
         py_compile.compile(str(PROGRAM), str(HERE / "compiled.pyc"))
+    def has_it_copied():
+        subprocess.run(["cp", PROGRAM, HERE / "copied.txt"], check=True)
+    def has_it_searched():
+        subprocess.check_output(["grep", "raise", "mission.py"], cwd=HERE)
+    def asks_a_shell():
+        os.system("sed s/fail/pass/ mission.py > other.txt")
+    def asks_a_shell_for_all():
+        subprocess.run("cat package/p*.py > other.txt", shell=True, cwd=HERE, check=True)
+    def starts_python():
+        subprocess.run([sys.executable, "mission.py"], cwd=HERE, check=True)
+    def has_python_started():
+        os.system(f"{sys.executable} mission.py")
+    def starts_the_file():
+        os.chmod(HERE / "command.py", 0o755)
+        subprocess.run([HERE / "command.py"], check=True)
+        subprocess.run("./command.py", shell=True, cwd=HERE, check=True)
     def packs():
         zipfile.ZipFile(HERE / "packed.zip", "w").write(PROGRAM)
 """
@@ -81,8 +97,11 @@ MAIN = """
     getattr(readers, sys.argv[2])()
     print(json.dumps(sorted(told)))
 """
-NONE = ("imports", "imports_by_its_place", "runs", "fails", "writes")
-OF_PACKAGE = ("asks_for_data", "asks_for_a_resource", "copies_everything")
+NONE = (
+    "imports", "imports_by_its_place", "runs", "fails", "writes", "starts_python", "has_python_started",
+    "starts_the_file",
+)  # fmt: skip
+OF_PACKAGE = ("asks_for_data", "asks_for_a_resource", "copies_everything", "asks_a_shell_for_all")
 
 
 @pytest.fixture(scope="module")
@@ -92,6 +111,7 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[str]]:
         "mission.py": "def fail():\n    raise ValueError\n",
         "package/__init__.py": "",
         "package/part.py": "",
+        "command.py": "#!/bin/sh\n",
         "readers.py": READERS,
         "main.py": MAIN,
     }
@@ -114,7 +134,7 @@ def test_whatever_else_reads_has_the_text(found: dict[str, list[str]]) -> None:
     others = {name: read for name, read in found.items() if name not in NONE}
     wanted = {name: ["package/part.py"] if name in OF_PACKAGE else ["mission.py"] for name in others}
     wanted["copies_everything"] = ["package/__init__.py", "package/part.py"]
-    assert len(others) == 15
+    assert len(others) == 19
     assert others == wanted
 
 

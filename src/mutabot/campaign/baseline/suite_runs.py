@@ -322,7 +322,7 @@ def _note_read_texts(baseline: Baseline, request: Request, progress: Progress) -
     """Tell which files of the program tests read as text, and what comes of that."""
     files = program_files(request.root, request.configuration.program)
     read = [file for file in files if baseline.is_read(file)]
-    reasons = ["each of its mutants changes the file, in a process of its own"] if baseline.texts else []
+    reasons = ["its mutants change the file as well, each for itself"] if baseline.texts else []
     if not {*request.families}.isdisjoint(OF_CALLS):
         reasons.append("mutants of calls act in it only where they run it unchanged")
     if read and reasons:
