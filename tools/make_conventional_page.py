@@ -29,11 +29,12 @@ No file is changed: while the program is imported, each place is compiled as *th
 alternative is chosen*. Tracebacks show your text. Values computed during import (constants, taught points,
 defaults of functions) have mutants too; all tests judge them.
 
-A file that tests read as text (`inspect.getsource`, `exec` or `ast.parse` of what they have read, a copy that
-they import, a command such as `grep` that names it; in their process or below it) is really changed as well, for the
-process of one mutant and all below it. A mutant is [forked](engines.md) before the first reader at the latest, or, if
-the file may be read before any test, runs in processes of its own. All tests from the first reader on judge. Your files
-stay as they are; where [files cannot be private](shared-state.md), such mutants are errors.
+A file that tests read as text (`inspect.getsource`, `exec` or `ast.parse` of what they have read, a copy
+that they import, a command such as `grep` that names it; in their process or below it) is really changed as
+well, for the process of one mutant and all below it. A mutant is [forked](engines.md) before the first
+reader at the latest, or, if the file may be read before any test, runs in processes of its own. All tests
+from the first reader on judge. Your files stay as they are; where [files cannot be
+private](shared-state.md), such mutants are errors.
 
 An alternative with the original's value has not acted. mutabot knows this where the original is a part of the
 alternative, or can be [evaluated beforehand](engines.md#mutants-of-the-program-text); any other alternative
