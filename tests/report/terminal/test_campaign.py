@@ -15,7 +15,7 @@ from rich.console import Console
 from mutabot.errors import SelectionError
 from mutabot.journal.journal import Journal
 from mutabot.journal.records import Untested
-from mutabot.model import By, Outcome, Span, Verdict
+from mutabot.model import By, LeftOut, Outcome, Span, Verdict
 from mutabot.report.terminal.campaign import print_plan, print_results, print_summary
 from mutabot.report.terminal.console import (
     legend,
@@ -407,6 +407,32 @@ def test_the_plan_names_place_operator_and_quantity(width: int) -> None:
     assert row(text, "program", "mission.py:3", "reverse")
     assert "5 mutants" in text
     assert max(cell_len(line) for line in text.splitlines()) <= width
+
+
+def test_ids_in_the_whole_plan_stay_whole() -> None:
+    """``--only`` takes them, and nobody copies a text in pieces."""
+    on = console(20)
+    print_plan(on, samples.MUTANTS, (), Untested(), everything=True)
+    lines = [line.strip() for line in written(on).splitlines()]
+    assert [mutant.id for mutant in samples.MUTANTS if mutant.id not in lines] == []
+
+
+def test_what_is_left_out_of_one_site_for_one_reason_stands_together() -> None:
+    still = "would change nothing in any of 5 calls"
+    left_out = [
+        LeftOut("a.py:run:arm.move#1:x:reverse", "arm.move: x 0 m → 0 m", f"{still} (value 0 m)"),
+        LeftOut("a.py:run:arm.move#2:x:reverse", "arm.move: x 0 m → 0 m", f"{still} (value 0 m)"),
+        LeftOut(
+            "a.py:run:arm.move#1:yaw:by-to", "arm.move: yaw by 0 deg → to 0 deg", f"{still} (value 0 deg)"
+        ),
+    ]
+    on = console(120)
+    print_plan(on, (), left_out, Untested(), everything=True)
+    assert written(on).splitlines()[-3:] == [
+        f"  a.py:run:arm.move#1  {still}:",
+        "    x:reverse, yaw:by-to",
+        f"  a.py:run:arm.move#2:x:reverse  arm.move: x 0 m → 0 m: {still} (value 0 m)",
+    ]
 
 
 def test_texts_of_programs_cannot_play_with_the_terminal() -> None:

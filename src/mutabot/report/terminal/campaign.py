@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from datetime import datetime
@@ -37,6 +38,9 @@ if TYPE_CHECKING:
 _MANY_ROUNDS = 12
 #: rows of a table in the summary
 _ROWS = 10
+#: the site in a mutant's id, and the value in a reason for leaving it out
+_SITE = re.compile(r".*#\d+(?=:)")
+_VALUE = re.compile(r" \(value [^()]*\)$")
 _NEXT = (
     "\n`mutabot show N` prints the details of a mutant, `mutabot results` lists all, "
     "`mutabot suggest` searches for checks that kill survivors."
@@ -125,27 +129,69 @@ def print_plan(
 
     ``everything`` adds ids, all that was left out, and each name of what no test reaches.
     """
+    if everything:
+        _print_each(console, mutants)
+    else:
+        print_section(console, _of_plan(mutants))
+    for section in (*untested(reach, everything=everything), *skipped(left_out, are_listed=everything)):
+        print_section(console, section)
+    if everything:
+        _print_left_out(console, left_out)
+
+
+def _of_plan(mutants: Sequence[Mutant]) -> Section:
+    """Return the planned mutants, a ladder in one line."""
     ladders = Counter(mutant.ladder for mutant in mutants if mutant.ladder)
     others = {name: f", and {count - 1} other magnitudes" for name, count in ladders.items() if count > 1}
     firsts = {mutant.ladder or mutant.id: mutant for mutant in reversed(mutants)}
-    of_them = f" ({plural(len(ladders), 'ladder')} in one line each)" if ladders and not everything else ""
+    of_them = f" ({plural(len(ladders), 'ladder')} in one line each)" if ladders else ""
     rows = [
         (
             str(mutant.number),
             mutant.site.role.value,
             places_text(mutant.site, short_place),
             mutant.operator,
-            mutant.description + (f"\n{mutant.id}" if everything else others.get(mutant.ladder, "")),
+            mutant.description + others.get(mutant.ladder, ""),
         )
         for mutant in mutants
-        if everything or mutant is firsts[mutant.ladder or mutant.id]
+        if mutant is firsts[mutant.ladder or mutant.id]
     ]
     columns = (">no.", "role", "place", "operator", "*fault")
-    print_section(console, Section(f"{plural(len(mutants), 'mutant')}{of_them}", columns, rows))
-    for section in (*untested(reach, everything=everything), *skipped(left_out, are_listed=everything)):
-        print_section(console, section)
-    for item in left_out if everything else ():
-        console.print(below(f"{item.id}  {item.description}: {item.reason}"))
+    return Section(f"{plural(len(mutants), 'mutant')}{of_them}", columns, rows)
+
+
+def _print_each(console: Console, mutants: Sequence[Mutant]) -> None:
+    """Print each mutant with its id, which stays whole, as ``--only`` takes it."""
+    console.print(heading(plural(len(mutants), "mutant")))
+    width = len(str(len(mutants)))
+    for mutant in mutants:
+        place = places_text(mutant.site, short_place)
+        console.print(
+            below(f"{mutant.number:>{width}}  {mutant.site.role.value}  {place}  {mutant.operator}")
+        )
+        console.print(below(mutant.description, width + 4))
+        name = Text(f"{' ' * (width + 4)}{terminal_text(mutant.id)}", style="dim")
+        console.print(name, no_wrap=True, overflow="ignore", crop=False)
+
+
+def _print_left_out(console: Console, left_out: Iterable[LeftOut]) -> None:
+    """Print what is left out; those of one site and reason together, by the rest of their ids."""
+    found: dict[tuple[str, str], list[LeftOut]] = {}
+    for item in left_out:
+        reason = _VALUE.sub("", item.reason)
+        found.setdefault((_site_of(item.id), reason), []).append(item)
+    for (site, reason), items in found.items():
+        if len(items) == 1:
+            console.print(below(f"{items[0].id}  {items[0].description}: {items[0].reason}"))
+            continue
+        console.print(below(f"{site}  {reason}:"))
+        console.print(below(", ".join(item.id.removeprefix(f"{site}:") for item in items), 4))
+
+
+def _site_of(name: str) -> str:
+    """Return the part of a mutant's id that names its site; the id if it names none."""
+    found = _SITE.match(name)
+    return found[0] if found else name
 
 
 def plan_data(mutants: Sequence[Mutant], left_out: Sequence[LeftOut], reach: Untested) -> dict[str, Any]:
