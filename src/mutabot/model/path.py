@@ -244,11 +244,22 @@ def _with_attribute(value: Any, name: str, inner: Any) -> Any:
         raise TypeError("it cannot be copied")
     try:
         setattr(copied, name, inner)
-    except AttributeError:
-        # A frozen dataclass forbids setattr, but its copy is ours alone. A property without a setter
+    except Exception as error:
+        if not isinstance(error, AttributeError) and _can_be_set(copied, name):
+            raise  # it refuses this value
+        # A frozen dataclass or model forbids setattr, but its copy is ours alone. A property without a setter
         # shows what is stored under another name, or is computed: then object.__setattr__ refuses it.
         object.__setattr__(copied, _stored_as(value, name), inner)
     return copied
+
+
+def _can_be_set(copied: Any, name: str) -> bool:
+    """Return whether an attribute takes the value that it has."""
+    try:
+        setattr(copied, name, getattr(copied, name))
+    except Exception:  # each library has its own for what is frozen
+        return False
+    return True
 
 
 def _is_fixed(value: Any, step: Step) -> bool:

@@ -70,6 +70,28 @@ class HandSlots:
     __hash__ = None  # type: ignore[assignment]  # it can change
 
 
+class Immutable:
+    """Refuses in a way of its own, as frozen models of pydantic do."""
+
+    def __init__(self, x: Any) -> None:
+        vars(self)["x"] = x
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise ValueError(f"{name}: the instance is frozen")
+
+    def __eq__(self, other: object) -> bool:
+        return type(other) is Immutable and vars(other) == vars(self)
+
+    __hash__ = None  # type: ignore[assignment]  # of no use here
+
+
+class Validated(SimpleNamespace):
+    def __setattr__(self, name: str, value: Any) -> None:
+        if value < 0:
+            raise ValueError("less than zero")
+        super().__setattr__(name, value)
+
+
 class Computed:
     @property
     def x(self) -> float:
@@ -93,6 +115,7 @@ WRAPPERS: dict[str, tuple[Any, str]] = {
     "frozen_slots_dataclass": (FrozenSlotted, ".x"),
     "object": (ByHand, ".x"),
     "slots_object": (HandSlots, ".x"),
+    "immutable_object": (Immutable, ".x"),
     "namespace": (lambda v: SimpleNamespace(x=v, y=0), ".x"),
     "array_of_objects": (lambda v: np.array([None, v], dtype=object), "[1]"),
 }
@@ -277,6 +300,13 @@ def test_what_a_copy_can_have_otherwise_is_not_fixed(value: Any, text: str) -> N
     path = Path.parse(text, rooted=False)
     assert path.fixed_part(value) == ""
     assert path.get(path.put(value, 5.0)) == 5.0
+
+
+def test_a_value_that_the_class_refuses_is_not_forced_upon_it() -> None:
+    path, value = Path.parse(".x", rooted=False), Validated(x=1.0)
+    assert path.put(value, 2.0).x == 2.0
+    with pytest.raises(PathError, match="less than zero"):
+        path.put(value, -1.0)
 
 
 class MuteError(Exception):
