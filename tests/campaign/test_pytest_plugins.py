@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from textwrap import dedent
 
 import pytest
 
@@ -158,3 +159,59 @@ def check_what_is_said(folder: Path, tests: str, files: dict[str, str], said: st
         run(write_project(folder, MISSION, tests, more=files))
     assert said in str(caught.value)
     assert "rootdir" not in str(caught.value)
+
+
+#: as pyfakefs does: a fake stands in the place of ``os`` in the modules that are loaded, but for some
+FAKE = """
+    import os
+    import sys
+    from contextlib import contextmanager
+
+    class Fake:
+        def __getattr__(self, name):
+            raise OSError("nothing is there")
+
+    class Patcher:
+        SKIPMODULES = {os, os.path, sys}
+
+    @contextmanager
+    def fake_files():
+        fake, replaced = Fake(), []
+        for module in list(sys.modules.values()):
+            is_faked = module.__name__.startswith(("mutabot", "mission")) and vars(module).get("os") is os
+            if is_faked and module not in Patcher.SKIPMODULES:
+                replaced.append(module)
+                module.os = fake
+        sys.modules["os"] = fake
+        try:
+            yield
+        finally:
+            sys.modules["os"] = os
+            for module in replaced:
+                module.os = os
+"""
+IN_FAKE = """
+    import mission
+    import pytest
+    from pyfakefs.fake_filesystem_unittest import fake_files
+    from robot import Arm
+
+    @pytest.fixture
+    def fs():
+        with fake_files():
+            yield
+
+    def test_goes(fs):
+        arm = Arm()
+        mission.go(arm)
+        assert arm.x == 0.25
+"""
+
+
+@pytest.mark.parametrize("engine", ["auto", "replay"])
+def test_a_fake_file_system_stands_in_the_place_of_none_of_our_files(tmp_path: Path, engine: str) -> None:
+    fakes = {"pyfakefs/fake_filesystem_unittest.py": FAKE}
+    folder = write_project(tmp_path, "import os\n" + dedent(MISSION), IN_FAKE, more=fakes)
+    found = run(folder, engine=engine, only=(SKIP, SKIP.replace("skip", "repeat")))
+    assert {(outcome.verdict, outcome.by) for outcome in found.values()} == {(Verdict.KILLED, By.CHECK)}
+    assert {outcome.engine for outcome in found.values()} == {"replay"}

@@ -14,6 +14,7 @@ import faulthandler
 import importlib
 import re
 import signal
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import ModuleType
@@ -21,6 +22,7 @@ from typing import Any
 
 import pytest
 
+from mutabot.extensions import packages
 from mutabot.frozen import frozen
 from mutabot.model.clocks import monotonic
 from mutabot.model.events import Watched
@@ -164,6 +166,16 @@ class _SwitchedOff:
         for plugin in self.plugins:
             for marker in plugin.markers:
                 config.addinivalue_line("markers", f"{marker}: of {plugin.package}, without effect here")
+
+
+def keep_real_files() -> None:
+    """Keep pyfakefs, where it is loaded, from putting a fake file system in the place of ours."""
+    fakes: Any = sys.modules.get("pyfakefs.fake_filesystem_unittest")
+    if fakes is not None:
+        ours = packages()
+        fakes.Patcher.SKIPMODULES.update(
+            module for name, module in sys.modules.copy().items() if name.partition(".")[0] in ours
+        )
 
 
 @contextmanager

@@ -27,7 +27,7 @@ from mutabot.runtime.executed import ExecutedUnits
 from mutabot.runtime.isolation.fork_parent import DECIDED, ForkParent
 from mutabot.runtime.observation.checks import Looks
 from mutabot.runtime.observation.probes import Reading
-from mutabot.runtime.plugins import drop_idle_watchdog, watched, watched_by_faulthandler
+from mutabot.runtime.plugins import drop_idle_watchdog, keep_real_files, watched, watched_by_faulthandler
 from mutabot.runtime.processes.environment import FORKINGS, STARTS, listen
 from mutabot.runtime.processes.member import watch_forks
 from mutabot.runtime.processes.members import Members
@@ -169,6 +169,7 @@ class TestHooks:
     def pytest_runtest_protocol(self, item: pytest.Item) -> Generator[None, Any, Any]:
         """Run one test with its fixtures."""
         session, test = self.session, node_id(item)
+        keep_real_files()
         self.units.start_test()
         if self.fork is not None:
             self.fork.start_test(test)

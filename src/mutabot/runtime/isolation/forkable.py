@@ -93,6 +93,8 @@ def why_not(own_children: Iterable[int], known: frozenset[tuple[int, str]]) -> s
         own_children: processes that this one forked for mutants.
         known: what was open before the user's code ran, as ``open_now`` gives it.
     """
+    if sys.modules["os"] is not os:
+        return "another file system stands in the place of the real one, as by pyfakefs"
     if (busy := _threads() or subprocesses(own_children)) is not None:
         return busy
     maps = _maps()  # which takes a while
