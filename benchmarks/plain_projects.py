@@ -11,15 +11,18 @@ costs and how often one is right. moonbuggy draws no sample: it is given one by 
 command calls. It needs Python 3.12, and is left out below that. Each project keeps its own pytest settings.
 
 Use: ``python benchmarks/plain_projects.py [NAME…] [--tools TOOL…] [--mutants 60] [--judged 8] [--judge TOOL…]
-[--repeat 1] [--venvs FOLDER] [--sources FOLDER] [--json FILE]``. With ``--venvs`` the environments are kept
-there and used again. A distribution without tests is left out, unless there is a checkout under its name in
-``--sources``, which is then used instead of a distribution.
+[--repeat 1] [--in-functions] [--venvs FOLDER] [--sources FOLDER] [--json FILE]``. With
+``--in-functions`` mutabot's mutants are drawn from those in functions, as irradiate's are: one at module
+level is active while the program is imported, and all tests judge it. With ``--venvs`` the environments are
+kept there and used again. A distribution without tests is left out, unless there is a checkout under its
+name in ``--sources``, which is then used instead of a distribution.
 The exit code is 1 if plain pytest contradicts a verdict of mutabot's.
 """
 
 from __future__ import annotations
 
 import argparse
+import ast
 import json
 import os
 import resource
@@ -30,6 +33,7 @@ import tarfile
 import tempfile
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, field
+from functools import cache
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -134,6 +138,9 @@ def main() -> int:
     )
     parser.add_argument("--judge", nargs="+", default=list(TOOLS), choices=TOOLS, help="whose verdicts")
     parser.add_argument("--repeat", type=int, default=1, help="campaigns of each tool, one after another")
+    parser.add_argument(
+        "--in-functions", action="store_true", help="draw mutabot's mutants from those in functions"
+    )
     parser.add_argument("--venvs", type=Path, help="keep the environments in this folder")
     parser.add_argument("--sources", type=Path, help="folder with checkouts of projects")
     parser.add_argument("--json", type=Path, help="write the figures to this file")
@@ -167,7 +174,8 @@ def _compare(
     for _ in range(given.repeat):
         for tool, campaigns in runs.items():
             try:
-                campaigns.append(_RUNS[tool](pythons[tool], folder, project, given.mutants))
+                run = _mutabot_in_functions if tool == "mutabot" and given.in_functions else _RUNS[tool]
+                campaigns.append(run(pythons[tool], folder, project, given.mutants))
             except ToolError as error:
                 print(f"{name}: {tool} {error}", flush=True)
     found: dict[str, Any] = {"pytest": round(suite, 2)}
@@ -251,8 +259,37 @@ def _copy(project: Path, name: str) -> Path:
 
 
 def _mutabot(python: str, folder: Path, project: Project, mutants: int) -> tuple[Figures, list[Judged]]:
+    return _mutabot_of(python, folder, project, ["--sample", str(mutants)])
+
+
+def _mutabot_in_functions(
+    python: str, folder: Path, project: Project, mutants: int
+) -> tuple[Figures, list[Judged]]:
+    """The same with mutants in functions only; to draw them is not counted."""
+    _, done = _cpu([python, "-m", "mutabot.cli.app", "list", "--json"], _copy(folder, "listed"), project)
+    if done.returncode:
+        raise ToolError(f"lists no mutants: {done.stderr[-2000:]}")
+    every = [mutant["id"] for mutant in json.loads(done.stdout)["mutants"] if _is_in_function(folder, mutant)]
+    drawn = Random(0).sample(every, min(mutants, len(every)))
+    return _mutabot_of(python, folder, project, [word for name in drawn for word in ("--only", name)])
+
+
+def _is_in_function(folder: Path, mutant: dict[str, Any]) -> bool:
+    tree, line = _tree(folder / mutant["file"]), mutant["span"]["line"]
+    functions = (node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef))
+    return any(node.body[0].lineno <= line <= (node.end_lineno or 0) for node in functions)
+
+
+@cache
+def _tree(file: Path) -> ast.Module:
+    return ast.parse(file.read_bytes())
+
+
+def _mutabot_of(
+    python: str, folder: Path, project: Project, which: list[str]
+) -> tuple[Figures, list[Judged]]:
     copy = _copy(folder, "mutabot")
-    command = [python, "-m", "mutabot.cli.app", "run", "--sample", str(mutants), "-j", "1", "--json"]
+    command = [python, "-m", "mutabot.cli.app", "run", *which, "-j", "1", "--json"]
     cpu, done = _cpu(command, copy, project)
     if done.returncode:
         raise ToolError(f"ends with exit code {done.returncode}: {done.stderr[-2000:]}")
