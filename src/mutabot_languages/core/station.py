@@ -153,7 +153,7 @@ class Station:
         """A straight motion of the tool point to a pose, at a speed in m/s."""
         at = self.to_cell(target)
         # to 0.0001 degrees: programs write π with six digits, and what is left of a zero angle is no angle
-        z, y, x = (round(angle, 4) for angle in at.euler())
+        z, y, x = (round(angle, 4) + 0.0 for angle in at.euler())  # and no -0.0
         pose = self._pose_type(*at.position, x, y, z)
         return "move_to", (pose,), _part(speed / self.model.tool_limits.speed)
 
