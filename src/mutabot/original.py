@@ -160,18 +160,12 @@ class Original:
 
     def reached_places(self) -> set[int]:
         """Return the numbers of the places of the program text that tests, or processes below them, reach."""
-        found = (
-            tests
-            for seen_text in self.text.values()
-            for tests in (seen_text.reached, *seen_text.below.values())
-        )
+        found = (tests for text in self.text.values() for tests in (text.reached, *text.below.values()))
         return {number for tests in found for numbers in tests.values() for number in numbers}
 
     def refused_files(self) -> dict[str, str]:
         """Return the files of the program whose text could not be instrumented, with the reason."""
-        return {
-            file: why for _, seen_text in sorted(self.text.items()) for file, why in seen_text.refused.items()
-        }
+        return {file: why for _, text in sorted(self.text.items()) for file, why in text.refused.items()}
 
     def readers(self, round: int, file: str) -> list[str]:
         """Return the tests of a round that may use the text of a file otherwise than by importing it.

@@ -69,9 +69,7 @@ def check(request: Request, progress: Progress) -> CheckReport:
     refuse_tracked(request.journal_path)
     previews = dict(_previews(request))
     with locked_executor(request, progress) as opened, ExitStack() as stack:
-        folders = {
-            folder for program_preview in previews.values() for folder in program_preview.folders_left_out
-        }
+        folders = {folder for preview in previews.values() for folder in preview.folders_left_out}
         # files that the first reads itself are not opened by tests: it begins before the second
         with OriginalRuns(request, None, progress) as original, OpenedFiles(request.root, folders) as watch:
             campaign, _ = begin(request, opened, progress, original=original, stack=stack)

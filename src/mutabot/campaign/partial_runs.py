@@ -110,9 +110,7 @@ def replay_one(
     Raises what ``CampaignRun.open`` and ``CampaignRun.current`` raise.
     """
     rounds = sorted(set(rounds))
-    first = {
-        (known_outcome.mutant, known_outcome.round): known_outcome for known_outcome in journal.outcomes()
-    }
+    first = {(outcome.mutant, outcome.round): outcome for outcome in journal.outcomes()}
     with CampaignRun.open(replace(request, rounds=rounds[-1] + 1), progress) as campaign:
         now = campaign.current(mutant)
         campaign.prove([now])

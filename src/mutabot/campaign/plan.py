@@ -7,7 +7,7 @@ of earlier campaigns stay in the journal with their outcomes, and reports show t
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from hashlib import blake2b
 from itertools import groupby
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from mutabot.campaign.baseline.baseline import Baseline
     from mutabot.campaign.request import Request
     from mutabot.config.options import Sample
+    from mutabot.operators.operator import Rule
 
 
 @frozen
@@ -72,18 +73,12 @@ def make_plan(baseline: Baseline, project: Project) -> Plan:
     for made in planned.values():
         made.reach_text(baseline)
     baseline.add_planned({provider.name: found for provider, found in planned.items()})
-    for _, together in groupby(
-        planned, key=lambda fault_provider: fault_provider.numbered_with or fault_provider.name
-    ):
-        found = sorted(
-            (planned_mutant for provider in together for planned_mutant in planned[provider].mutants),
-            key=lambda planned_mutant: planned_mutant.order,
-        )
-        plan.left_out.extend(
-            planned_mutant.as_left_out for planned_mutant in found if planned_mutant.reason is not None
-        )
+    for _, together in groupby(planned, key=lambda provider: provider.numbered_with or provider.name):
+        found = [item for provider in together for item in planned[provider].mutants]
+        found.sort(key=lambda item: item.order)
+        plan.left_out.extend(item.as_left_out for item in found if item.reason is not None)
         first = len(plan.mutants) + 1
-        kept = [planned_mutant.mutant for planned_mutant in found if planned_mutant.reason is None]
+        kept = [item.mutant for item in found if item.reason is None]
         plan.mutants.extend(replace(mutant, number=number) for number, mutant in enumerate(kept, start=first))
     return plan
 
@@ -91,12 +86,7 @@ def make_plan(baseline: Baseline, project: Project) -> Plan:
 def summaries(mutants: Iterable[Mutant]) -> dict[str, str]:
     """Return the summary of each operator that made one of the mutants, by its name."""
     mutants = list(mutants)
-    providers = {mutant.provider: provider(mutant.provider) for mutant in mutants}
-    known = {
-        (name, rule.name): rule.summary
-        for name, fault_provider in providers.items()
-        for rule in fault_provider.rules()
-    }
+    known = {(by, rule.name): rule.summary for by, rule in _rules(mutants)}
     used = sorted({(mutant.family, mutant.operator, mutant.provider) for mutant in mutants})
     return {name: known[by, name] for _, name, by in used if (by, name) in known}
 
@@ -104,14 +94,14 @@ def summaries(mutants: Iterable[Mutant]) -> dict[str, str]:
 def of_common(mutants: Iterable[Mutant]) -> list[Mutant]:
     """The mutants among them of operators that ``--operators common`` keeps."""
     mutants = list(mutants)
-    providers = {mutant.provider: provider(mutant.provider) for mutant in mutants}
-    common = {
-        (name, rule.name)
-        for name, fault_provider in providers.items()
-        for rule in fault_provider.rules()
-        if rule.is_common
-    }
+    common = {(by, rule.name) for by, rule in _rules(mutants) if rule.is_common}
     return [mutant for mutant in mutants if (mutant.provider, mutant.operator) in common]
+
+
+def _rules(mutants: Iterable[Mutant]) -> Iterator[tuple[str, Rule]]:
+    """Yield the operators of these mutants' providers, each with the name of its provider."""
+    for name in {mutant.provider: None for mutant in mutants}:
+        yield from ((name, rule) for rule in provider(name).rules())
 
 
 def drawing(mutants: Iterable[Mutant]) -> list[str]:

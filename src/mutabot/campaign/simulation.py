@@ -179,12 +179,10 @@ def _difference(real: Campaign, results: Sequence[Result], tried: Tried) -> str 
         if repetition:
             continue
         of_round = (runs[round, 0], runs[round, 1], result)
-        ends = [{end.test: end.lasting for end in round_result.ends} for round_result in of_round]
+        ends = [{end.test: end.lasting for end in result.ends} for result in of_round]
         seen = [
-            {end.test: observation(end, places) for end in round_result.ends}
-            for round_result, places in (
-                (round_result, sources.places(round_result.sites)) for round_result in of_round
-            )
+            {end.test: observation(end, places) for end in result.ends}
+            for result, places in ((result, sources.places(result.sites)) for result in of_round)
         ]
         for test in dict.fromkeys([*ends[0], *ends[2]]):
             was, again, now = (end_by_test.get(test, "not run") for end_by_test in ends)

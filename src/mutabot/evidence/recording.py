@@ -183,10 +183,7 @@ def from_bytes(data: bytes) -> Recording:
         head.setdefault("robots", ())  # recordings of earlier versions do not say
         fields = {name: head[name] for name in _PLAIN_FIELDS}
         fields["robots"] = tuple(fields["robots"])
-        fields["blocks"] = tuple(
-            Block(fields_of_block[0], *map(_tuple, fields_of_block[1:]))
-            for fields_of_block in fields["blocks"]
-        )
+        fields["blocks"] = tuple(Block(block[0], *map(_tuple, block[1:])) for block in fields["blocks"])
         fields["moments"] = [RecordedMoment(*fields_of_moment) for fields_of_moment in fields["moments"]]
         fields["calls"] = [RecordedCall(*fields_of_call) for fields_of_call in fields["calls"]]
         return Recording(times, tracks, **fields)

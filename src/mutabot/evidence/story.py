@@ -234,16 +234,8 @@ class _ComparedRuns:
         """Return the verb of a release: whether fingers opened, if they are recorded."""
         if release.value <= SET_DOWN:
             return f"{thing} was set down"
-        paths = [
-            track_path
-            for track_path in self.mutant.paths.values()
-            if track_path.track.kind is TrackKind.VALUE
-        ]
-        fingers = [
-            track_path
-            for track_path in paths
-            if "finger" in track_path.track.name or "gripper" in track_path.track.name
-        ]
+        paths = [path for path in self.mutant.paths.values() if path.track.kind is TrackKind.VALUE]
+        fingers = [path for path in paths if "finger" in path.track.name or "gripper" in path.track.name]
         for path in fingers:
             values = [row[0] for row in path.rows]
             moved = values[path.at(release.at + _AFTER)] - values[path.at(release.at - _BEFORE)]

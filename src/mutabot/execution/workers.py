@@ -205,7 +205,7 @@ class Workers:
         until = time.monotonic() + _SLOWER * seconds + _PATIENCE
         has_told = False
         while time.monotonic() < until and (
-            is_awaited() or any(child_worker.has_forks for child_worker in self._workers)
+            is_awaited() or any(worker.has_forks for worker in self._workers)
         ):
             if not self._workers:
                 return

@@ -200,8 +200,8 @@ class Journal(JournalReader):
     def add_tests(self, tests: Iterable[BaselineTest]) -> None:
         """Add tests of the baseline, all or none."""
         with self._transaction():
-            for baseline_test in tests:
-                self._put("test", baseline_test.test.test, _dump(baseline_test))
+            for row in tests:
+                self._put("test", row.test.test, _dump(row))
 
     def add_control(self, control: ControlEnd) -> None:
         """Add the end of a control."""
@@ -277,16 +277,9 @@ class Journal(JournalReader):
     def take_over(self, found: Iterable[Kept]) -> None:
         """Add outcomes of earlier campaigns."""
         with self._transaction():
-            for kept_outcome in found:
-                self._put(
-                    "outcome",
-                    kept_outcome.mutant,
-                    kept_outcome.round,
-                    kept_outcome.verdict.value,
-                    kept_outcome.data,
-                    kept_outcome.key,
-                    1,
-                )
+            for kept in found:
+                verdict = kept.verdict.value
+                self._put("outcome", kept.mutant, kept.round, verdict, kept.data, kept.key, 1)
 
     def forget(self, mutants: Iterable[str]) -> None:
         """Never reuse what earlier campaigns found about these mutants."""

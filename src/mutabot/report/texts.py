@@ -95,8 +95,7 @@ def portable(campaign: Results) -> Results:
         **found,
         meta=mapped({key: campaign.meta[key] for key in _META if key in campaign.meta}, clean),
         baseline=tuple(
-            replace(baseline_test, test=replace(baseline_test.test, test=clean(baseline_test.test.test)))
-            for baseline_test in campaign.baseline
+            replace(row, test=replace(row.test, test=clean(row.test.test))) for row in campaign.baseline
         ),
         # a mark of the byte order is no part of the first line
         sources=mapped(

@@ -230,7 +230,7 @@ class Results:
     def tests(self) -> list[str]:
         """Node ids of all known tests, including those that mutants name."""
         named = (test for outcome in self.outcomes for test, _ in killing_tests(outcome))
-        baseline = (baseline_test.test.test for baseline_test in self.baseline)
+        baseline = (row.test.test for row in self.baseline)
         return list(dict.fromkeys([*baseline, *self.reaching.tests, *named]))
 
     @classmethod
@@ -382,9 +382,7 @@ def _several(name: str, found: Sequence[MutantResult]) -> str:
 
 
 #: what a campaign says about itself under the name that it has in ``Results``
-_TOLD = {stored_field.name for stored_field in fields(Results)} & (
-    records.FACTS.keys() - records.PLAIN.keys()
-)
+_TOLD = {field.name for field in fields(Results)} & (records.FACTS.keys() - records.PLAIN.keys())
 
 
 def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
@@ -551,7 +549,7 @@ def unlooked(results: Iterable[MutantResult]) -> list[str]:
     return [
         _unlooked_text(*key, found)
         for key, found in groups.items()
-        if key not in open_ones and not any(found_result.kill_rate.killed for found_result in found)
+        if key not in open_ones and not any(result.kill_rate.killed for result in found)
     ]
 
 

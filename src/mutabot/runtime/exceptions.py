@@ -86,9 +86,7 @@ class Refusal:
     def __init__(self, error: BaseException) -> None:
         held = leaves(error)
         self.text = text_of(held[0])
-        self.noted = tuple(
-            KnownError(held_error) for held_error in (error, *(leaf for leaf in held if leaf is not error))
-        )
+        self.noted = tuple(map(KnownError, (error, *(leaf for leaf in held if leaf is not error))))
 
 
 def is_due_to(error: BaseException, culprits: Sequence[KnownError]) -> bool:

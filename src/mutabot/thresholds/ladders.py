@@ -258,19 +258,17 @@ class Ladder:
     @property
     def counted(self) -> tuple[LadderRound, ...]:
         """The rounds that count, by the order of their thresholds."""
-        return tuple(
-            sorted((ladder_round for ladder_round in self.rounds if ladder_round.counts), key=_order)
-        )
+        return tuple(sorted((row for row in self.rounds if row.counts), key=_order))
 
     @property
     def lows(self) -> tuple[float, ...]:
         """The lower ends of their brackets, rising; 0 where even the smallest fault was noticed."""
-        return tuple(sorted(ladder_round.bracket.low or 0.0 for ladder_round in self.counted))
+        return tuple(sorted(row.bracket.low or 0.0 for row in self.counted))
 
     @property
     def highs(self) -> tuple[float, ...]:
         """The upper ends, rising; infinite where nothing was noticed."""
-        ends = (ladder_round.bracket.high for ladder_round in self.counted)
+        ends = (row.bracket.high for row in self.counted)
         return tuple(sorted(math.inf if end is None else end for end in ends))
 
     @property
@@ -302,29 +300,23 @@ class Ladder:
     def violations(self) -> tuple[Violation, ...]:
         """Per round the smallest magnitude that was noticed below a larger one that was missed, if any."""
         return tuple(
-            Violation(
-                ladder_round.number,
-                ladder_round.bracket.out_of_order[0][0],
-                ladder_round.bracket.out_of_order[-1][1],
-            )
-            for ladder_round in self.rounds
-            if ladder_round.bracket.is_violated
+            Violation(row.number, row.bracket.out_of_order[0][0], row.bracket.out_of_order[-1][1])
+            for row in self.rounds
+            if row.bracket.is_violated
         )
 
     @property
     def refused_from(self) -> float | None:
         """The smallest magnitude from which on all results of a round are refusals; None if there is none."""
-        ends = (
-            ladder_round.bracket.refused for ladder_round in self.counted if ladder_round.bracket.high is None
-        )
+        ends = (row.bracket.refused for row in self.counted if row.bracket.high is None)
         return min((end for end in ends if end is not None), default=None)
 
     @property
     def why_unjudged(self) -> str:
         """Why the ladder cannot be judged; empty if it can."""
-        if any(ladder_round.counts for ladder_round in self.rounds):
+        if any(row.counts for row in self.rounds):
             return ""
-        reasons = Counter(ladder_round.why_out for ladder_round in self.rounds)
+        reasons = Counter(row.why_out for row in self.rounds)
         ranked = [
             f"{reason} ({count} of {plural(len(self.rounds), 'round')})"
             for reason, count in reasons.most_common()

@@ -31,27 +31,24 @@ def magnitude_text(magnitude: float, unit: str | None) -> str:
 
 def ladder_line(ladder: Ladder) -> str:
     """Return the line of a ladder that can be judged: a fact about these rounds."""
-    brackets = {
-        (ladder_round.bracket.low, ladder_round.bracket.high, ladder_round.above)
-        for ladder_round in ladder.counted
-    }
-    if not any(ladder_round.is_reached for ladder_round in ladder.counted):
+    brackets = {(row.bracket.low, row.bracket.high, row.above) for row in ladder.counted}
+    if not any(row.is_reached for row in ladder.counted):
         return f"no test reaches it{_all(ladder)}"
     return _alike(ladder) if len(brackets) == 1 else _apart(ladder)
 
 
 def rounds_left_out(ladder: Ladder) -> Iterator[str]:
     """Yield the rounds that do not count although others do, each with the reason."""
-    for ladder_round in ladder.rounds:
-        if ladder_round.why_out:
-            yield f"round {ladder_round.number + 1} {ladder_round.why_out}"
+    for row in ladder.rounds:
+        if row.why_out:
+            yield f"round {row.number + 1} {row.why_out}"
 
 
 def _alike(ladder: Ladder) -> str:
-    ladder_round = ladder.counted[0]
-    low, high = ladder_round.bracket.low, ladder_round.bracket.high
+    row = ladder.counted[0]
+    low, high = row.bracket.low, row.bracket.high
     if high is None:
-        return f"{_never(ladder, ladder_round)}{_all(ladder)}"
+        return f"{_never(ladder, row)}{_all(ladder)}"
     if low is None:
         return f"noticed from {_smallest(ladder, high)}{_all(ladder)}"
     return f"noticed from {_text(ladder, high)}, not at {_text(ladder, low)}{_all(ladder)}"
@@ -83,9 +80,9 @@ def _noticed(ladder: Ladder) -> Iterator[tuple[int, str]]:
 
 def _never_noticed(ladder: Ladder) -> Iterator[str]:
     """Yield the rounds that never notice it, equal ones together."""
-    rounds = [ladder_round for ladder_round in ladder.counted if ladder_round.bracket.high is None]
+    rounds = [row for row in ladder.counted if row.bracket.high is None]
     total = len(ladder.counted)
-    for text, count in Counter(_never(ladder, ladder_round) for ladder_round in rounds).items():
+    for text, count in Counter(_never(ladder, row) for row in rounds).items():
         yield f"{text} ({count} of {plural(total, 'round')})"
 
 
@@ -173,8 +170,8 @@ _KINDS = (
 def _in_all_rounds(ladder: Ladder) -> str:
     """Return the kind of a ladder that can be judged."""
     largest, accepted, effective, some, every, unreached = _KINDS
-    above = {ladder_round.above for ladder_round in ladder.counted}
-    if not any(ladder_round.is_reached for ladder_round in ladder.counted):
+    above = {row.above for row in ladder.counted}
+    if not any(row.is_reached for row in ladder.counted):
         return unreached
     if math.isfinite(ladder.all_from):
         return every
@@ -214,9 +211,9 @@ def _why_unmet(demand: Demand, ladder: Ladder) -> str:
     demanded = demand.magnitude_in(ladder.unit)
     assert demanded is not None, "it speaks of ladders of its own measure alone"
     survivors = [
-        (ladder_round.number + 1, magnitude, outcome)
-        for ladder_round in ladder.rounds
-        for magnitude, outcome in ladder_round.outcomes.items()
+        (row.number + 1, magnitude, outcome)
+        for row in ladder.rounds
+        for magnitude, outcome in row.outcomes.items()
         if is_at_least(magnitude, demanded) and seen(outcome) is MagnitudeResult.MISSED
     ]
     if survivors:
@@ -225,18 +222,14 @@ def _why_unmet(demand: Demand, ladder: Ladder) -> str:
     if ladder.number_of(demanded) is None:
         return f"{size} is not on its ladder; `mutabot run` again plants it"
     verdicts = {
-        ladder_round.number + 1: next(
-            (end.verdict for at, end in ladder_round.outcomes.items() if is_same(at, demanded)), None
-        )
-        for ladder_round in ladder.rounds
+        row.number + 1: next((end.verdict for at, end in row.outcomes.items() if is_same(at, demanded)), None)
+        for row in ladder.rounds
     }
     for verdict, text in _UNKNOWN.items():
         rounds = [number for number, found in verdicts.items() if found is verdict]
         if rounds:
             return f"{size} {text} in {numbers_text(rounds)}{'' if verdict else '; `mutabot run` goes on'}"
-    is_noticed = any(
-        outcome_verdict is not None and outcome_verdict.is_killed for outcome_verdict in verdicts.values()
-    )
+    is_noticed = any(verdict is not None and verdict.is_killed for verdict in verdicts.values())
     if is_noticed or {*verdicts.values()} <= {Verdict.REFUSED, Verdict.GUARDED}:
         return ""
     return f"{size} has no effect in any round, so nothing is known; demand it of other sites"

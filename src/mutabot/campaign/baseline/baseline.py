@@ -56,13 +56,13 @@ class PlantedFaults:
         for provider, found in planned.items():
             made.texts += found.texts
             made.providers.update((place, provider) for _, place in found.reached)
-            for planned_mutant in found.mutants:
-                if planned_mutant.reason is None:
-                    made.by_id[planned_mutant.mutant.id] = planned_mutant
-                    if planned_mutant.active is not None:
-                        made._at_place.setdefault(Place.of(planned_mutant.mutant), planned_mutant.active)
+            for item in found.mutants:
+                if item.reason is None:
+                    made.by_id[item.mutant.id] = item
+                    if item.active is not None:
+                        made._at_place.setdefault(Place.of(item.mutant), item.active)
                 elif provider not in (CALLS, MESSAGES):
-                    made.left_out_beforehand.append(planned_mutant)
+                    made.left_out_beforehand.append(item)
         return made
 
     def active(self, mutant: Mutant) -> Activation:
@@ -227,12 +227,12 @@ class Baseline(Original):
     def add_planned(self, planned: Mapping[str, Planned]) -> None:
         """Add the mutants that the providers have planned, by provider, and the places that tests reach."""
         self.faults = PlantedFaults.of(planned)
-        for planned_mutants in planned.values():
-            self.early |= planned_mutants.early
-            for key, origins in planned_mutants.below.items():
+        for made in planned.values():
+            self.early |= made.early
+            for key, origins in made.below.items():
                 self.below.setdefault(key, set()).update(origins)
-            for (round, place), tests in planned_mutants.reached.items():
-                self.reach(round, place, None if place in planned_mutants.early else frozenset(tests))
+            for (round, place), tests in made.reached.items():
+                self.reach(round, place, None if place in made.early else frozenset(tests))
 
     def reach(self, round: int, place: Place, tests: Collection[str] | None) -> None:
         """Note that these tests reach a place in a round; None is a place that affects all tests."""

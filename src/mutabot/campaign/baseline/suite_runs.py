@@ -425,7 +425,7 @@ def _add_hits(
     good = set(baseline.tests[round])
     live = {places[index] for end in result.ends for index in end.live}
     baseline.written_through |= {
-        live_place for live_place in live if sources.is_among(live_place.site.span, written_through)
+        place for place in live if sources.is_among(place.site.span, written_through)
     }
     for seen in result.sites:
         place = places[seen.index]

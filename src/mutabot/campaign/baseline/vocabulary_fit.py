@@ -121,17 +121,13 @@ def _of_operations(baseline: Baseline, vocabulary: Vocabulary) -> Iterator[Probl
 def _of_probes(baseline: Baseline, vocabulary: Vocabulary) -> Iterator[Problem]:
     readings = [end.probes for end in baseline.ends.values()]
     for probe in vocabulary.probes:
-        known = [
-            (reading_values, names)
-            for reading_values in readings
-            if (names := readings_of(probe, reading_values))
-        ]
+        known = [(values, names) for values in readings if (names := readings_of(probe, values))]
         for quantity in probe.result if known else ():
             values = [
                 value
-                for reading_values, names in known
+                for values, names in known
                 for name in names
-                for value in parts_of(name, quantity, reading_values)
+                for value in parts_of(name, quantity, values)
             ]
             if not values and (is_pattern(quantity) or _is_of_operation(quantity, probe, vocabulary)):
                 continue

@@ -127,26 +127,18 @@ def _by_fork(
             continue
         else:
             ready = [outcome]
-        for ready_outcome in ready:
+        for waiting in ready:
             if not trust.is_open:
-                yield ready_outcome
-            elif trust.awaits(mutants[ready_outcome.mutant], ready_outcome):
-                held.append(ready_outcome)
+                yield waiting
+            elif trust.awaits(mutants[waiting.mutant], waiting):
+                held.append(waiting)
             else:
-                yield from _believed(trust, mutants[ready_outcome.mutant], ready_outcome, left)
+                yield from _believed(trust, mutants[waiting.mutant], waiting, left)
     trust.close()
-    for held_outcome in held:
-        yield from _believed(trust, mutants[held_outcome.mutant], held_outcome, left)
-    left.runs += [
-        (mutant, hindered_outcome.round)
-        for mutant, hindered_outcome in hindered
-        if not trust.believes(hindered_outcome)
-    ]
-    hindered = [
-        (mutant, hindered_outcome)
-        for mutant, hindered_outcome in hindered
-        if trust.believes(hindered_outcome)
-    ]
+    for waiting in held:
+        yield from _believed(trust, mutants[waiting.mutant], waiting, left)
+    left.runs += [(mutant, outcome.round) for mutant, outcome in hindered if not trust.believes(outcome)]
+    hindered = [(mutant, outcome) for mutant, outcome in hindered if trust.believes(outcome)]
     _report_replayed(campaign, left)
     clear_up(campaign, left.suspects)
     left.runs = [run for run in left.runs if run[0].id not in controls]

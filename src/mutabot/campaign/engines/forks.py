@@ -14,6 +14,7 @@ import zlib
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
+from itertools import chain
 from typing import TYPE_CHECKING
 
 from mutabot.campaign.baseline.baseline import observation
@@ -98,11 +99,8 @@ def run_forks(campaign: Campaign, runs: Iterable[MutantRun], left: Unhandled) ->
         else:
             parents[round].add(mutant)
     # the text of all rounds alike, so that one fork server can serve them
-    text = baseline.faults.instrumentation(
-        {
-            forked_mutant.id: forked_mutant for parent in parents.values() for forked_mutant in parent.mutants
-        }.values()
-    )
+    forked = {mutant.id: mutant for parent in parents.values() for mutant in parent.mutants}
+    text = baseline.faults.instrumentation(forked.values())
     by_key = dict(enumerate(cut(list(parents.values()), campaign.executor.spread)))
     tasks = (parent.task(key, text) for key, parent in by_key.items())
     try:
@@ -165,10 +163,8 @@ class _RunInForks(Run):
 
     def unpack(self) -> None:
         """Unpack the ends of tests, which ``hold`` has packed to save memory."""
-        unpacked = (
-            packed_mutant for data in self.packed for packed_mutant in pickle.loads(zlib.decompress(data))
-        )  # packed here
-        for end, seen in (*unpacked, *self.held):
+        unpacked = (pickle.loads(zlib.decompress(data)) for data in self.packed)  # packed here
+        for end, seen in chain(*unpacked, self.held):
             self.own[end.test] = end
             if seen is not None:
                 self.observations[end.test] = seen
@@ -232,10 +228,7 @@ class _ForkRound:
         if count < 2:
             return [self]
         reaching = self._baseline.tests_reaching
-        mutants = sorted(
-            self.mutants,
-            key=lambda waiting_mutant: (reaching(self._round, waiting_mutant), waiting_mutant.id),
-        )
+        mutants = sorted(self.mutants, key=lambda mutant: (reaching(self._round, mutant), mutant.id))
         found = [_ForkRound(self._campaign, self._left, self._round) for _ in range(count)]
         for number, mutant in enumerate(mutants):
             found[number * count // len(mutants)].add(mutant)

@@ -33,14 +33,9 @@ def run_alone(campaign: Campaign, hindered: Sequence[tuple[Mutant, Outcome]]) ->
     """Re-run, with no other task in parallel, the runs that other load delayed. These outcomes are final."""
     if not hindered:
         return
-    first = {
-        (hindered_outcome.mutant, hindered_outcome.round): hindered_outcome
-        for _, hindered_outcome in hindered
-    }
+    first = {(outcome.mutant, outcome.round): outcome for _, outcome in hindered}
     changed = 0
-    for _, outcome in _run(
-        campaign, [(mutant, hindered_outcome.round) for mutant, hindered_outcome in hindered], alone=True
-    ):
+    for _, outcome in _run(campaign, [(mutant, outcome.round) for mutant, outcome in hindered], alone=True):
         before = first[outcome.mutant, outcome.round]
         changed += outcome.verdict is not before.verdict
         yield replace(outcome, beside=before.beside)

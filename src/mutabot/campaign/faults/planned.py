@@ -43,18 +43,17 @@ def _at_moments(
 ) -> list[PlannedMutant]:
     """Return the mutants; each whose operator has moments stands once for each moment asked for."""
     found = []
-    for planned_mutant in planted:
-        rule = rules.get(planned_mutant.mutant.operator)
-        if planned_mutant.reason is not None or rule is None or not rule.has_moments:
-            found.append(planned_mutant)
+    for planned in planted:
+        rule = rules.get(planned.mutant.operator)
+        if planned.reason is not None or rule is None or not rule.has_moments:
+            found.append(planned)
             continue
         for moment in project.moments:
-            made = planned_mutant.mutant if moment is None else _at(planned_mutant.mutant, moment, original)
+            made = planned.mutant if moment is None else _at(planned.mutant, moment, original)
             reason = _why_not(made, rule, project, original)
-            order = (
-                planned_mutant.order if reason is None else (1, *planned_mutant.order[1:])
-            )  # left out here: behind the others
-            found.append(replace(planned_mutant, mutant=made, reason=reason, order=order))
+            # what is left out here comes behind the others
+            order = planned.order if reason is None else (1, *planned.order[1:])
+            found.append(replace(planned, mutant=made, reason=reason, order=order))
     return found
 
 
@@ -97,24 +96,19 @@ def _with_demanded(
     demands, families = project.demands, project.families
     if not demands:
         return [*planted]
-    ladders = split_ladders(
-        planned_mutant.mutant for planned_mutant in planted if planned_mutant.reason is None
-    )[1]
+    ladders = split_ladders(planned.mutant for planned in planted if planned.reason is None)[1]
     wanted = demanded_of(ladders, demands, project.vocabulary)
     found = [
-        planned_mutant
-        for planned_mutant in planted
-        if planned_mutant.mutant.family in families
-        or (
-            planned_mutant.mutant.has_sizes
-            and (planned_mutant.reason is not None or wanted.get(planned_mutant.mutant.ladder))
-        )
+        planned
+        for planned in planted
+        if planned.mutant.family in families
+        or (planned.mutant.has_sizes and (planned.reason is not None or wanted.get(planned.mutant.ladder)))
     ]
     least = {mutants[0].id for mutants in ladders.values()}
     firsts = {
-        planned_mutant.mutant.ladder: planned_mutant
-        for planned_mutant in found
-        if planned_mutant.reason is None and planned_mutant.mutant.id in least
+        planned.mutant.ladder: planned
+        for planned in found
+        if planned.reason is None and planned.mutant.id in least
     }
     for name, mutants in ladders.items():
         found += [
@@ -127,16 +121,10 @@ def _with_demanded(
 
 def _ladders_last(planted: Sequence[PlannedMutant]) -> list[PlannedMutant]:
     """Renumber the mutants so that graded ones come last, ladder by ladder."""
-    _, ladders = split_ladders(
-        planned_mutant.mutant for planned_mutant in planted if planned_mutant.reason is None
-    )
+    _, ladders = split_ladders(planned.mutant for planned in planted if planned.reason is None)
     steps = [mutant.id for mutants in ladders.values() for mutant in mutants]
     order = {mutant: (1, number) for number, mutant in enumerate(steps)}
     others = (
-        (planned_mutant, order.get(planned_mutant.mutant.id) if planned_mutant.reason is None else None)
-        for planned_mutant in planted
+        (planned, order.get(planned.mutant.id) if planned.reason is None else None) for planned in planted
     )
-    return [
-        replace(planned_mutant, order=(0, *planned_mutant.order) if last is None else last)
-        for planned_mutant, last in others
-    ]
+    return [replace(planned, order=(0, *planned.order) if last is None else last) for planned, last in others]

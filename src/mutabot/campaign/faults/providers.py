@@ -15,24 +15,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from mutabot.errors import ExtensionError, MutabotError, OperatorError, unknown_name_text
 from mutabot.families import CALLS, CATALOGUE, GRADED, MESSAGES, MIDDLEWARE, OF_CALLS, ROBOT
-from mutabot.faults import (
-    FaultProvider,
-    Planned,
-    PlannedMutant,
-    Project,
-    brought_providers,
-)
-from mutabot.model import (
-    Call,
-    Kind,
-    Middleware,
-    Mutant,
-    Operation,
-    ProgramText,
-    Reply,
-    Role,
-    Vocabulary,
-)
+from mutabot.faults import FaultProvider, Planned, PlannedMutant, Project, brought_providers
+from mutabot.model import Call, Kind, Middleware, Mutant, Operation, ProgramText, Reply, Role, Vocabulary
 from mutabot.model.activation import Activation
 from mutabot.model.quantity import holds_number, is_number, is_reading_of
 from mutabot.operators import Need, Operator, Subject, load_all
@@ -328,8 +312,7 @@ def _check_promises(rule: Operator, subject: Subject, passage: CallRecord) -> No
     elif Need.IDLE not in rule.needs and not passage.performed and passage.received is passage.call.idle:
         broken = "answers with call.idle, but Need.IDLE is none of its needs"
     if broken is not None:
-        text = f"operator {rule.name!r} {broken} (on {subject.operation.target})"
-        raise OperatorError(text)
+        raise OperatorError(f"operator {rule.name!r} {broken} (on {subject.operation.target})")
 
 
 def _value(subject: Subject, hit: Hit) -> Any:
@@ -422,10 +405,10 @@ def texts_of(project: Project, tell: Callable[[str], None]) -> dict[str, tuple[P
 
 def provider(name: str) -> FaultProvider:
     """Return the provider of this name. Raises ExtensionError if there is none."""
-    own = {known_provider.name: known_provider for known_provider in _OWN}
-    known = (
-        own if name in own else {known_provider.name: known_provider for known_provider in all_providers()}
-    )
+    own = next((found for found in _OWN if found.name == name), None)
+    if own is not None:
+        return own
+    known = {found.name: found for found in all_providers()}
     if name in known:
         return known[name]
     raise ExtensionError(unknown_name_text("provider of faults", name, known))
@@ -442,12 +425,8 @@ def family_of(mutant: str) -> str:
 def rules_of(families: Collection[str]) -> list[Rule]:
     """Return the operators of the providers of these families; of other packages nothing is loaded."""
     known = _OWN if set(families) <= set(OF_CALLS) else all_providers()
-    wanted = (
-        known_provider
-        for known_provider in known
-        if known_provider in _OWN or not set(known_provider.families).isdisjoint(families)
-    )
-    return [rule for wanted_provider in wanted for rule in wanted_provider.rules()]
+    wanted = (found for found in known if found in _OWN or not set(found.families).isdisjoint(families))
+    return [rule for found in wanted for rule in found.rules()]
 
 
 def operators_of_packages() -> dict[str, str]:

@@ -305,17 +305,11 @@ def _known(journal: Journal, parts: Sequence[ShardJournal]) -> list[tuple[Mutant
     """Return mutants of earlier campaigns beside the plan; the last shard's description counts."""
     planned = parts[0].mutants
     readers = [journal, *(part.journal for part in parts)]
-    found = {
-        known_mutant.id: (known_mutant, outdated)
-        for part in readers
-        for known_mutant, outdated in part.known()
-    }
+    found = {mutant.id: (mutant, outdated) for part in readers for mutant, outdated in part.known()}
     for mutant in planned:
         found.pop(mutant.id, None)
-    return [
-        (known_mutant, found[known_mutant.id][1])
-        for known_mutant in renumbered([known_mutant for known_mutant, _ in found.values()], planned)
-    ]
+    mutants = renumbered([mutant for mutant, _ in found.values()], planned)
+    return [(mutant, found[mutant.id][1]) for mutant in mutants]
 
 
 def _merge_recordings(

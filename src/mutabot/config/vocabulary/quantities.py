@@ -93,10 +93,7 @@ def read_quantities(
             quantities.append(quantity)
     if sides.is_message:
         root = sides.root if is_written else None
-        quantities = [
-            replace(known_quantity, path=in_message(known_quantity.path, root))
-            for known_quantity in quantities
-        ]
+        quantities = [replace(quantity, path=in_message(quantity.path, root)) for quantity in quantities]
     return tuple(quantities)
 
 

@@ -107,7 +107,7 @@ def _row(result: MutantResult, tests: Mapping[str, int]) -> dict[str, Any]:
         **data_of.facts(result, _ROW),
         "status": state_of(result),
         "why": "; ".join(filter(None, [acceptance_text(result), effect_text(result)])),
-        "ends": "".join(mark_of(round_outcome).letter for round_outcome in result.rounds),
+        "ends": "".join(mark_of(outcome).letter for outcome in result.rounds),
         "kills": [*kills.values()],
     }
 
@@ -443,11 +443,7 @@ class Recorded:
         return sum(len(self.evidence.tests(result.mutant.id, number)) for number in range(len(result.rounds)))
 
     def _places(self, result: MutantResult) -> Iterator[tuple[int, str]]:
-        found = [
-            (number, round_outcome)
-            for number, round_outcome in enumerate(result.rounds)
-            if round_outcome is not None
-        ]
+        found = [(number, outcome) for number, outcome in enumerate(result.rounds) if outcome is not None]
         for number, outcome in sorted(found, key=lambda numbered: weight_of(numbered[1]), reverse=True):
             diverged = [divergence.test for divergence in outcome.diverged]
             tests = self.evidence.tests(result.mutant.id, number)

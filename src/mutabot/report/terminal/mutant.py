@@ -66,11 +66,11 @@ def print_replayed(console: Console, mutant: Mutant, rounds: Iterable[Replayed])
     console.print(
         Text(f"Mutant {mutant.number}: {terminal_text(mutant.description)}", style="bold", overflow="fold")
     )
-    for replayed_round in rounds:
-        console.print(heading(f"Round {replayed_round.round + 1}: {states[replayed_round.agrees]}"))
-        ends = [("now", replayed_round.second)]
-        if replayed_round.first is not None and not replayed_round.agrees:
-            ends.append((f"in the journal ({replayed_round.first.engine})", replayed_round.first))
+    for replayed in rounds:
+        console.print(heading(f"Round {replayed.round + 1}: {states[replayed.agrees]}"))
+        ends = [("now", replayed.second)]
+        if replayed.first is not None and not replayed.agrees:
+            ends.append((f"in the journal ({replayed.first.engine})", replayed.first))
         for name, outcome in ends:
             console.print(below("\n".join([f"{name}: {describe_end(outcome)}", *_details(outcome)])))
 

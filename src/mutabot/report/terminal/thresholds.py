@@ -60,9 +60,7 @@ def bar(ladder: Ladder) -> str:
 
 
 def _noticed_by(ladder: Ladder) -> str:
-    by = Counter(
-        ladder_round.noticed_by for ladder_round in ladder.counted if ladder_round.noticed_by is not None
-    )
+    by = Counter(round.noticed_by for round in ladder.counted if round.noticed_by is not None)
     rounds = len(ladder.counted)
     counts = [f"{name} in {count} of {plural(rounds, 'round')}" for name, count in by.most_common()]
     return ", ".join(counts) or ladder_line(ladder)

@@ -311,12 +311,8 @@ class MutatedSite:
         """
         if not self._due:
             return
-        due = [
-            due_call
-            for due_call in self._due
-            if due_call[0] <= hits and (is_async or not due_call[1].made.is_async)
-        ]
-        self._due = [due_call for due_call in self._due if due_call not in due]
+        due = [late for late in self._due if late[0] <= hits and (is_async or not late[1].made.is_async)]
+        self._due = [late for late in self._due if late not in due]
         for _, mutated, call in due:
             late = replace(mutated, passage=CallRecord(mutated.passage.call, [call], is_late=True))
             late.does_nothing = False

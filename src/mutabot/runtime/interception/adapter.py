@@ -108,9 +108,9 @@ class Invocation:
         parameter = self.signature.parameters.get(name)
         kind = parameter.kind if parameter is not None else Parameter.KEYWORD_ONLY
         positional = [
-            signature_parameter.name
-            for signature_parameter in self.signature.parameters.values()
-            if signature_parameter.kind in _POSITIONAL
+            parameter.name
+            for parameter in self.signature.parameters.values()
+            if parameter.kind in _POSITIONAL
         ]
         values = self.values or {}
         if kind is Parameter.VAR_POSITIONAL:
@@ -123,7 +123,7 @@ class Invocation:
             args[positional.index(name)] = value
         elif kind is Parameter.POSITIONAL_ONLY:  # a default: what comes before it must be given as well
             before = positional[len(args) : positional.index(name)]
-            args.extend(values.get(parameter_name) for parameter_name in before)
+            args.extend(values.get(name) for name in before)
             args.append(value)
         else:
             kwargs[name] = value
