@@ -267,7 +267,7 @@ def not_installed(name: str, kind: str) -> str | None:
     package = _OF_OWN_PACKAGES.get(kind, {}).get(name)
     if package is None or name in (found := brought(kind)):
         return None
-    if any(package == _package(part.reference) for part in found.values()):  # a family of its operators
+    if any(package == package_of(part.reference) for part in found.values()):  # a family of its operators
         return None
     return f"comes with the package {package}, which is not installed"
 
@@ -290,9 +290,7 @@ def references_for_processes(languages: Collection[str] = ()) -> dict[str, dict[
 def use(parts: Mapping[str, Mapping[str, str]]) -> None:
     """Use only these parts, which the controller has found, in a process of the tests."""
     _SentParts.parts = {
-        kind: {
-            name: ExtensionPart(name, reference, _package(reference)) for name, reference in declared.items()
-        }
+        kind: {name: ExtensionPart(name, at, package_of(at)) for name, at in declared.items()}
         for kind, declared in parts.items()
     }
 
@@ -311,10 +309,12 @@ def libraries() -> dict[str, tuple[str, ...]]:
 
 def packages() -> frozenset[str]:
     """Return the top-level packages of mutabot and its parts, whose own calls are not the program's."""
-    return frozenset({GROUP, *(_package(part.reference) for kind in _OWN for part in brought(kind).values())})
+    references = (part.reference for kind in _OWN for part in brought(kind).values())
+    return frozenset({GROUP, *map(package_of, references)})
 
 
-def _package(reference: str) -> str:
+def package_of(reference: str) -> str:
+    """Return the top-level package of a reference, ``module:name``."""
     return reference.partition(":")[0].partition(".")[0]
 
 

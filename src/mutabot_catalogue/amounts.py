@@ -289,7 +289,7 @@ class SilentLimit(ValueOperator):
     examples = (Example.changed(_LIMITED, 100, 90), Example.unchanged(_LIMITED, 50, "it is within"))
 
     def fits(self, quantity: Quantity, whole: Subject) -> bool:
-        is_number = quantity.is_measured or quantity.kind in (Kind.OPENING, Kind.OUTPUT)
+        is_number = quantity.kind.is_measured or quantity.kind in (Kind.OPENING, Kind.OUTPUT)
         return is_number and _has_limits(quantity) and not quantity.is_whole
 
     def change(self, value: Any, context: Context) -> Any | None:

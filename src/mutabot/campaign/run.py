@@ -169,10 +169,8 @@ def _note_lacking(request: Request, original: OriginalRuns, progress: Progress) 
 def _tidy(journal: Journal, request: Request, whole: Plan) -> None:
     """Forget mutants that the program no longer has; families that were not planned are kept."""
     there = {mutant.id for mutant, _ in journal.known()} | {mutant.id for mutant in whole.mutants}
-    rest = {kept_mutant for kept_mutant, _ in journal.kept()} - there
-    journal.tidy(
-        [*there, *(kept_mutant for kept_mutant in rest if family_of(kept_mutant) not in request.families)]
-    )
+    rest = {mutant for mutant, _ in journal.kept()} - there
+    journal.tidy([*there, *(mutant for mutant in rest if family_of(mutant) not in request.families)])
 
 
 def _end(journal: Journal, part: Plan, rounds: int) -> str:

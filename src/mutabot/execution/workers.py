@@ -201,13 +201,11 @@ class Workers:
     def rest(self, is_awaited: Callable[[], bool], seconds: float) -> Iterator[Result | tuple[Task, Event]]:
         """See ``Executor.rest``."""
         for worker in self._workers:
-            worker.stop_forks()
+            worker.home.stop_forks()
         until = time.monotonic() + _SLOWER * seconds + _PATIENCE
         has_told = False
-        while time.monotonic() < until and (
-            is_awaited() or any(worker.has_forks for worker in self._workers)
-        ):
-            if not self._workers:
+        while time.monotonic() < until and self._workers:
+            if not is_awaited() and not any(worker.home.has_forks for worker in self._workers):
                 return
             if not has_told:
                 has_told = True
@@ -321,7 +319,8 @@ class Workers:
                     yield key.data.task, line
         now = time.monotonic()
         for worker in list(self._workers):
-            if now >= worker.deadline.until and not worker.has_ended and worker.is_out_of_time():
+            deadline, process = worker.deadline, worker.process
+            if now >= deadline.until and not worker.has_ended and deadline.is_over(process.pid):
                 worker.expire()
             if worker.has_ended:
                 yield from self._finish(worker)
@@ -353,7 +352,7 @@ class _Worker:
         self.task = task
         self.result = Result(task, held=1 if task.is_fork_parent else 0)
         self.events = events
-        self._home, self.process = home, process
+        self.home, self.process = home, process
         self.left: list[str] | None = None
         self._started = time.monotonic()
         self.deadline = Deadline(task.startup)
@@ -362,15 +361,6 @@ class _Worker:
     def has_ended(self) -> bool:
         """Whether the process is gone."""
         return self.process.exit_code is not None
-
-    @property
-    def has_forks(self) -> bool:
-        """Whether the process has forks whose end it has not reported."""
-        return self._home.has_forks
-
-    def stop_forks(self) -> None:
-        """Make the process end its forks and start no more."""
-        self._home.stop_forks()
 
     def watch(self, selector: selectors.BaseSelector) -> None:
         selector.register(self.events.bell, selectors.EVENT_READ, self)
@@ -393,10 +383,6 @@ class _Worker:
             self.deadline = Deadline(limit)
         return events
 
-    def is_out_of_time(self) -> bool:
-        """Return whether it has used up its time."""
-        return self.deadline.is_over(self.process.pid)
-
     def expire(self) -> None:
         """End the process group, whose time is up."""
         deadline = self.deadline
@@ -407,17 +393,17 @@ class _Worker:
     def finish(self, selector: selectors.BaseSelector) -> tuple[list[Event], Result]:
         """Collect the last events of a process that has ended, and its result."""
         self.result.exit_code = self._end()
-        lines = self._taken([] if self._home.is_whole else [_HOME_LOST])
+        lines = self._taken([] if self.home.is_whole else [_HOME_LOST])
         lines += self._taken(self.events.read(is_last=True))
         if self.result.find_overdue(time.monotonic()):
             self.result.hindered = self.deadline.used.hindrance()
         if self.result.end is None:
-            children = Children(str(self._home.folder), self._home.key)
+            children = Children(str(self.home.folder), self.home.key)
             children.read()
             lines += self._taken([Acted(test) for test in acted_in(children.records.values())])
             lines += self._taken([Untrusted(children.doubt)] if children.doubt is not None else [])
         self.result.wall = time.monotonic() - self._started + self.process.startup
-        self.result.log = self._home.log_text()
+        self.result.log = self.home.log_text()
         self.close(selector)
         return lines, self.result
 
@@ -429,12 +415,12 @@ class _Worker:
         self.events.close()
         self._end()
         self.process.release()
-        self._home.remove()
+        self.home.remove()
 
     def _end(self) -> int:
         """End the process and everything started below it. Return its exit code."""
         code = self.process.end()
         if self.left is None:
             left = self.process.left
-            self.left = end_left_over(self._home.processes) if left is None else left
+            self.left = end_left_over(self.home.processes) if left is None else left
         return code

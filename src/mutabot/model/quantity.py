@@ -255,11 +255,6 @@ class Quantity:
         """The names of an orientation's parts, if they are attributes."""
         return "xyz" if self.kind is Kind.ROTATION_VECTOR else (self.order or "").lower()
 
-    @property
-    def is_measured(self) -> bool:
-        """Whether its values are numbers on a scale."""
-        return self.kind in MEASURED
-
     def allows(self, value: Value) -> bool:
         """Return whether the robot API accepts this value, as far as the vocabulary describes that."""
         if self.values is not None and value not in self.values:
@@ -345,11 +340,7 @@ class Quantity:
                 return before.distance(after) < _SAME_ORIENTATION
         if kind not in MEASURED and kind is not Kind.STAMP:
             return same(first, second)
-        if hasattr(type(first), "tolist"):
-            first = first.tolist()
-        if hasattr(type(second), "tolist"):
-            second = second.tolist()
-        return _are_same(self, first, second)
+        return _are_same(self, _listed(first), _listed(second))
 
     def rotated(
         self, value: Value, change: Callable[[Quaternion], Quaternion], least: float = _SAME_ORIENTATION
@@ -502,14 +493,16 @@ def same(first: Value, second: Value) -> bool:
     are_floats = isinstance(first, float) and isinstance(second, float)
     if are_floats and isclose(first, second, rel_tol=_RELATIVE, abs_tol=_ABSOLUTE):
         return True
-    if hasattr(type(first), "tolist"):
-        first = first.tolist()
-    if hasattr(type(second), "tolist"):
-        second = second.tolist()
+    first, second = _listed(first), _listed(second)
     try:
         return bool(first == second) or bool(first != first and second != second)  # noqa: PLR0124  # NaN
     except Exception:  # a value of the user's may compare in any way; what cannot be compared differs
         return False
+
+
+def _listed(value: Value) -> Value:
+    """Return an array or a scalar of numpy as plain values; others unchanged."""
+    return value.tolist() if hasattr(type(value), "tolist") else value
 
 
 def numbers_of(value: Any, names: Sequence[str]) -> Any:

@@ -13,6 +13,7 @@ from mutabot.model.left_out import NOTHING, by_heading
 from mutabot.model.outcome_text import first_line
 from mutabot.results.divergence import UNKNOWN_END
 from mutabot.results.results import OUTSIDE, Results, unlooked
+from mutabot.results.score import percent
 from mutabot.results.statistics import Estimate, Interval, false_kills, false_survivors
 from mutabot.thresholds.thresholds import ladder_line, thresholds_of
 
@@ -114,13 +115,8 @@ def _score_row(group: Group) -> tuple[str, ...]:
     scores, total = group.scores, group.scores.total
     interval = f" ({between(scores.interval)})" if scores.interval is not None else ""
     score, check = f"{percent(scores.mean)}{interval}", percent(scores.mean_check)
-    return (
-        f"{group.family} · {group.role}",
-        str(group.mutants),
-        score,
-        check,
-        f"{total.killed} of {total.valid}",
-    )
+    killed = f"{total.killed} of {total.valid}"
+    return f"{group.family} · {group.role}", str(group.mutants), score, check, killed
 
 
 def _sample_line(group: Group) -> str:
@@ -265,11 +261,8 @@ def _reliability(results: Results) -> Iterator[Section]:
     for text, rows in ((_DAMAGED, results.set_aside), (_ALTERED, results.altered)):
         if rows:
             yield Section(text, lines=rows, is_alarm=True)
-    condition = results.meta.get(RAN_OVER)
-    yield from (
-        Section(str(remark))
-        for remark in (*([condition] if condition else ()), *(results.meta.get(REMARKS) or ()))
-    )
+    remarks = [*filter(None, [results.meta.get(RAN_OVER)]), *(results.meta.get(REMARKS) or ())]
+    yield from (Section(str(remark)) for remark in remarks)
     if confirmed is not None:
         yield Section(f"{confirmed.text}.", is_alarm=bool(confirmed.wrong))
     if checked is not None:
@@ -349,11 +342,6 @@ def size_text(results: Results) -> str:
     kinds = [plural(len(results.mutants), "mutant")] if results.mutants or not results.ladders else []
     kinds += [plural(results.ladders, "ladder")] if results.ladders else []
     return f"{' and '.join(kinds)} × {plural(results.rounds, 'round')}"
-
-
-def percent(share: float | None) -> str:
-    """Return a score as text: ``92.3 %``, or ``–`` where nothing was valid."""
-    return "–" if share is None else f"{100 * share:.1f} %"
 
 
 def between(interval: Interval | None) -> str:

@@ -78,7 +78,7 @@ def decide(
         text = f"{total.timeouts} of {total.valid} valid outcomes are time-outs ({share:.0%})"
         return Decision(ExitCode.TOO_MANY_TIMEOUTS, (f"{text}; the limit is {max_timeouts:.0%}",))
     low = tuple(_too_low(results, min_score)) if min_score is not None else ()
-    low += (*_too_loose(results, demands), *_found(results, fail_on))
+    low += (*unmet(demands, ladders_of(results) if demands else ()), *_found(results, fail_on))
     return Decision(ExitCode.SCORE_TOO_LOW, low) if low else Decision(ExitCode.FINE)
 
 
@@ -170,11 +170,6 @@ def _nothing_valid(results: Results) -> str:
         return "the robot or its guard refused every mutant, so nothing is known about the tests"
     ends = ", ".join(f"{count} {verdict}" for verdict, count in counts.items())
     return f"no mutant was valid ({ends}), so nothing is known about the tests"
-
-
-def _too_loose(results: Results, demands: Sequence[Demand]) -> Iterator[str]:
-    """Yield each site that tolerates more than demanded, with direction and rounds."""
-    return unmet(demands, ladders_of(results) if demands else ())
 
 
 def _found(results: Results, fail_on: Collection[str]) -> Iterator[str]:

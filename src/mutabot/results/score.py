@@ -223,3 +223,8 @@ def _is_found(outcome: Outcome) -> bool:
 def _share(outcome: Outcome | None, counts: Callable[[Outcome], bool]) -> float | None:
     """Return an outcome's cell in the table for intervals: 1, 0, or None outside the score."""
     return float(counts(outcome)) if outcome is not None and outcome.verdict.is_valid else None
+
+
+def percent(share: float | None) -> str:
+    """Return a score as text: ``92.3 %``, or ``–`` where nothing was valid."""
+    return "–" if share is None else f"{100 * share:.1f} %"

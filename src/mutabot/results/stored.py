@@ -23,6 +23,7 @@ from mutabot.journal.recordings import ORIGINAL, Recordings
 from mutabot.model.codec import shallow
 from mutabot.results.encoder import Encoder
 from mutabot.results.results import Results
+from mutabot.results.score import percent
 from mutabot.thresholds.thresholds import Thresholds, thresholds_of
 
 if TYPE_CHECKING:
@@ -128,8 +129,8 @@ class StoredCampaign(Results):
     def _repr_html_(self) -> str:
         """Return scores and the first survivors as HTML, for notebooks."""
         scores = [
-            (f"{group.family} · {group.role}", str(group.mutants), _percent(group.scores.mean),
-             _percent(group.scores.mean_check), str(group.scores.accepted))
+            (f"{group.family} · {group.role}", str(group.mutants), percent(group.scores.mean),
+             percent(group.scores.mean_check), str(group.scores.accepted))
             for group in self.groups
         ]  # fmt: skip
         first = self.survivors[:_SHOWN]
@@ -157,10 +158,6 @@ class StoredCampaign(Results):
     def rows(self) -> list[dict[str, Any]]:
         """Return one row per outcome, by column, as in docs/reports.md. ``pandas.DataFrame`` takes this."""
         return list(rows(self))
-
-
-def _percent(share: float | None) -> str:
-    return "–" if share is None else f"{100 * share:.1f} %"
 
 
 def _table(head: Sequence[str], found: Sequence[Sequence[str]]) -> str:

@@ -143,14 +143,9 @@ class _ControlFault(ActiveFault):
 
     is_checked: ClassVar[bool] = False
 
-    @property
-    def is_of_start(self) -> bool:
-        """Whether the control is reached as a test begins."""
-        return all((key[2] if key[0] == NTH else key[0]) == TEST for key in self.keys)
-
     def start_test(self, test: str, random: Random) -> None:
         """Act at the start of each test, if that is the control's place."""
-        if self.is_of_start:
+        if all((key[2] if key[0] == NTH else key[0]) == TEST for key in self.keys):
             self.control()
 
     def reach(self, key: Key) -> None:

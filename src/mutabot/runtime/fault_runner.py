@@ -118,12 +118,12 @@ class FaultRunner:
         """Pass on a key that the running test has reached. Raises FatalFault for the fatal control."""
         fault = self._fault
         if fault is None or key not in fault.keys:
-            return None
+            return
         if isinstance(fault, FatalControl):
-            return fault.reach(key)
+            fault.reach(key)
+            return
         with self._guarded("put in place"), self.context.untracked():
             fault.reach(key)
-        return None
 
     def refused(self, error: BaseException, call: Call) -> None:
         """Note that the robot refuses a call, and not in the original: a changed program may cause that."""

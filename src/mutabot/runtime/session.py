@@ -11,7 +11,7 @@ from random import Random
 from typing import TYPE_CHECKING, Any
 
 from mutabot.evidence import recorder
-from mutabot.model.activation import CALL_FAULT, at_text
+from mutabot.model.activation import CALL_FAULT
 from mutabot.model.events import Acted, Called, CallsAsked, Event, KnownLater, Noted, SiteSeen, TextsSeen
 from mutabot.model.job import Idle
 from mutabot.model.operation import owner_of
@@ -277,12 +277,7 @@ class Session:
 
     def _watch_text(self) -> None:
         if self.text is not None and self.fork_parent is not None:
-            self.text.watch(self._reach_text, self.fork_parent.places())
-
-    def _reach_text(self, place: int, indexes: frozenset[int]) -> None:
-        """Note alternatives in the program text that may differ from here on."""
-        if self.fork_parent is not None:
-            self.fork_parent.reach(*(at_text(place, index) for index in indexes))
+            self.text.watch(self.fork_parent.reach_text, self.fork_parent.places())
 
     def become(self, mutant: Mutant, activation: Activation) -> None:
         """Become this mutant, in a process that was just forked."""

@@ -326,10 +326,8 @@ def _note_read_texts(baseline: Baseline, request: Request, progress: Progress) -
     if not {*request.families}.isdisjoint(OF_CALLS):
         reasons.append("mutants of calls act in it only where they run it unchanged")
     if read and reasons:
-        rounds = range(len(baseline.tests))
-        first = next(
-            tests[0] for tests in (baseline.readers(seed_round, read[0]) for seed_round in rounds) if tests
-        )
+        readers = (baseline.readers(round, read[0]) for round in range(len(baseline.tests)))
+        first = next(tests[0] for tests in readers if tests)
         progress.note(f"tests from {first} on may read {in_short(read, 2)} as text: {'; '.join(reasons)}")
 
 

@@ -17,12 +17,7 @@ from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mutabot.campaign.reuse.parts import (
-    Parts,
-    environment_parts,
-    everything_of,
-    operation_parts,
-)
+from mutabot.campaign.reuse.parts import Parts, environment_parts, everything_of, operation_parts
 from mutabot.campaign.reuse.source_tree import SourceTree
 from mutabot.frozen import frozen
 from mutabot.journal.records import ACCEPTED

@@ -15,9 +15,10 @@ import stat
 import struct
 from collections.abc import Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path, PurePosixPath
 from types import TracebackType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from mutabot.campaign.project_files import UNREAD, is_folder_of_project, is_name_of_project
 from mutabot.config.suppressions import FILE as ACCEPTED_FILE
@@ -113,6 +114,7 @@ _FOR_PEOPLE = re.compile(
 
 _FOR_TOOLS = {ACCEPTED_FILE, ".gitignore", ".gitattributes", ".editorconfig", ".coverage", ".DS_Store"}
 HASH = "#"
+_new_hash = partial(hashlib.blake2b, digest_size=12)
 
 
 @dataclass(frozen=True, slots=True)
@@ -203,10 +205,6 @@ def _digest_of(path: Path) -> str | None:
         return None
     except OSError as error:
         return f"cannot be read: {error.strerror}"
-
-
-def _new_hash(text: bytes = b"") -> Any:
-    return hashlib.blake2b(text, digest_size=12)
 
 
 @dataclass(frozen=True, slots=True)

@@ -47,7 +47,7 @@ class NumberOperator(ValueOperator):
         """Return the new number; ``size`` is in the quantity's unit, negative for direction ``-``."""
 
     def fits(self, quantity: Quantity, whole: Subject) -> bool:
-        return quantity.is_measured and self.magnitudes(quantity) is not None
+        return quantity.kind.is_measured and self.magnitudes(quantity) is not None
 
     def directions_of(self, quantity: Quantity) -> Iterable[str]:
         return [part + direction for part in _components_of(quantity) for direction in self.directions]

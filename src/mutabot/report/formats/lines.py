@@ -27,7 +27,8 @@ def mutant_line(result: MutantResult) -> str:
     data = mutant_data(result)
     place = one_line(places_text(result.mutant.site, lambda span: span.place))
     what = one_line(result.mutant.description)
-    cells = (_keyword(data["status"]), str(data["number"]), place, data["operator"], what, data["why"])
+    keyword = data["status"].upper().replace(" ", "-")
+    cells = (keyword, str(data["number"]), place, data["operator"], what, data["why"])
     return "\t".join(cells)
 
 
@@ -45,7 +46,3 @@ def _score(group: Mapping[str, Any]) -> str:
         for share in (group["score"], group["check_score"])
     )
     return f"{group['family']} {group['role']} {' by check '.join(shares)}"
-
-
-def _keyword(state: str) -> str:
-    return state.upper().replace(" ", "-")

@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from mutabot.runtime.active_fault import ActiveFault
-from mutabot.runtime.activity import Activity
 from mutabot.runtime.interception.active_mutant import MutatedSite
 
 if TYPE_CHECKING:
     from random import Random
 
     from mutabot.model import Mutant
+    from mutabot.runtime.activity import Activity
     from mutabot.runtime.session import Session
 
 
@@ -25,11 +25,10 @@ class CallMutant(ActiveFault):
         super().__init__(mutant, data, context)
         self._is_early = not context.test
         operation = context.job.vocabulary.operation(mutant.operation)
-        self._active: MutatedSite | None = None
-        if operation is not None:
-            operation = operation.by_numbers() if mutant.by_number else operation
-            context_facts = (context.acted_in_call, context.in_mutated_call, lambda: context.seconds)
-            self._active = MutatedSite(mutant, operation, context.refusals_of(operation), *context_facts)
+        assert operation is not None, "mutants of calls are planned for the vocabulary of their job"
+        operation = operation.by_numbers() if mutant.by_number else operation
+        context_facts = (context.acted_in_call, context.in_mutated_call, lambda: context.seconds)
+        self._active = MutatedSite(mutant, operation, context.refusals_of(operation), *context_facts)
 
     def prepare_process(self) -> None:
         """Activate the mutant: calls while the program is imported count for all tests."""
@@ -39,14 +38,12 @@ class CallMutant(ActiveFault):
 
     def start_test(self, test: str, random: Random) -> None:
         """Begin a test, or continue it in this process, which was forked in it."""
-        if self._active is not None and self._is_early:
+        if self._is_early:
             self._active.early = self._active.activity
         self._is_early = False
         self._start()
 
     def _start(self) -> None:
-        if self._active is None:
-            return
         context, mutant = self.context, self.mutant
         usual = context.dispatcher.refused.at(mutant.site.span, mutant.operation, mutant.pattern)
         seed, moment = context.seed_of(mutant), context.moment_of(mutant)
@@ -61,7 +58,5 @@ class CallMutant(ActiveFault):
     @property
     def activity(self) -> Activity:
         """What the mutant did in the running test."""
-        if self._active is None:
-            return Activity()
         self._active.look_back()
         return self._active.activity

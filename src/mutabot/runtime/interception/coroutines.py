@@ -9,11 +9,12 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Coroutine, Generator
 from contextvars import ContextVar
-from types import FunctionType, MethodType, coroutine
+from types import FunctionType, coroutine
 from typing import Any
 
 from mutabot.runtime.interception.adapter import Caller, is_mock
 from mutabot.runtime.interception.frames import from_here
+from mutabot.runtime.targets.wrapper import unbound
 
 #: the class of mocks of coroutine functions, and what runs when one is called
 ASYNC_MOCK, _MOCKS_CALL = "AsyncMockMixin", "_execute_mock_call"
@@ -23,14 +24,14 @@ _CALLED = object()
 
 def runs_when_awaited(wrapped: Callable[..., Any]) -> bool:
     """Return whether a call does nothing before its result is awaited."""
-    function = _function(wrapped)
+    function = unbound(wrapped)
     function = function if type(function) is FunctionType else type(function).__call__
     return bool(getattr(getattr(function, "__code__", None), "co_flags", 0) & inspect.CO_COROUTINE)
 
 
 def named_as(wrapped: Callable[..., Any], waiting: Any) -> Any:
     """Give a coroutine the name of what the callable returns: Python and tests tell of it by that."""
-    function = _function(wrapped)
+    function = unbound(wrapped)
     is_function = type(function) is FunctionType
     if is_mock(getattr(function, "mock", None) if is_function else function, ASYNC_MOCK):
         waiting.__name__, waiting.__qualname__ = _MOCKS_CALL, f"{ASYNC_MOCK}.{_MOCKS_CALL}"
@@ -100,7 +101,3 @@ async def _going_on(rest: Any) -> Any:
 
 async def _given(result: Any) -> Any:
     return result
-
-
-def _function(wrapped: Callable[..., Any]) -> Any:
-    return wrapped.__func__ if type(wrapped) is MethodType else wrapped

@@ -27,11 +27,6 @@ def border(function: F) -> F:
     return function
 
 
-def is_border(code: CodeType) -> bool:
-    """Return whether frames of this code carry out an operation."""
-    return id(code) in borders
-
-
 def is_within_border(frame: FrameType | None) -> bool:
     """Return whether an outer frame carries out an operation."""
     while frame is not None and id(frame.f_code) not in borders:
@@ -84,7 +79,7 @@ def without_ours(traceback: TracebackType | None) -> TracebackType | None:
     while traceback is not None:
         frames.append(traceback)
         traceback = traceback.tb_next
-    borders_here = (number for number, frame in enumerate(frames) if is_border(frame.tb_frame.f_code))
+    borders_here = (number for number, frame in enumerate(frames) if id(frame.tb_frame.f_code) in borders)
     callers = (number for number in borders_here if not is_ours(frames[number].tb_frame))
     first, following = next(callers, -1), None
     for number, step in reversed(list(enumerate(frames))):

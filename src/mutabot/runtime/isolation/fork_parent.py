@@ -154,6 +154,10 @@ class ForkParent:
         if here:
             self._fork([mutant for mutant in here if is_due(mutant)])
 
+    def reach_text(self, place: int, indexes: Iterable[int]) -> None:
+        """Fork each mutant of the program text that may differ at a place from here on."""
+        self.reach(*(at_text(place, index) for index in indexes))
+
     def places(self) -> dict[int, frozenset[int]]:
         """Return the alternatives of the program text that are live in the running test, by place."""
         if self._places is None:
@@ -256,11 +260,9 @@ class ForkParent:
             if pids is None:
                 return
             deadline = Deadline(self._limit(self._number), is_counted=True)
-            is_test_control = self.is_test_control(mutant)
-            is_control = mutant.family == Identity.family
-            child = Child(
-                mutant.id, is_control, is_test_control, self.event_file.forks, pids, self._number, deadline
-            )
+            is_control, is_test_control = mutant.family == Identity.family, self.is_test_control(mutant)
+            fork = self.event_file.forks
+            child = Child(mutant.id, is_control, is_test_control, fork, pids, self._number, deadline)
             self._children[pids.fork] = child
             self._take_token()
         if not self._children:  # else a test of the original may notice, which the campaign will see
@@ -344,17 +346,15 @@ class ForkParent:
         """Return whether the campaign was interrupted, so that no more mutants begin and others are ended."""
         if not self._stopped and os.path.exists(os.path.join(self.files.home, STOP)):
             self._stopped = True
-            unwanted = [forked for forked in self._children.values() if not self._is_to_end(forked)]
+            # controls may end by themselves, and who has reached the end of the session
+            ends = (child for child in self._children.values() if not child.is_control)
+            unwanted = [child for child in ends if not self._finished[self._slots[child.mutant]]]
             for child in unwanted:
                 child.is_unwanted = True
                 os.kill(child.pids.fork, signal.SIGKILL)
             for child in unwanted:
                 self._report_end(self._children.pop(child.pids.fork))
         return self._stopped
-
-    def _is_to_end(self, child: Child) -> bool:
-        """Return whether a child may end by itself after an interruption, as controls may."""
-        return child.is_control or bool(self._finished[self._slots[child.mutant]])
 
     def _limit(self, test: int) -> Limit:
         """Return the time limit of a fork for a test, by its number; -1 before any."""

@@ -143,10 +143,12 @@ class Member:
         self._test = self._now.number
         now = monotonic()
         name = f"{os.getpid()}-{int(now * 1e6)}"
-        self.file = EventFile(folder, name, job.key, self._now.note_unwritten)
+        self.event_file = EventFile(folder, name, job.key, self._now.note_unwritten)
         command = tuple(getattr(sys, "orig_argv", sys.argv))
         is_forked = session is not None
-        self.file.send(events.Began(os.getpid(), os.getpgrp(), command, now, self._test, forked=is_forked))
+        self.event_file.send(
+            events.Began(os.getpid(), os.getpgrp(), command, now, self._test, forked=is_forked)
+        )
         if session is None:
             watch_copies(job.root, job.program, self._now.began)
             executed_text.install()
@@ -171,7 +173,7 @@ class Member:
         """Continue with the parent's session in a process that was forked, and report it."""
         session = self.session
         for site in () if isinstance(session, TextOnly) else session.recorder.sites:
-            self.file.send(site)
+            self.event_file.send(site)
         self._reported = session.activity.copy()
         if session.meter is not None:
             session.meter.continue_in_copy()
@@ -195,7 +197,7 @@ class Member:
         """Report each call that the session records."""
 
         def hit(site: int, written: Any, read: Any, answer: Any) -> None:
-            self.file.send(events.Called(site, written, read, answer, monotonic()))
+            self.event_file.send(events.Called(site, written, read, answer, monotonic()))
 
         def heard(hear: Callable[[str, Any], None], name: str, message: Any) -> None:
             before = session.activity.refusing_answer
@@ -205,11 +207,11 @@ class Member:
 
         session.recorder.on_hit, session.dispatcher.turn = hit, self.turn
         session.dispatcher.on_end = lambda call, read: self.poll()
-        session.on_noted = self.file.send
+        session.on_noted = self.event_file.send
         messages = session.messages
         if messages is None:
             return
-        messages.on_node = lambda name: self.file.send(events.Found(nodes=(name,)))
+        messages.on_node = lambda name: self.event_file.send(events.Found(nodes=(name,)))
         if messages.on_heard is not None:
             messages.on_heard = partial(heard, messages.on_heard)
 
@@ -217,7 +219,7 @@ class Member:
         """Report a file that this process reads as text."""
         if is_text and _member is self and name not in self._texts:
             self._texts.add(name)
-            self.file.send(events.Found(texts=(name,)))
+            self.event_file.send(events.Found(texts=(name,)))
 
     def turn(self) -> None:
         """Check whether another test has begun."""
@@ -244,7 +246,7 @@ class Member:
             case events.PlacesReached():
                 self._reached(line.places)
             case _ if isinstance(line, _TOLD):  # the test process tells of its tests itself
-                self.file.send(line)
+                self.event_file.send(line)
 
     def poll(self) -> None:
         """Report what the mutant did, and which targets were found, since the last report."""
@@ -252,7 +254,7 @@ class Member:
         now, before = session.activity, self._reported
         if now.hits != before.hits or now != before:
             self._reported = now.copy()
-            self.file.send(self._did(before, now))
+            self.event_file.send(self._did(before, now))
         if not isinstance(session, TextOnly):
             self._report_found(session)
         meter = session.meter
@@ -270,7 +272,7 @@ class Member:
         for operation in session.job.vocabulary.operations:
             if operation.target in targets:
                 session.inspection.check_target(operation, session.targets)
-        self.file.send(events.Found(targets=tuple(sorted(targets))))
+        self.event_file.send(events.Found(targets=tuple(sorted(targets))))
 
     def _did(self, before: Activity, now: Activity) -> events.Did:
         away = {why: count - before.away.get(why, 0) for why, count in now.away.items()}
@@ -290,7 +292,7 @@ class Member:
         meter = self.session.meter
         if meter is not None:
             used = meter.operations, self.session.commands, meter.simulated
-            self.file.send(events.Used(*used, meter.exceeded, meter.guarded))
+            self.event_file.send(events.Used(*used, meter.exceeded, meter.guarded))
 
     def _watch_text(self) -> None:
         """Report places of the program text as they are reached, since the process may end at any time."""
@@ -313,7 +315,7 @@ class Member:
         new = set(places) - self._places
         if new:
             self._places |= new
-            self.file.send(events.PlacesReached(self.session.test, tuple(sorted(new))))
+            self.event_file.send(events.PlacesReached(self.session.test, tuple(sorted(new))))
 
     def _own_failure(self, error: BaseException) -> str | None:
         return None if isinstance(self.session, TextOnly) else self.session.failure_in(error)
@@ -329,9 +331,9 @@ class Member:
         if self.session.text is not None:
             self.session.text.finish()
         if not isinstance(self.session, TextOnly) and self.session.job.record:
-            self.file.send(self.session.intercepted_calls())
-        self.file.send(events.Found(modules=tuple(sorted(self._modules_of_vocabulary()))))
-        self.file.send(events.SessionEnd())
+            self.event_file.send(self.session.intercepted_calls())
+        self.event_file.send(events.Found(modules=tuple(sorted(self._modules_of_vocabulary()))))
+        self.event_file.send(events.SessionEnd())
 
     def _modules_of_vocabulary(self) -> set[str]:
         vocabulary = self.session.job.vocabulary
@@ -363,11 +365,11 @@ class Member:
 
     def _on_audit_event(self, event: str, arguments: tuple[Any, ...]) -> None:
         if event in ("os.kill", "os.killpg") and _member is self:
-            self.file.send(events.Signalled(-arguments[0] if event == "os.killpg" else arguments[0]))
+            self.event_file.send(events.Signalled(-arguments[0] if event == "os.killpg" else arguments[0]))
         elif event == "os.exec" and _member is self:
             self.end()
         if _member is self and starts_a_killer(event, arguments):
-            self.file.send(events.Signalled(ANYBODY))
+            self.event_file.send(events.Signalled(ANYBODY))
 
     def _raised(self, error: BaseException, *, in_thread: bool) -> None:
         if isinstance(error, KeyboardInterrupt | SystemExit) or _member is not self:
@@ -376,7 +378,7 @@ class Member:
         first = leaves(error)[0]
         if isinstance(first, TimeExceeded):
             return
-        self.file.send(
+        self.event_file.send(
             events.Raised(
                 f"{type(first).__qualname__}: {text_of(first)[:2000].strip()}",
                 is_refusal=is_due_to(error, self.session.activity.culprits),

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from mutabot.extensions import brought
+from mutabot.extensions import brought, package_of
 from mutabot.model import events
 from mutabot.model.activation import Activation
 from mutabot.model.event_file import FOLDER
@@ -140,18 +140,15 @@ class Members:
 
 def _write_wake(folder: str, job: Job) -> None:
     names: set[str] = set()
-    nodes = {_top(module) for module in brought("middlewares")}  # what any node imports
+    nodes = {package_of(module) for module in brought("middlewares")}  # what any node imports
     for operation in job.vocabulary.operations:
-        names.update(nodes if operation.named is not None else [_top(operation.target)])
+        names.update(nodes if operation.named is not None else [package_of(operation.target)])
     if job.vocabulary.clock is not None:
-        names.add(_top(job.vocabulary.clock.tick))
+        names.add(package_of(job.vocabulary.clock.tick))
     awaited = {activation.awaits for activation in job.active.values()}
-    names.update(map(_top, awaited - {Activation.AT_ONCE, Activation.FIRST_TEST, Activation.FIRST_TICK}))
+    modules = awaited - {Activation.AT_ONCE, Activation.FIRST_TEST, Activation.FIRST_TICK}
+    names.update(map(package_of, modules))
     files = [os.path.realpath(os.path.join(job.root, path)) for path in (*job.program, *job.oracle)]
     for path in (*job.program, *job.oracle):
         names.update(part.removesuffix(".py") for part in path.split("/") if part not in (".", "..", ""))
     write_wake(folder, _JOIN, job.key, names, files)
-
-
-def _top(target: str) -> str:
-    return target.partition(":")[0].partition(".")[0]

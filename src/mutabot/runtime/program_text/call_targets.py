@@ -48,7 +48,7 @@ from mutabot.model.signature import signature_of
 from mutabot.runtime.executed_text import file_of
 from mutabot.runtime.interception.adapter import Adapter, is_mock
 from mutabot.runtime.interception.dispatcher import is_coroutine_function, is_untracked
-from mutabot.runtime.interception.frames import ModuleCache, is_border
+from mutabot.runtime.interception.frames import ModuleCache, borders
 from mutabot.runtime.interception.trace import Locator
 from mutabot.runtime.program_text.call_sites import NOTHING, CallSite, Guards
 from mutabot.runtime.targets.callables import Callables
@@ -240,10 +240,8 @@ class CallTargets:
         adapter = self.named(site.name, found, receiver, frame)
         if adapter is None and self.known:
             target = self.known.get(self.place(site, frame)[0])
-            adapter = next(
-                (candidate for candidate in self.by_name[site.name] if candidate.operation.target == target),
-                None,
-            )
+            named = self.by_name[site.name]
+            adapter = next((other for other in named if other.operation.target == target), None)
         if adapter is None:
             self.alone.add(self.place(site, frame)[0])
         else:
@@ -259,9 +257,7 @@ class CallTargets:
     def named(self, name: str, found: Any, receiver: Any, frame: FrameType) -> Adapter | None:
         """Return the operation of this name that a callable replaces."""
         mock = mock_of(found)
-        is_read = is_mock(
-            mock, "PropertyMock"
-        )  # such are called when the attribute is read, which nobody calls
+        is_read = is_mock(mock, "PropertyMock")  # called as the attribute is read, which nobody calls
         raw, kinds = self.callables.found, (property, cached_property)
         ones = [
             adapter
@@ -527,7 +523,7 @@ class PassedCallables:
         if mark is None and name not in self._call_targets.by_name:
             return original(mock, *args, **kwargs)
         caller = _caller(frame)
-        if is_untracked() or (caller is not None and is_border(caller.f_code)):  # the operation itself
+        if is_untracked() or (caller is not None and id(caller.f_code) in borders):  # the operation itself
             return original(mock, *args, **kwargs)
         if mark is not None:
             adapter, receiver, place = mark[0], mark[1](), mark[2]

@@ -412,11 +412,6 @@ class SessionText:
         self.problems[text.file] = reason
         self.writer.send(NotInstrumented(text.file, reason))
 
-    @property
-    def is_mutant(self) -> bool:
-        """Whether an alternative is active."""
-        return self.alternatives.active is not None
-
     def start_test(self, test: str) -> None:
         """Begin a test."""
         if self._test is None:  # what happened before any test
@@ -437,7 +432,7 @@ class SessionText:
         """End the test."""
         if self.sightings is not None:
             self._report_reached()
-        elif self.alternatives.on_place is not None and not self.is_mutant:
+        elif self.alternatives.on_place is not None and self.alternatives.active is None:
             self.alternatives.watch({})  # what is reached between tests belongs to none
 
     def finish(self, others: Iterable[TextsSeen] = ()) -> None:
