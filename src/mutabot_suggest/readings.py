@@ -87,7 +87,7 @@ def object_readings(project: SuiteFiles) -> list[tuple[str, float]]:
     coarse = max((probe.tolerance for probe in vocabulary.probes), default=1e-6)
     found = {probe.target: probe.tolerance for probe in vocabulary.probes if _is_of_objects(probe.target)}
     for operation in vocabulary.operations:
-        if _only_reads(operation) and not operation.patterns and "." in operation.qualname:
+        if _only_reads(operation) and not operation.patterns and "." in operation.name:
             found.setdefault(operation.target, coarse)
     return list(found.items())
 
@@ -132,7 +132,7 @@ def _only_reads(operation: Operation) -> bool:
 
 def _calls(operation: Operation) -> Iterator[str]:
     """Yield the argument lists with which a function only reads: none, or a text that selects a value."""
-    if not _only_reads(operation) or "." in operation.qualname:
+    if not _only_reads(operation) or "." in operation.name:
         return
     if not operation.patterns:
         yield "()"

@@ -257,11 +257,8 @@ class SuiteChecks:
             self.project.import_name(program_file).rpartition(".")[2]
             for program_file in self.project.program_files
         }
-        commands = {
-            operation.qualname.rpartition(".")[2]
-            for operation in self.project.request.vocabulary.operations
-            if operation.command
-        }
+        operations = self.project.request.vocabulary.operations
+        commands = {operation.last_name for operation in operations if operation.command}
         for call in (inner_call for inner_call in ast.walk(node) if isinstance(inner_call, ast.Call)):
             name = ast.unparse(call.func)
             last, first = name.rpartition(".")[2], name.partition(".")[0]

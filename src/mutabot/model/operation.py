@@ -317,19 +317,14 @@ class Operation:
         return "" if self.named is not None else self.target.partition(":")[0]
 
     @property
-    def qualname(self) -> str:
-        """The part of the target that is looked up in the module."""
-        return self.target if self.named is not None else self.target.partition(":")[2]
-
-    @property
     def name(self) -> str:
-        """The short name for reports."""
-        return self.qualname
+        """The part of the target that is looked up in the module; reports call the operation by it."""
+        return self.target if self.named is not None else self.target.partition(":")[2]
 
     @property
     def last_name(self) -> str:
         """The last part of the name by which it is called."""
-        return self.qualname.rpartition(".")[2]
+        return self.name.rpartition(".")[2]
 
     @property
     def described(self) -> dict[str, str]:

@@ -308,11 +308,7 @@ class _ModuleLevel(ast.NodeTransformer):
     def visit_ClassDef(self, node: ast.ClassDef) -> ast.ClassDef | None:
         had = len(node.body)
         self.generic_visit(node)
-        own = [
-            statement for statement in node.body if not isinstance(statement, ast.Expr)
-        ]  # a docstring is one
-        return (
-            None
-            if len(node.body) < had and not own and not (node.decorator_list or node.bases or node.keywords)
-            else node
-        )
+        is_plain = not (node.decorator_list or node.bases or node.keywords)
+        # a docstring is an expression
+        is_empty = is_plain and all(isinstance(statement, ast.Expr) for statement in node.body)
+        return None if len(node.body) < had and is_empty else node

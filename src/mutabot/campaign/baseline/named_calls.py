@@ -117,9 +117,8 @@ def _calls(nodes: Sequence[ast.AST], scope: _CallScope) -> Iterator[tuple[ast.Ca
             yield from _calls([node.body] if isinstance(node.body, ast.expr) else node.body, inner)
         elif isinstance(node, ast.ClassDef):
             yield from _calls(outer_of(node), scope)
-            yield from _calls(
-                node.body, _CallScope(scope.inner(node.name), scope.functions, node, is_class=True)
-            )
+            inner = _CallScope(scope.inner(node.name), scope.functions, node, is_class=True)
+            yield from _calls(node.body, inner)
         elif isinstance(node, ast.If) and last_name(node.test) == "TYPE_CHECKING":
             yield from _calls(node.orelse, scope)
         elif isinstance(node, ast.AnnAssign):
@@ -140,9 +139,8 @@ class _Origins:
         for node in ast.walk(tree):
             if isinstance(node, ast.Import):
                 for alias in node.names:
-                    self.imported[alias.asname or alias.name.partition(".")[0]] = (
-                        alias.name if alias.asname else alias.name.partition(".")[0]
-                    )
+                    top = alias.name.partition(".")[0]
+                    self.imported[alias.asname or top] = alias.name if alias.asname else top
             elif isinstance(node, ast.ImportFrom):
                 module = "." * node.level + (node.module or "")
                 self.imported |= {name.asname or name.name: f"{module}.{name.name}" for name in node.names}
@@ -174,9 +172,8 @@ class _Origins:
             case ast.Await(value=value):
                 return self.of(value, scope, depth + 1)
             case ast.Constant(value=str(text)) if depth:  # an annotation may be a text
-                return (
-                    self.of(ast.parse(text, mode="eval").body, scope, depth + 1) if _is_name(text) else None
-                )
+                is_name = all(part.isidentifier() for part in text.split("."))
+                return self.of(ast.parse(text, mode="eval").body, scope, depth + 1) if is_name else None
             case ast.Constant() | ast.JoinedStr() | ast.List() | ast.Dict() | ast.Set() | ast.Tuple():
                 return "builtins"
         return None
@@ -206,10 +203,6 @@ class _Origins:
 
     def _of_value(self, value: ast.AST | None, scope: _CallScope, depth: int) -> str | None:
         return self.of(value, scope, depth + 1) if value is not None else None
-
-
-def _is_name(text: str) -> bool:
-    return all(part.isidentifier() for part in text.split("."))
 
 
 def _methods(owner: ast.ClassDef) -> set[str]:
@@ -268,16 +261,13 @@ def _doubt(
         if origin is None:
             return "" if not (scope.functions or is_method) else "it is a variable that is called"
         is_own = function.id in origins.defined and origin == _HERE + function.id
-        return (
-            ""
-            if _is_of(origin, module, known) and not (is_own and not _is_in(operation, origins.file))
-            else None
-        )
+        is_elsewhere = is_own and not _is_in(operation, origins.file)
+        return "" if _is_of(origin, module, known) and not is_elsewhere else None
     value = function.value if isinstance(function, ast.Attribute) else function
     origin = origins.of(function, scope)
     if origin == _HERE + getattr(function, "attr", "") and _is_self(value):
         return None  # the program's own method
-    if _is_super(value):
+    if isinstance(value, ast.Call) and last_name(value.func) == "super":
         return ""
     origin = origins.of(value, scope)
     if origin is None:
@@ -303,10 +293,6 @@ def _is_in(operation: Operation, file: str) -> bool:
 
 def _is_self(node: ast.AST) -> bool:
     return isinstance(node, ast.Name) and node.id in ("self", "cls")
-
-
-def _is_super(node: ast.AST) -> bool:
-    return isinstance(node, ast.Call) and last_name(node.func) == "super"
 
 
 def _root(node: ast.AST) -> str:

@@ -19,6 +19,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from operator import methodcaller
 from typing import TYPE_CHECKING
 
 from mutabot.campaign.faults.providers import provider
@@ -151,13 +152,9 @@ def controls_of(baseline: Baseline, mutants: Iterable[Mutant], *, forked: bool =
     for (by, early), candidates in found.items():
         has_other = (by, not early) in found
         wanted = {"forked": forked and not early, "as_late_as_possible": has_other and not early}
-        candidate = min(
-            candidates, key=lambda found_candidate: found_candidate.rank(**wanted)
-        )  # it is called at once
-        subject, suite = (
-            IMPORT if early else candidate.test.partition("::")[0],
-            baseline.suite(candidate.round),
-        )
+        candidate = min(candidates, key=methodcaller("rank", **wanted))
+        subject = IMPORT if early else candidate.test.partition("::")[0]
+        suite = baseline.suite(candidate.round)
         names = (IDENTITY,) if has_other and early else (IDENTITY, FATAL)
         controls += [Control(name, candidate.place, by, candidate.round, suite, subject) for name in names]
     return controls

@@ -360,7 +360,7 @@ def _description(
         is_callback = text == "lambda" or text.startswith("def ")
         what = f"{text}, {operation.target}" if is_callback else operation.target
     else:
-        what = text if _names(text, operation.qualname, is_shared=is_shared) else f"{text} ({operation.name})"
+        what = text if _names(text, operation.name, is_shared=is_shared) else f"{text} ({operation.name})"
     if subject.pattern is not None:
         name = subject.pattern.name
         what = f"{what}({name if subject.pattern.notation is None else repr(name)})"
@@ -369,9 +369,9 @@ def _description(
     return f"{what}: {rule.describe(subject, *(seen or (None, None)))}"
 
 
-def _names(text: str, qualname: str, *, is_shared: bool) -> bool:
+def _names(text: str, name: str, *, is_shared: bool) -> bool:
     """Return whether the text of a call shows the operation, as a call by variable or wrapper may not."""
-    name = qualname if is_shared else qualname.rpartition(".")[2]
+    name = name if is_shared else name.rpartition(".")[2]
     before = r"(?<![\w.])" if is_shared else r"\b"
     return re.search(f"{before}{re.escape(name)}$", text) is not None
 

@@ -72,10 +72,8 @@ def part_of(plan: Plan, shard: Shard | None, baseline: Baseline) -> Plan:
         items.setdefault(mutant.ladder or mutant.id, []).append(mutant)
     found = assign({name: _cost_of(those, baseline) for name, those in items.items()}, shard.of)
     own = {name for name, number in found.items() if number == shard.number - 1}
-    return replace(
-        plan,
-        mutants=[own_mutant for own_mutant in plan.mutants if (own_mutant.ladder or own_mutant.id) in own],
-    )
+    mutants = [mutant for mutant in plan.mutants if (mutant.ladder or mutant.id) in own]
+    return replace(plan, mutants=mutants)
 
 
 def write_shard(
@@ -89,10 +87,8 @@ def write_shard(
     """
     if shard is not None:
         depends = {**dependencies.everything, **_settings_of(dependencies.request)} if dependencies else None
-        shard_record = records.ShardOf(
-            shard.number, shard.of, tuple(mutant.number for mutant in part.mutants), depends
-        )
-        journal.set_meta(records.SHARD, shard_record)
+        numbers = tuple(mutant.number for mutant in part.mutants)
+        journal.set_meta(records.SHARD, records.ShardOf(shard.number, shard.of, numbers, depends))
 
 
 def _settings_of(request: Request) -> dict[str, str]:
@@ -284,12 +280,12 @@ def _meta(parts: Sequence[ShardJournal]) -> dict[str, Any]:
         if values:
             found[key] = together(values)
     for key in (records.ALTERED, records.FLAKY, records.VERIFICATION, records.REPEATS):
-        known_values = [meta[key] for meta in metas if key in meta]
-        if known_values and key == records.FLAKY:
-            tests = dict.fromkeys(test for value in known_values for test in value.tests)
-            found[key] = records.Flaky(tuple(tests), max(value.known for value in known_values))
-        elif known_values:
-            found[key] = _summed([to_data(value) for value in known_values])
+        known = [meta[key] for meta in metas if key in meta]
+        if known and key == records.FLAKY:
+            tests = dict.fromkeys(test for value in known for test in value.tests)
+            found[key] = records.Flaky(tuple(tests), max(value.known for value in known))
+        elif known:
+            found[key] = _summed([to_data(value) for value in known])
     return found
 
 

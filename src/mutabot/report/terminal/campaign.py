@@ -78,7 +78,7 @@ def _circumstances(results: Results) -> str:
     started = meta.get("started")
     if isinstance(started, int | float):
         parts.append(f"started {datetime.fromtimestamp(started).astimezone():%Y-%m-%d %H:%M}")
-    tests = {baseline_test.test.test for baseline_test in results.baseline}
+    tests = {row.test.test for row in results.baseline}
     return " · ".join([*parts, *([plural(len(tests), "test")] if tests else [])])
 
 

@@ -110,9 +110,8 @@ def below(text: str, indent: int = 2, style: str = "") -> RenderableType:
 
 def make_table(columns: Sequence[str] = (), *, header: bool = True) -> Table:
     """Make an empty table. ``>name`` is a column of numbers, ``*name`` takes the remaining width."""
-    look = box.SIMPLE_HEAD
     table = Table(
-        box=look,
+        box=box.SIMPLE_HEAD,
         show_header=header,
         pad_edge=False,
         padding=(0, 1, 0, 0),

@@ -185,9 +185,7 @@ def _can_be_lost(call: Call) -> bool:
 
 def _frozen(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return copies of values whose lists and arrays a program may change later."""
-    found: dict[str, Any] = {
-        name: list(value) if isinstance(value, list) else value for name, value in values.items()
-    }
+    found = {name: list(value) if isinstance(value, list) else value for name, value in values.items()}
     return {
         name: value.tolist() if hasattr(type(value), "tolist") else value for name, value in found.items()
     }
@@ -207,8 +205,8 @@ class Locator:
     def __init__(self, root: str, program: tuple[str, ...], oracle: tuple[str, ...]) -> None:
         self._root = os.path.realpath(root)
         # Longer paths first: a file named as oracle inside a program folder is oracle.
-        places = [(self._absolute(path), Role.PROGRAM) for path in program]
-        places += [(self._absolute(path), Role.ORACLE) for path in oracle]
+        named = [*((path, Role.PROGRAM) for path in program), *((path, Role.ORACLE) for path in oracle)]
+        places = ((os.path.realpath(os.path.join(self._root, path)), role) for path, role in named)
         self._places = sorted(places, key=lambda place: -len(place[0]))
         find_role = cache(self._find_role)
         self.role: Callable[[str], Role | None] = find_role
@@ -262,9 +260,6 @@ class Locator:
         path = real_path(filename)
         within = (role for place, role in self._places if path == place or path.startswith(place + os.sep))
         return next(within, None)
-
-    def _absolute(self, path: str) -> str:
-        return os.path.realpath(os.path.join(self._root, path))
 
     def _in_interpreter(self, frame: FrameType) -> CallPlace | None:
         """Return the site in a frame of an interpreter that runs a file of the program or the oracle."""

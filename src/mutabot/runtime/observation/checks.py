@@ -245,9 +245,8 @@ class Checks:
     def _look(self, tree: ast.Module, source: bytes, path: str) -> None:
         """Number the comparisons and calls that decide about assertions, by their positions."""
         # columns count bytes of UTF-8, whatever the file is written in
-        lines = (
-            decode_source(source).encode().splitlines(keepends=True)
-        )  # ``ast.get_source_segment`` splits all of it for each part
+        # and ``ast.get_source_segment`` splits all of it for each part
+        lines = decode_source(source).encode().splitlines(keepends=True)
         name = os.path.relpath(os.path.realpath(path), self._root)
         self._found = {}
         for node in ast.walk(tree):

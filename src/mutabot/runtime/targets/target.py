@@ -404,7 +404,6 @@ class Environment(Protocol):
 def prepare(root: str, home: str, operations: Sequence[Operation] | None) -> bool:
     """Let all packages set up the environment of nodes. Return whether any did."""
     environments: list[Environment] = [part.load() for part in brought("environments").values()]
-    found = [
-        environment.prepare(root, home, operations) for environment in environments
-    ]  # all of them, not up to the first
+    # all of them, not up to the first
+    found = [environment.prepare(root, home, operations) for environment in environments]
     return any(found)
