@@ -129,7 +129,7 @@ class CampaignEvidence:
                 rank = Rank.SURVIVOR if survived else Rank.OTHER
                 self.recordings.add(mutant, round, end.test, rank, data)
                 found.append(divergence)
-        return tuple(sorted(found, key=lambda found_divergence: found_divergence.rank, reverse=True))
+        return tuple(sorted(found, key=lambda divergence: divergence.rank, reverse=True))
 
     def _changed(self, round: int, end: TestEnd) -> tuple[RecordedPaths, RecordedPaths, bytes] | None:
         """Return the original's recording of a test, this one, and its data; None if they are the same."""

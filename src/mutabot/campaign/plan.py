@@ -50,7 +50,7 @@ def draw(mutants: Sequence[Mutant], seed: int, sample: Sample) -> tuple[list[Mut
     for family in {family for family, _ in strata}:
         roles = {role: those for (name, role), those in strata.items() if name == family}
         for role, size in sample.sizes({role: len(those) for role, those in roles.items()}).items():
-            drawn.update(drawn_mutant.id for drawn_mutant in shuffled(roles[role], f"{seed}:sample")[:size])
+            drawn.update(mutant.id for mutant in shuffled(roles[role], f"{seed}:sample")[:size])
     described = (
         Stratum(family, role, len(those), sum(member.id in drawn for member in those))
         for (family, role), those in strata.items()
@@ -166,7 +166,7 @@ def listed_rules(families: Collection[str] = ()) -> list[dict[str, str]]:
     wanted = [family for family in known_families() if not families or family in families]
     rules = [rule for rule in rules_of(wanted) if rule.family in wanted]
     found = []
-    for rule in sorted(rules, key=lambda known_rule: wanted.index(known_rule.family)):
+    for rule in sorted(rules, key=lambda rule: wanted.index(rule.family)):
         facts = {name: getattr(rule, name) for name in ("name", "family", "summary", "where")}
         published = f"Published operators: {rule.published}." if rule.published else ""
         common = "yes" if rule.is_common else ""

@@ -179,8 +179,7 @@ def in_order(
         run
         for round in range(rounds)
         for run in sorted(
-            ((shuffled_mutant, round) for shuffled_mutant in shuffled(mutants, f"{seed}:budget:{round}")),
-            key=rank,
+            ((mutant, round) for mutant in shuffled(mutants, f"{seed}:budget:{round}")), key=rank
         )
         if (run[0].id, round) not in done
     ]

@@ -209,15 +209,13 @@ def _value(first: Observation, second: Observation, other: Observation, vocabula
     parts = [
         [Observation(probes=observed.probes, unread=observed.unread) for observed in runs],
         [Observation(returned=observed.returned, prepared=observed.prepared) for observed in runs],
-        *(
-            _at(site, runs)
-            for site in dict.fromkeys(call.key for observed in (first, other) for call in observed.events)
-        ),
+        *(_at(site, runs) for site in dict.fromkeys(call.key for call in (*first.events, *other.events))),
     ]
-    for first_run, second_run, third_run in parts:
-        found = compare(first_run, third_run, vocabulary.probes, vocabulary.operations).divergence
-        if found and not compare(first_run, second_run, vocabulary.probes, vocabulary.operations).divergence:
-            site = next((f"{call.key}: " for call in (*first_run.events, *third_run.events)), "")
+    known = vocabulary.probes, vocabulary.operations
+    for before, again, now in parts:
+        found = compare(before, now, *known).divergence
+        if found and not compare(before, again, *known).divergence:
+            site = next((f"{call.key}: " for call in (*before.events, *now.events)), "")
             return f"{site}{found[0]}"
     return None
 

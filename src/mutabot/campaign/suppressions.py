@@ -169,9 +169,8 @@ def note_accepted(journal: Journal, suppressions: Iterable[Suppression], unmatch
     accepting = [candidate for candidate in suppressions if candidate.action is Action.ACCEPT]
     lines = cache(lambda file: (journal.source(file) or "").split("\n"))
     found = {}
-    for mutant in (
-        (*journal.mutants(), *(known_mutant for known_mutant, _ in journal.known())) if accepting else ()
-    ):
+    mutants = (*journal.mutants(), *(mutant for mutant, _ in journal.known())) if accepting else ()
+    for mutant in mutants:
         suppression = first_fitting(accepting, mutant, lines)
         if suppression is not None:
             found[mutant.id] = Acceptance(

@@ -124,5 +124,5 @@ def replay(
             replayed = replay_one(request, journal, chosen, rounds, progress)
     data = replayed_data(chosen, replayed)
     context.print_json(data) if json else print_replayed(make_console(), chosen, replayed)
-    differs = any(replayed_round.agrees is False for replayed_round in replayed)
+    differs = any(end.agrees is False for end in replayed)
     raise typer.Exit(ExitCode.UNRELIABLE if differs else ExitCode.FINE)

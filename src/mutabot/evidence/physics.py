@@ -169,9 +169,7 @@ def _slips(contacts: RecordedContacts, thing: str) -> Iterator[Fact]:
             continue
         tool = min(
             (contacts.seen.paths[name] for name in contacts.tools),
-            key=lambda track_path: dist(
-                track_path.points[track_path.at(path.when[free[0]])], path.points[free[0]]
-            ),
+            key=lambda tool: dist(tool.points[tool.at(path.when[free[0]])], path.points[free[0]]),
         )
         places = [_in_frame(tool.rows[tool.at(path.when[index])], path.points[index]) for index in free]
         ways = [dist(places[0], place) for place in places]

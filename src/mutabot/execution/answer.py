@@ -187,7 +187,7 @@ def _fields(kind: Any) -> dict[str, bool]:
 def check_fit(found: Iterable[Event], job: Job) -> None:
     """Raise ValueError for events that this job cannot have caused."""
     forking = job.forking
-    mutants = {known_mutant.id for known_mutant in forking.mutants} if forking is not None else set()
+    mutants = {mutant.id for mutant in forking.mutants} if forking is not None else set()
     sites: set[int] = set()
     for event in found:
         if isinstance(event, _NEVER) or (forking is None and isinstance(event, _FORKS)):

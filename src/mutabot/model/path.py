@@ -281,7 +281,7 @@ def _stored_as(value: Any, name: str) -> str:
     if isinstance(getattr(type(value), name, None), property):
         shown = getattr(value, name)
         hidden = (f"_{name}", *(f"_{base.__name__.lstrip('_')}__{name}" for base in type(value).__mro__))
-        return next((field_name for field_name in hidden if getattr(value, field_name, None) is shown), name)
+        return next((other for other in hidden if getattr(value, other, None) is shown), name)
     return name
 
 

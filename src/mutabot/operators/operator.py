@@ -319,7 +319,7 @@ def _subject(operation: Operation, variant: str, more: dict[str, Any]) -> Subjec
     quantities = {argument.name: argument for argument in (*operation.arguments, *operation.result)}
     quantity = quantities[more.pop("quantity", next(iter(quantities)))]
     subject = Subject(operation, quantity=quantity, variant=variant)
-    more["earlier"] = tuple(_values(subject, call_value) for call_value in more.get("earlier", ()))
+    more["earlier"] = tuple(_values(subject, given) for given in more.get("earlier", ()))
     if "size" not in more:
         return subject
     direction, size, unit = more.pop("size")

@@ -120,13 +120,13 @@ class RoundScores:
             else:
                 by_round[outcome.round].append(outcome)
                 row[outcome.round] = outcome
+        rows = by_mutant.values()
         killed = [
-            [_share(round_outcome, lambda scored: scored.verdict.is_killed) for round_outcome in row]
-            for row in by_mutant.values()
+            [_share(outcome, lambda scored: scored.verdict.is_killed) for outcome in row] for row in rows
         ]
-        found = [[_share(round_outcome, _is_found) for round_outcome in row] for row in by_mutant.values()]
+        found = [[_share(outcome, _is_found) for outcome in row] for row in rows]
         return cls(
-            tuple(Score.of(of_round) for of_round in by_round),
+            tuple(map(Score.of, by_round)),
             crossed(killed),
             crossed(found),
             sampled(killed, population) if population is not None else None,

@@ -146,7 +146,7 @@ def search_ladders(
             for step in sorted(searches[name].due(round))
         ]:
             outcomes = run([(mutant, round) for *_, mutant, round in trials])
-            ended = {(ended_outcome.mutant, ended_outcome.round): ended_outcome for ended_outcome in outcomes}
+            ended = {(outcome.mutant, outcome.round): outcome for outcome in outcomes}
             for search, step, mutant, round in trials:
                 outcome = ended.get((mutant.id, round))
                 if outcome is not None:

@@ -217,7 +217,7 @@ def _run(
 ) -> bool:
     """Run the suite as often as necessary; False if it ends with the first runs, since tests fail in them."""
     request = suite.request
-    texts = tuple(text for texts_of_provider in of_providers.values() for text in texts_of_provider)
+    texts = tuple(text for found in of_providers.values() for text in found)
     recording = Instrumentation(texts, record=True) if texts else None
     suite.run(_first_runs(suite, recording))
     is_looked_at = recording is None or not _fails_if_instrumented(suite, recording)

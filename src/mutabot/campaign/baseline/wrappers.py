@@ -25,7 +25,7 @@ def shared_sites(
     baseline: Baseline, vocabulary: Vocabulary, sources: Sources, files: Iterable[str]
 ) -> Iterator[Remark]:
     """Yield remarks on sites inside such functions, saying what to describe in the vocabulary instead."""
-    described = {described_operation.last_name for described_operation in vocabulary.operations}
+    described = {operation.last_name for operation in vocabulary.operations}
     for place in baseline.hits:
         span, operation = place.site.span, vocabulary.operation(place.operation)
         name = span.function.rpartition(".")[2]

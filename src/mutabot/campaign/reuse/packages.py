@@ -49,7 +49,7 @@ def _places(distribution: Distribution, name: str) -> Iterator[Path]:
         if not any(part.endswith(_OF_INSTALLERS) for part in file.parts):
             yield Path(str(distribution.locate_file(file)))
     named = (*entries, *(reference.partition(":")[0] for reference in references(name)))
-    for module in {module_name.partition(".")[0] for module_name in named}:
+    for module in {reference.partition(".")[0] for reference in named}:
         yield from _of_module(module)
 
 

@@ -199,7 +199,7 @@ def _read_choice(place: DocumentPlace, mode: dict[str, Any]) -> tuple[str, tuple
         if not isinstance(value, str):
             (place / key).error(f'expected "by" or "to", got {shown(value)}')
         elif value not in tuple(Mode):
-            (place / key).unknown("mode", value, [known_mode.value for known_mode in Mode])
+            (place / key).unknown("mode", value, [mode.value for mode in Mode])
     if not isinstance(argument, str):
         place.error(f"needs the argument that decides, {_MODE}")
     elif len(named) < 2:
