@@ -185,7 +185,9 @@ def _can_be_lost(call: Call) -> bool:
 
 def _frozen(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return copies of values whose lists and arrays a program may change later."""
-    found = {name: list(value) if isinstance(value, list) else value for name, value in values.items()}
+    found: dict[str, Any] = {
+        name: list(value) if isinstance(value, list) else value for name, value in values.items()
+    }
     return {
         name: value.tolist() if hasattr(type(value), "tolist") else value for name, value in found.items()
     }
