@@ -277,7 +277,7 @@ class Session:
 
     def _watch_text(self) -> None:
         if self.text is not None and self.fork_parent is not None:
-            self.text.watch(self.fork_parent.reach_text, self.fork_parent.places())
+            self.text.watch(self.fork_parent.reach_alternatives, self.fork_parent.places())
 
     def become(self, mutant: Mutant, activation: Activation) -> None:
         """Become this mutant, in a process that was just forked."""

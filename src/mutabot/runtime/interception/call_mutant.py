@@ -52,9 +52,6 @@ class CallMutant(ActiveFault):
     def end_test(self) -> None:
         """Leave the mutant active, since calls between tests are mutated as well."""
 
-    def begin_count(self) -> None:
-        """Do nothing, as the mutant resets its own activity."""
-
     @property
     def activity(self) -> Activity:
         """What the mutant did in the running test."""

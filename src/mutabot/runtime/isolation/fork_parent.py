@@ -154,7 +154,7 @@ class ForkParent:
         if here:
             self._fork([mutant for mutant in here if is_due(mutant)])
 
-    def reach_text(self, place: int, indexes: Iterable[int]) -> None:
+    def reach_alternatives(self, place: int, indexes: Iterable[int]) -> None:
         """Fork each mutant of the program text that may differ at a place from here on."""
         self.reach(*(at_text(place, index) for index in indexes))
 

@@ -56,11 +56,6 @@ class TextMutant(ActiveFault):
     def end_test(self) -> None:
         """Leave the alternative active between tests."""
 
-    def begin_count(self) -> None:
-        """Reset the activity of a changed file; the text resets its own."""
-        if self._changes_file:
-            super().begin_count()
-
     @property
     def activity(self) -> Activity:
         """What the mutant did in the running test."""
