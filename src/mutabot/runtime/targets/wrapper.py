@@ -19,6 +19,9 @@ class _Copied:
     def __copy__(self) -> Any:
         return self
 
+    def __deepcopy__(self, known: dict[int, Any]) -> Any:
+        return self
+
     def __reduce_ex__(self, protocol: Any) -> Any:
         function: Any = self.__wrapped__  # type: ignore[attr-defined]
         owner = getattr(function, "__self__", None)
@@ -54,17 +57,11 @@ class Method(_Copied, wrapt.BoundFunctionWrapper):  # type: ignore[type-arg]
     def __get__(self, instance: Any, owner: type | None = None) -> Any:
         return self if instance is None else MethodType(self, instance)
 
-    def __deepcopy__(self, known: dict[int, Any]) -> Any:
-        return self
-
 
 class Wrapper(_Copied, wrapt.FunctionWrapper):  # type: ignore[type-arg]
     """A function, or what a class holds, whose calls a handler gets."""
 
     __bound_function_wrapper__ = BoundWrapper
-
-    def __deepcopy__(self, known: dict[int, Any]) -> Any:
-        return self
 
 
 #: the types of what stands around functions, here and in code of others
