@@ -127,11 +127,9 @@ def _mutant(result: MutantResult) -> dict[str, Any]:
     return data if result.lets_through else data | {"deviation": None}
 
 
-def _replayed(replayed_round: records.Replayed) -> dict[str, Any]:
-    none = {"round": replayed_round.round + 1, "verdict": None}
-    return data_of.facts(replayed_round, "round=round+1 agrees journal=first replay=second") | (
-        {"journal": none} if replayed_round.first is None else {}
-    )
+def _replayed(replayed: records.Replayed) -> dict[str, Any]:
+    none = {"journal": {"round": replayed.round + 1, "verdict": None}} if replayed.first is None else {}
+    return data_of.facts(replayed, "round=round+1 agrees journal=first replay=second") | none
 
 
 def _repeats(repeats: records.Repeats) -> dict[str, Any]:

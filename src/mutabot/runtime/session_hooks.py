@@ -99,11 +99,8 @@ class SessionHooks:
             collector.watch()
             if job.vocabulary.operations:  # else no operator of calls will act
                 preload()
-            hooks = cls(
-                job,
-                event_file,
-                ForkServer(job.serving, event_file, LOG, home, job.private_files, not _tests_us(job)),
-            )
+            own = LOG, home, job.private_files, not _tests_us(job)
+            hooks = cls(job, event_file, ForkServer(job.serving, event_file, *own))
         else:
             hooks = cls(job, event_file)
             if job.pictures is not None:  # before its folder is hidden from this process
