@@ -60,7 +60,7 @@ class _Copies:
 
     def original(self, path: str) -> str | None:
         """Return the file of the program that this is a copy of; None for all others."""
-        if path.startswith("<") or any(_is_within(path, place) for place in self._places):
+        if path.startswith("<") or any(is_below(path, place) for place in self._places):
             return None
         file, state = _state(path)
         if state is None or state[0] < self._since:
@@ -136,8 +136,9 @@ def forget() -> None:
         forget_answers()
 
 
-def _is_within(path: str, place: str) -> bool:
-    return path == place or path.startswith(place + os.sep)
+def is_below(path: str, folder: str) -> bool:
+    """Return whether a path is a folder or lies in it."""
+    return path == folder or path.startswith(folder.rstrip("/") + "/")
 
 
 def _python_files(places: Iterable[str]) -> Iterator[str]:

@@ -23,7 +23,7 @@ from mutabot.model.operation import Form
 from mutabot.runtime.executed_text import executed, original_code
 from mutabot.runtime.interception.adapter import SiteCall, call_context
 from mutabot.runtime.interception.frames import borders, is_within_border
-from mutabot.runtime.paths import forget_with, real_path
+from mutabot.runtime.paths import forget_with, is_below, real_path
 
 if TYPE_CHECKING:
     from mutabot.model.mutant import Extent
@@ -260,8 +260,7 @@ class Locator:
 
     def _find_role(self, filename: str) -> Role | None:
         path = real_path(filename)
-        within = (role for place, role in self._places if path == place or path.startswith(place + os.sep))
-        return next(within, None)
+        return next((role for place, role in self._places if is_below(path, place)), None)
 
     def _in_interpreter(self, frame: FrameType) -> CallPlace | None:
         """Return the site in a frame of an interpreter that runs a file of the program or the oracle."""

@@ -23,6 +23,7 @@ from functools import lru_cache
 from mutabot.model.event_file import FOLDER, FORKS
 from mutabot.runtime.isolation.forkable import descriptors, own_event_loops
 from mutabot.runtime.isolation.namespaces import asks_for_id, call, keeps_ids
+from mutabot.runtime.paths import is_below
 
 _CLONE_NEWNS, _CLONE_NEWUSER = 0x00020000, 0x10000000
 _MS_BIND, _MS_REC, _MS_PRIVATE = 4096, 16384, 1 << 18
@@ -351,11 +352,6 @@ def _path(descriptor: int) -> str:
 def _mount(source: str, target: str, options: str | None, flags: int, kind: str = "") -> None:
     paths, data = (os.fsencode(source), os.fsencode(target)), options.encode() if options else None
     call("mount", *paths, kind.encode() or None, flags, data, what=f"{target} cannot be covered")
-
-
-def is_below(path: str, folder: str) -> bool:
-    """Return whether a path is a folder or lies in it."""
-    return path == folder or path.startswith(folder.rstrip("/") + "/")
 
 
 _CHUNK = 1 << 16
