@@ -127,11 +127,11 @@ def divided(campaign: Campaign, plan: Plan) -> tuple[Plan, tuple[str, ...]]:
     """
     if not campaign.suppressions:
         return plan, ()
-    lines, left_out = _SourceLines(campaign.request.root), list(plan.left_out)
+    lines, left_out = _lines_of(campaign.request.root), list(plan.left_out)
     excluding = [suppression for suppression in campaign.suppressions if suppression.action is Action.EXCLUDE]
     kept = []
     for mutant in plan.mutants:
-        found = first_fitting(excluding, mutant, lines.of)
+        found = first_fitting(excluding, mutant, lines)
         if found is None:
             kept.append(mutant)
         else:
@@ -142,15 +142,15 @@ def divided(campaign: Campaign, plan: Plan) -> tuple[Plan, tuple[str, ...]]:
     return replace(plan, mutants=kept, left_out=left_out), unmatched
 
 
-def _unmatched(campaign: Campaign, plan: Plan, lines: _SourceLines) -> Iterator[str]:
+def _unmatched(campaign: Campaign, plan: Plan, lines: LinesOf) -> Iterator[str]:
     """Describe the decisions that match no mutant of this campaign's families."""
     ids = {omission.id for omission in plan.left_out}
     for suppression in campaign.suppressions:
         named = [mutant for mutant in plan.mutants if suppression.names(mutant)]
-        if suppression.id in ids or any(suppression.fits(mutant, lines.of) for mutant in named):
+        if suppression.id in ids or any(suppression.fits(mutant, lines) for mutant in named):
             continue
         if suppression.id and named:
-            now = line_at(lines.of, named[0])
+            now = line_at(lines, named[0])
             change = f"the line of {suppression.id} has changed from {suppression.line!r} to {now!r}"
             yield f"{suppression.source}: {change}: decide again"
         elif _is_of(suppression, campaign.request.families):
@@ -185,16 +185,6 @@ def line_at(lines: LinesOf, mutant: Mutant) -> str:
     return "".join(lines(span.file)[max(0, span.line - 1) : span.line]).strip()
 
 
-class _SourceLines:
-    """A cache of the lines of files in which mutants stand."""
-
-    def __init__(self, root: Path) -> None:
-        self._root = root
-        self._of: dict[str, list[str]] = {}
-
-    def of(self, file: str) -> list[str]:
-        """Return the lines of a file; none if there is no such file."""
-        if file not in self._of:
-            path = self._root / file
-            self._of[file] = source_text(path).split("\n") if path.is_file() else []
-        return self._of[file]
+def _lines_of(root: Path) -> LinesOf:
+    """Return what gives the lines of a program's files; none for a file that does not exist."""
+    return cache(lambda file: source_text(path).split("\n") if (path := root / file).is_file() else [])
