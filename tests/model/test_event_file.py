@@ -460,3 +460,16 @@ def test_the_bell_takes_the_lowest_descriptor_that_is_free(tmp_path: Path) -> No
     file.close()
     assert os.read(reading, 1) == b""  # nobody else has it open
     os.close(reading)
+
+
+@pytest.mark.parametrize("name", ["write", "fstat"])
+def test_functions_that_a_test_replaces_are_not_those_that_write_events(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    file = EventFile(str(tmp_path), NAME, KEY)
+    with monkeypatch.context() as patch:
+        patch.setattr(os, name, lambda *_: 0)
+        for event in EVENTS:
+            file.send(event)
+    assert EventReader(str(tmp_path / f"{NAME}{SUFFIX}"), KEY).read(is_last=True) == EVENTS
+    file.close()

@@ -14,6 +14,8 @@ from mutabot.model.events import Event, ForkEnded, Serving, TestEnd, TestStart
 from mutabot.model.files import open_file
 from mutabot.model.path import class_name
 
+#: bound before any test can replace them, as tests of programs do that write to a device
+_write, _fstat = os.write, os.fstat
 #: what the controller is to hear of at once; it finds all else when it looks
 _PROMPT = (TestStart, TestEnd, ForkEnded, Serving)
 
@@ -73,7 +75,7 @@ class EventFile:
                 line = sealed(event, number, self.name, self._key, json_stand_in)
             self._last = number
             try:
-                is_written = os.write(self._file, line) == len(line)
+                is_written = _write(self._file, line) == len(line)
             except OSError:
                 is_written = False
         if not is_written:
@@ -111,7 +113,7 @@ class EventFile:
     def _ring(bell: int) -> None:
         """Signal that there are new events; the bytes in the pipe carry no meaning."""
         try:
-            os.write(bell, b"\n")
+            _write(bell, b"\n")
         except BlockingIOError:
             pass  # it will be heard
         except BrokenPipeError:
@@ -121,14 +123,14 @@ class EventFile:
         path = os.path.join(self._folder, self.name + SUFFIX)
         try:
             self._file = open_file(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
-            self._status = os.fstat(self._file)
+            self._status = _fstat(self._file)
         except OSError:
             self._fail()
 
     def _is_open(self) -> bool:
         """Return whether the descriptor still belongs to the file, and not to one opened later."""
         try:
-            return os.path.samestat(os.fstat(self._file), self._status)
+            return os.path.samestat(_fstat(self._file), self._status)
         except OSError:
             return False
 
