@@ -170,3 +170,29 @@ def test_half_a_turn_the_other_way_is_the_same_to_a_robot(tmp_path: Path) -> Non
     mission = "def run(arm):\n    arm.turn(180.0)\n"
     found = run(write_project(tmp_path, mission, REAL, robot=TURN, vocabulary=TO))
     assert not [result for result in found.values() if result.mutant.endswith("reverse")]
+
+
+#: of the standard library, which ours use as well
+REPLACED = ("os.write", "os.fstat", "os.open", "json.dumps", "json.loads", "builtins.open", "time.monotonic")
+REPLACING = """
+    from unittest import mock
+
+    import mission
+    import pytest
+    from robot import Arm
+
+    @pytest.mark.parametrize("name", {names})
+    @pytest.mark.parametrize("answer", [None, OSError("no")])
+    def test_goes(name, answer):
+        with mock.patch(name, side_effect=answer):
+            arm = Arm()
+            mission.go(arm)
+"""
+
+
+@pytest.mark.parametrize("engine", ["auto", "replay"])
+def test_functions_that_tests_replace_are_not_those_that_tell_of_them(tmp_path: Path, engine: str) -> None:
+    mission = "def go(arm): arm.move_by(0.25)\n"
+    folder = write_project(tmp_path, mission, REPLACING.format(names=REPLACED))
+    found = run(folder, engine=engine, only=("skip", "repeat"))
+    assert {outcome.verdict for outcome in found.values()} == {Verdict.SURVIVED}

@@ -9,13 +9,13 @@ without surrogates, and endless texts, numbers and nesting are cut. Data that is
 
 from __future__ import annotations
 
-import json
 import re
 import types
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields, is_dataclass
 from enum import Enum
 from functools import cache
+from json import dumps
 from typing import Any, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from mutabot.model.source_units import digest
@@ -184,7 +184,7 @@ _SURROGATE = "\\ud"
 
 def data_digest(data: Any) -> str:
     """Return the digest of JSON-like data; anything else counts by its text."""
-    text = json.dumps(data, sort_keys=True, default=str)
+    text = dumps(data, sort_keys=True, default=str)
     return digest(text.encode())
 
 
@@ -212,12 +212,12 @@ def to_json(value: Any, default: Callable[[Any], Any]) -> bytes:
         return dict(item) if issubclass(kind, Mapping) else default(item)
 
     try:
-        text = json.dumps(value, default=known, separators=(",", ":"))
+        text = dumps(value, default=known, separators=(",", ":"))
         if _is_fine(text):
             return text.encode()
     except (ValueError, TypeError, RecursionError, OverflowError):
         pass  # numbers of thousands of digits, objects that hold themselves, keys that are no texts
-    return json.dumps(storable(value, default), separators=(",", ":")).encode()
+    return dumps(storable(value, default), separators=(",", ":")).encode()
 
 
 def is_too_deep(text: bytes) -> bool:

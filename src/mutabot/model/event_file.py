@@ -8,11 +8,11 @@ so this guards against accidents and not against code that wants to deceive.
 
 from __future__ import annotations
 
-import json
 import os
 import signal
 from _blake2 import blake2b  # as in source_units
 from collections.abc import Callable
+from json import loads
 from typing import Any
 
 from mutabot.model.codec import is_too_deep, sparse, to_json
@@ -42,7 +42,7 @@ def unsealed(line: bytes, name: str, key: str) -> tuple[int, Event]:
     try:
         number = int(digits[:_DIGITS])
         if mark == seal(text, number, name, key) and not is_too_deep(text):
-            return number, event_from_data(json.loads(text.decode()))
+            return number, event_from_data(loads(text.decode()))
     except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError):
         pass
     more = len(line) - _SHOWN

@@ -14,7 +14,7 @@ from mutabot.model.events import Event, ForkEnded, Serving, TestEnd, TestStart
 from mutabot.model.files import open_file
 from mutabot.model.path import class_name
 
-#: bound before any test can replace them, as tests of programs do that write to a device
+#: bound before a test can replace them, as tests of programs do that write to a device
 _write, _fstat = os.write, os.fstat
 #: what the controller is to hear of at once; it finds all else when it looks
 _PROMPT = (TestStart, TestEnd, ForkEnded, Serving)

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import hashlib
 import inspect
-import json
 import random
 import re
 import sys
@@ -20,6 +19,7 @@ from dataclasses import dataclass, field, fields, is_dataclass
 from enum import Enum
 from functools import cached_property
 from itertools import islice
+from json import dumps
 from types import FunctionType
 from typing import TYPE_CHECKING, Any
 
@@ -312,7 +312,7 @@ def json_data(value: Any) -> Any:
     digest stands for what is large.
     """
     found = _data_of(value, 0)
-    text = json.dumps(found, sort_keys=True) if isinstance(found, list | dict) else ""
+    text = dumps(found, sort_keys=True) if isinstance(found, list | dict) else ""
     return {"digest": _digest(text.encode())} if len(text) > LONGEST else found
 
 
@@ -347,7 +347,7 @@ def _data_of(value: Any, depth: int) -> Any:
     if isinstance(items, dict):
         return {_key(key): _data_of(item, depth + 1) for key, item in items.items()}
     parts = [_data_of(item, depth + 1) for item in items]
-    return sorted(parts, key=json.dumps) if type(value) in (set, frozenset) else parts
+    return sorted(parts, key=dumps) if type(value) in (set, frozenset) else parts
 
 
 def _array(value: Any, depth: int) -> Any:
@@ -359,7 +359,7 @@ def _array(value: Any, depth: int) -> Any:
 
 
 def _key(key: Any) -> str:
-    return key if type(key) is str else json.dumps(_data_of(key, 0))
+    return key if type(key) is str else dumps(_data_of(key, 0))
 
 
 def _text(value: str | bytes | bytearray) -> Any:

@@ -11,7 +11,6 @@ at each call. A hook cannot be taken back.
 
 from __future__ import annotations
 
-import json
 import mmap
 import os
 import re
@@ -20,6 +19,7 @@ import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import wraps
 from itertools import takewhile
+from json import dumps, loads
 from typing import Any
 
 from mutabot.model.event_file import ANYBODY, NOW, TESTS, VARIABLE, WAKE
@@ -232,7 +232,7 @@ class Announced:
 
     def begin(self, test: str) -> int:
         """Announce a test that begins. Return its number."""
-        _write(self._tests, json.dumps(test).encode() + b"\n", os.O_APPEND)
+        _write(self._tests, dumps(test).encode() + b"\n", os.O_APPEND)
         self.number += 1
         _write(self._now, _NUMBER.pack(self.number), 0)
         return self.number
@@ -274,7 +274,7 @@ class Now:
         """Return the node id of a test."""
         if number >= len(self._names):
             lines = read_file(os.path.join(self._folder, TESTS)).splitlines()
-            self._names = ["", *map(json.loads, lines)]
+            self._names = ["", *map(loads, lines)]
         return self._names[number]
 
 
