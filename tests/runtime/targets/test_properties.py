@@ -5,12 +5,14 @@ from __future__ import annotations
 from functools import cached_property
 from pathlib import Path
 from textwrap import dedent
+from types import ModuleType
 from unittest.mock import PropertyMock, patch
 
 import pytest
 
 from mutabot.config.vocabulary import load_vocabulary
 from mutabot.runtime.targets.callables import look_at
+from mutabot.runtime.targets.target import NotFoundError, resolve
 from tests.runtime.stage import Make
 
 BY = '{ kind = "translation", axis = "x", unit = "m", mode = "by" }'
@@ -42,6 +44,16 @@ def test_arguments_of_a_property_that_cannot_be_set_are_refused(tmp_path: Path, 
         "arguments.value",
         f"robot:Arm.{name} is a property that cannot be set; describe its result",
     )
+
+
+@pytest.mark.parametrize("part", ["fset", "setter", "fget.__call__"])
+def test_a_part_of_a_property_is_refused_with_what_to_name_instead(part: str) -> None:
+    module = ModuleType("robot")
+    vars(module)["Arm"] = _Arm
+    with pytest.raises(
+        NotFoundError, match=rf"^robot:Arm\.speed\.{part} is a part .* name the property itself$"
+    ):
+        resolve(module, f"Arm.speed.{part}")
 
 
 def test_the_arguments_are_those_of_the_setter(tmp_path: Path) -> None:

@@ -302,6 +302,9 @@ def resolve(module: ModuleType, qualname: str) -> tuple[Any, str, Any]:
     *parents, name = qualname.split(".")
     for parent in parents:
         owner = _attribute(owner, parent, module)
+        if isinstance(owner, property):
+            text = f"{module.__name__}:{qualname} is a part of a property; name the property itself"
+            raise NotFoundError(text, name, ())
     return owner, name, _attribute(owner, name, module)
 
 
