@@ -49,6 +49,8 @@ DYING = 60.0
 #: what mutabot may leave in its folder
 KEPT = {".gitignore", "journal.previous.sqlite"}
 KEPT |= {f"journal.sqlite{end}" for end in ("", "-shm", "-wal", ".lock")}
+#: recordings, of campaigns of the command; those in this process have none
+KEPT |= {f"journal-evidence.sqlite{end}" for end in ("", "-shm", "-wal")}
 
 FILES = {
     "mutabot.toml": """
@@ -96,6 +98,8 @@ PROGRAMS = {
     "hanging": "while arm.x < 0: time.sleep(0.01)",
     "dying": "if arm.x < 0: os.kill(os.getpid(), signal.SIGSEGV)",
 }
+#: exit codes of the command; of a process that dies after the mutated call nothing is known
+EXIT_CODES = {"plain": 0, "hanging": 0, "dying": 4}
 MISSION = """
     import os, signal, time
 
@@ -196,7 +200,9 @@ class Series:
         too_young = said.rstrip().endswith("KeyboardInterrupt")  # to say so itself
         if process.returncode in (130, -number) or too_young:
             self.ends[f"ended by {number.name}"] += 1
-        elif self._expect(process.returncode in (0, 5), f"{what}: {process.returncode}: {said[-500:]}"):
+        elif self._expect(
+            process.returncode == EXIT_CODES[project], f"{what}: {process.returncode}: {said[-500:]}"
+        ):
             self._finished(project, what)
 
     def _finished(self, project: str, what: str) -> None:
