@@ -102,8 +102,10 @@ class TextReads:
         if is_own(sys._getframe(FRAMES)):
             return
         given = arguments[0 if event == "os.system" else 1]
-        lines = [given] if isinstance(given, str | bytes | os.PathLike) else list(given or ())
-        words = [word for line in lines for word in _BETWEEN_WORDS.split(os.fsdecode(line)) if word]
+        parts = [given] if isinstance(given, str | bytes | os.PathLike) else given or ()
+        # of anything else the start itself will say what is wrong with it
+        lines = [os.fsdecode(part) for part in parts if isinstance(part, str | bytes | os.PathLike)]
+        words = [word for line in lines for word in _BETWEEN_WORDS.split(line) if word]
         if any(_PYTHON.fullmatch(os.path.basename(word)) for word in words):
             return
         folder = arguments[2] if event == "subprocess.Popen" and arguments[2] else "."

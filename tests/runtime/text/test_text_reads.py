@@ -84,6 +84,11 @@ READERS = """
         os.chmod(HERE / "command.py", 0o755)
         subprocess.run([HERE / "command.py"], check=True)
         subprocess.run("./command.py", shell=True, cwd=HERE, check=True)
+    def starts_what_is_no_command():
+        try:
+            subprocess.run([1])
+        except TypeError as error:
+            assert "not int" in str(error)
     def packs():
         zipfile.ZipFile(HERE / "packed.zip", "w").write(PROGRAM)
 """
@@ -99,7 +104,7 @@ MAIN = """
 """
 NONE = (
     "imports", "imports_by_its_place", "runs", "fails", "writes", "starts_python", "has_python_started",
-    "starts_the_file",
+    "starts_the_file", "starts_what_is_no_command",
 )  # fmt: skip
 OF_PACKAGE = ("asks_for_data", "asks_for_a_resource", "copies_everything", "asks_a_shell_for_all")
 
