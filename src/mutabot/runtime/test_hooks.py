@@ -23,6 +23,7 @@ from mutabot.model.events import ForkSessionEnd, ForkTestEnd, TestEnd, TestStart
 from mutabot.model.job import write_job
 from mutabot.model.process_time import TimeUsed, ran_below
 from mutabot.runtime import seeds
+from mutabot.runtime.exceptions import everything
 from mutabot.runtime.executed import ExecutedUnits
 from mutabot.runtime.isolation.fork_parent import DECIDED, ForkParent
 from mutabot.runtime.observation.checks import Looks
@@ -252,8 +253,9 @@ class TestHooks:
         self, item: pytest.Item, call: pytest.CallInfo[None]
     ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
         """Note the first thing that ended the test."""
-        if self.fork is not None and call.excinfo is not None and not has_text(call.excinfo.value):
-            item.config.option.tbstyle = "no"  # what a fork reports else is that text
+        error = call.excinfo.value if call.excinfo is not None else None
+        if self.fork is not None and error is not None and not all(map(has_text, everything(error))):
+            item.config.option.tbstyle = "no"  # what a fork reports else is these texts
         report = yield
         if report.failed:
             end = self._classified(item, call)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from textwrap import dedent
 
 import pytest
 
@@ -301,6 +302,35 @@ MUTE_TESTS = """
     def test_moves():
         mission.moves(Arm())
 """
+
+
+def test_a_cause_that_fails_to_give_its_text_kills(tmp_path: Path) -> None:
+    """Its text is computed by the program, and the mutant makes that fail as well."""
+    mission = """
+        class Lost(Exception):
+            def __str__(self):
+                return "~" * self.args[0]
+
+        class Failed(Exception):
+            pass
+
+        def moves(arm):
+            try:
+                raise Lost(3)
+            except Lost as error:
+                raise Failed(str(error)) from error
+    """
+    tests = """
+        import mission
+        import pytest
+
+        def test_moves():
+            with pytest.raises(mission.Failed, match="~~~"):
+                mission.moves(None)
+    """
+    folder = write_project(tmp_path, dedent(mission), tests, vocabulary=MOVES)
+    found = run(folder, families=("conventional",), only=("*__str__*BSR",))
+    assert {(outcome.verdict, outcome.engine) for outcome in found.values()} == {(Verdict.KILLED, "fork")}
 
 
 @pytest.mark.parametrize("engine", ["fork", pytest.param("replay", marks=pytest.mark.whole)])
