@@ -334,6 +334,35 @@ def test_a_cause_that_fails_to_give_its_text_kills(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("engine", ["fork", pytest.param("replay", marks=pytest.mark.whole)])
+def test_a_mutant_in_the_comparison_of_values_is_not_reached_by_comparing_them(
+    tmp_path: Path, engine: str
+) -> None:
+    """Its value and the original's are parts, which the program compares: each time it would begin anew."""
+    mission = """
+        COMPARED = []
+
+        class Part:
+            def __init__(self, name):
+                self.name = name
+
+            def __eq__(self, other):
+                COMPARED.append(other)
+                return len(self.name) == len(other.name)
+    """
+    tests = """
+        import mission
+
+        def test_equal():
+            assert mission.Part("a") == mission.Part("b")
+            assert len(mission.COMPARED) < 10
+    """
+    folder = write_project(tmp_path, dedent(mission), tests, vocabulary=MOVES)
+    found = run(folder, families=("conventional",), only=("*__eq__*SVR=self",), engine=engine)
+    assert {outcome.verdict for outcome in found.values()} <= {Verdict.SURVIVED, Verdict.NO_EFFECT}
+    assert found
+
+
+@pytest.mark.parametrize("engine", ["fork", pytest.param("replay", marks=pytest.mark.whole)])
 def test_an_exception_that_fails_to_give_its_text_kills(tmp_path: Path, engine: str) -> None:
     mission = "def moves(arm):\n    arm.move_by(0.5)\n"
     vocabulary = MOVES.replace('refusals = ["robot:Refused"]', "")

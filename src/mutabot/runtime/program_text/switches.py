@@ -120,6 +120,7 @@ class Alternatives:
         self.example: tuple[Any, Any] | None = None
         self._kept: tuple[dict[int, int], dict[int, int], tuple[Any, Any] | None] = ({}, {}, None)
         self._has_told = False
+        self._compared_in: set[int] = set()
         self.on_place: Callable[[int, frozenset[int]], None] | None = None
         self.forms: Callable[[int], Forms | None] = lambda place: None
         self.on_act: Callable[[], None] = lambda: None
@@ -148,13 +149,25 @@ class Alternatives:
 
     def note(self, place: int, before: Any, after: Any) -> None:
         """Compare an alternative's value with the original's, if that is known."""
-        if before is not _UNKNOWN and _is_same(before, after):
+        with self._comparing():
+            is_idle = before is not _UNKNOWN and _is_same(before, after)
+        if is_idle:
             self.idle[place] = self.idle.get(place, 0) + 1
             self.on_idle()
             return
         if before is not _UNKNOWN and self.example is None:
             self.example = (_plain(before), _plain(after))
         self.tell()
+
+    @contextmanager
+    def _comparing(self) -> Iterator[None]:
+        """Evaluate all places as the original in this thread: values may be compared by the program."""
+        thread = threading.get_ident()
+        self._compared_in.add(thread)
+        try:
+            yield
+        finally:
+            self._compared_in.discard(thread)
 
     def tell(self) -> None:
         """Report that the active alternative changed something, or may have."""
@@ -186,6 +199,8 @@ class Alternatives:
 
     def reached(self, switch: Switch, frame: types.FrameType) -> bool:
         """Return whether an alternative replaces the original at a place that is being evaluated."""
+        if self._compared_in and threading.get_ident() in self._compared_in:
+            return False
         place = switch.place
         hits = self.hits[place] = self.hits.get(place, 0) + 1
         if switch.watched:
@@ -223,7 +238,8 @@ class Alternatives:
         if forms is None or self.hits[switch.place] > _LOOKS or threading.active_count() > 1:
             return switch.watched  # another thread may change what an evaluation depends on
         unpredictable = frozenset(index for index in switch.watched if index < 0)
-        return unpredictable | forms.differing(switch.watched - unpredictable, frame)
+        with self._comparing():
+            return unpredictable | forms.differing(switch.watched - unpredictable, frame)
 
     def _control(self, place: int, index: int) -> None:
         """Act as a control, which every place has: do nothing, or raise."""
