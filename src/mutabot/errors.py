@@ -184,7 +184,9 @@ def has_text(error: BaseException) -> bool:
     """Return whether the code of an exception's class gives it a text."""
     try:
         str(error)
-    except Exception:
+    except KeyboardInterrupt:
+        raise
+    except BaseException:  # whatever the program raises there, and the fatal control
         return False
     return True
 
