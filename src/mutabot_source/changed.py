@@ -49,8 +49,10 @@ def _tests_before_readers(original: Original, file: str) -> list[str] | None:
     found: list[str] = []
     for round, tests in enumerate(original.tests):
         readers = original.readers(round, file)
-        if readers and readers[0] not in tests[1:]:
+        if not readers:
+            continue
+        if readers[0] not in tests[1:]:
             return None
         # hooks of the suite may read it after that test
-        found += [tests[tests.index(reader) - 1] for reader in readers[:1]]
+        found.append(tests[tests.index(readers[0]) - 1])
     return found

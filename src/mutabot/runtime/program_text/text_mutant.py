@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from mutabot.runtime.active_fault import ActiveFault, FaultContext
 from mutabot.runtime.activity import Activity
@@ -10,6 +10,7 @@ from mutabot.runtime.activity import Activity
 if TYPE_CHECKING:
     from random import Random
 
+    from mutabot.model import Mutant
     from mutabot.runtime.program_text.instrument import SessionText
 
 
@@ -31,26 +32,25 @@ class TextMutant(ActiveFault):
     is_checked: ClassVar[bool] = False
     is_of_text: ClassVar[bool] = True
 
+    def __init__(self, mutant: Mutant, data: Any, context: TextContext) -> None:
+        super().__init__(mutant, data, context)
+        self._place, self._index, *self._changed = data
+
     def prepare_process(self) -> None:
         """Activate the alternative in place of the original."""
-        place, index, *changed = self.data
         text = self.context.text
-        if changed:
-            file, content, (start, end, written) = changed
+        if self._changed:
+            file, content, (start, end, written) = self._changed
             self.context.change_file(file, f"{content[:start]}{written}{content[end:]}".encode("latin-1"))
             if text is not None:
                 text.leave_out(file)
             self.acts()  # whatever reads the file from here on gets the mutant
         if text is not None:
-            text.alternatives.activate(place, index)
-
-    @property
-    def _changes_file(self) -> bool:
-        return len(self.data) > len(("place", "index"))
+            text.alternatives.activate(self._place, self._index)
 
     def start_test(self, test: str, random: Random) -> None:
         """Note that a changed file is active; the text resets its own activity."""
-        if self._changes_file:
+        if self._changed:
             self.acts()
 
     def end_test(self) -> None:
@@ -59,6 +59,6 @@ class TextMutant(ActiveFault):
     @property
     def activity(self) -> Activity:
         """What the mutant did in the running test."""
-        if self._changes_file:
+        if self._changed:
             return self._activity
         return self.context.text.activity if self.context.text is not None else Activity()
