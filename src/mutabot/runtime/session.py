@@ -406,8 +406,8 @@ class Session:
     def _along(self) -> Reading:
         """Read the probes along the way, in program files as the original.
 
-        A mutant may be waited for there, and is counted where it acts. While other threads run the program,
-        nothing of its text can be set aside.
+        A mutant may be waited for there, and is counted where it acts. Other threads that run the program may
+        be in the middle of what such a probe reads.
         """
         probes = self.job.vocabulary.probes
         if self.text is None or self.text.sightings is not None or not any(map(self._is_of_program, probes)):

@@ -362,6 +362,30 @@ def test_a_mutant_in_the_comparison_of_values_is_not_reached_by_comparing_them(
     assert found
 
 
+def test_the_original_beside_a_mutant_is_evaluated_without_the_mutant(tmp_path: Path) -> None:
+    """The place comes back to itself: with the mutant in both, each level would double the time."""
+    mission = """
+        class Level:
+            def __init__(self, number):
+                self.number = number
+
+            def __lt__(self, other):
+                if self.number == 0 or other.number == 0:
+                    return self.number < other.number
+                less, fewer = Level(self.number - 1), Level(other.number - 1)
+                return less < fewer
+    """
+    tests = """
+        import mission
+
+        def test_less():
+            assert not mission.Level(40) < mission.Level(39)
+    """
+    folder = write_project(tmp_path, dedent(mission), tests, vocabulary=MOVES)
+    found = run(folder, families=("conventional",), only=("*less < fewer*ROR=gt",))
+    assert [(outcome.verdict, outcome.by) for outcome in found.values()] == [CHECK]
+
+
 @pytest.mark.parametrize("engine", ["fork", pytest.param("replay", marks=pytest.mark.whole)])
 def test_an_exception_that_fails_to_give_its_text_kills(tmp_path: Path, engine: str) -> None:
     mission = "def moves(arm):\n    arm.move_by(0.5)\n"

@@ -64,10 +64,14 @@ class Switch:
     def became(self, value: Any, original: str = "") -> Any:
         """Note the alternative's value; ``original`` is the original as text if it has no side effects."""
         before, self._before = self._before, _UNKNOWN
-        if before is _UNKNOWN:
-            frame = sys._getframe(1)
-            before = self._value_of(original, frame) if original else self._owner.predicted(self.place, frame)
-        self._owner.note(self.place, before, value)
+        frame = sys._getframe(1)
+        with self._owner.paused():  # operators and comparisons of the program may come to this place again
+            if before is _UNKNOWN and original:
+                before = self._value_of(original, frame)
+            elif before is _UNKNOWN:
+                before = self._owner.predicted(self.place, frame)
+            is_idle = before is not _UNKNOWN and _is_same(before, value)
+        self._owner.note(self.place, before, value, is_idle=is_idle)
         return value
 
     def _value_of(self, original: str, frame: types.FrameType) -> Any:
@@ -120,7 +124,7 @@ class Alternatives:
         self.example: tuple[Any, Any] | None = None
         self._kept: tuple[dict[int, int], dict[int, int], tuple[Any, Any] | None] = ({}, {}, None)
         self._has_told = False
-        self._compared_in: set[int] = set()
+        self._paused_in: set[int] = set()
         self.on_place: Callable[[int, frozenset[int]], None] | None = None
         self.forms: Callable[[int], Forms | None] = lambda place: None
         self.on_act: Callable[[], None] = lambda: None
@@ -147,10 +151,8 @@ class Alternatives:
         """The evaluations at which the active alternative changed something, or raised."""
         return self.hits.get(self.place, 0) - self.idle.get(self.place, 0)
 
-    def note(self, place: int, before: Any, after: Any) -> None:
-        """Compare an alternative's value with the original's, if that is known."""
-        with self._comparing():
-            is_idle = before is not _UNKNOWN and _is_same(before, after)
+    def note(self, place: int, before: Any, after: Any, *, is_idle: bool) -> None:
+        """Note an alternative's value, the original's, if that is known, and whether they are the same."""
         if is_idle:
             self.idle[place] = self.idle.get(place, 0) + 1
             self.on_idle()
@@ -158,16 +160,6 @@ class Alternatives:
         if before is not _UNKNOWN and self.example is None:
             self.example = (_plain(before), _plain(after))
         self.tell()
-
-    @contextmanager
-    def _comparing(self) -> Iterator[None]:
-        """Evaluate all places as the original in this thread: values may be compared by the program."""
-        thread = threading.get_ident()
-        self._compared_in.add(thread)
-        try:
-            yield
-        finally:
-            self._compared_in.discard(thread)
 
     def tell(self) -> None:
         """Report that the active alternative changed something, or may have."""
@@ -189,17 +181,17 @@ class Alternatives:
 
     @contextmanager
     def paused(self) -> Iterator[None]:
-        """Evaluate all places as the original inside the context, without counting."""
-        on = self.switches[1:]
-        self.switches[1:] = [False] * len(on)
+        """Evaluate all places as the original in this thread inside the context, without counting."""
+        thread = threading.get_ident()
+        self._paused_in.add(thread)
         try:
             yield
         finally:
-            self.switches[1:] = on
+            self._paused_in.discard(thread)
 
     def reached(self, switch: Switch, frame: types.FrameType) -> bool:
         """Return whether an alternative replaces the original at a place that is being evaluated."""
-        if self._compared_in and threading.get_ident() in self._compared_in:
+        if self._paused_in and threading.get_ident() in self._paused_in:
             return False
         place = switch.place
         hits = self.hits[place] = self.hits.get(place, 0) + 1
@@ -238,8 +230,7 @@ class Alternatives:
         if forms is None or self.hits[switch.place] > _LOOKS or threading.active_count() > 1:
             return switch.watched  # another thread may change what an evaluation depends on
         unpredictable = frozenset(index for index in switch.watched if index < 0)
-        with self._comparing():
-            return unpredictable | forms.differing(switch.watched - unpredictable, frame)
+        return unpredictable | forms.differing(switch.watched - unpredictable, frame)
 
     def _control(self, place: int, index: int) -> None:
         """Act as a control, which every place has: do nothing, or raise."""
