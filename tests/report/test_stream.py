@@ -42,7 +42,9 @@ def test_each_line_begins_with_the_state_and_has_tabs_between_its_cells(tmp_path
     assert {line.count("\t") for line in lines} == {5}
     counts = "1 killed, 2 survived, 1 timeout, 1 not covered"
     scores = "robot program 58.3 % by check 25.0 %, robot oracle 25.0 % by check 25.0 %"
-    assert end == f"END\tcomplete\t{counts}\t{scores}"  # as in the other reports on these samples
+    step = "next: `mutabot show 2` prints the details of a survivor, `mutabot suggest` searches for checks"
+    # scores as in the other reports on these samples
+    assert end == f"END\tcomplete\t{counts}\t{scores}\t{step} that kill survivors."
 
 
 def test_json_lines_say_the_same(tmp_path: Path) -> None:
@@ -52,6 +54,7 @@ def test_json_lines_say_the_same(tmp_path: Path) -> None:
         ("mutant", "survived", 4), ("mutant", "not covered", 5),
     ]  # fmt: skip
     assert end["event"] == "end"
+    assert end["next"].startswith("`mutabot show 2` prints")
     assert end["mutants"] == {"killed": 1, "survived": 2, "timeout": 1, "not covered": 1}
 
 
@@ -99,4 +102,5 @@ def test_what_to_do_about_a_survivor_is_the_same_in_every_format_for_scripts(tmp
     streamed = [json.loads(line) for line in made("jsonl", campaign).splitlines()[:-1]]
     shown = [shown_data(result, lambda _: None, None) for result in campaign.mutants]
     assert [found["next"] for found in streamed] == [found["next"] for found in shown]
+    assert [found["effect"] for found in streamed] == [found["effect"] for found in shown]
     assert [found["number"] for found in streamed if found["next"]] == [2, 4, 5]  # survived or not covered

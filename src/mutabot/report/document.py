@@ -105,7 +105,7 @@ def shown_data(
         "story": {"round": round + 1, **data_of(diverged)} if round is not None and diverged else None,
         "checks": data_of(outcome.looked) if outcome is not None else [],
         "suggestion": data_of(suggestion),
-        "next": next_step(result) or None,
+        "next": next_step(result, suggestion) or None,
     }
 
 

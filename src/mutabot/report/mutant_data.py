@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from mutabot.model import Span
-from mutabot.report.texts import effect_text, next_step, one_line, state_of
+from mutabot.report.texts import effect_text, next_step, next_steps, one_line, state_of
 from mutabot.results.encoder import Encoder
 
 if TYPE_CHECKING:
@@ -26,13 +26,13 @@ _DATA_OF = Encoder({Span: SPAN})
 
 
 def mutant_data(result: MutantResult) -> dict[str, Any]:
-    """Return a mutant's data: its state with the reason, its place and its description."""
+    """Return a mutant's data: its state, its place, its description, its effect, and what to do."""
     deciding = next((outcome for outcome in result.outcomes if outcome.test is not None), None)
     return {
         "status": state_of(result),
         **_DATA_OF.facts(result, _LINE),
         "test": deciding.test if deciding is not None else None,
-        "why": one_line(effect_text(result)),
+        "effect": one_line(effect_text(result)),
         "next": next_step(result) or None,
         "accepted": result.acceptance.why if result.acceptance is not None and result.is_accepted else None,
     }
@@ -52,4 +52,5 @@ def end_data(results: Results) -> dict[str, Any]:
         "mutants": dict(Counter(map(state_of, results.mutants))),
         "scores": [_DATA_OF.facts(group, _GROUP) for group in results.groups],
         "untested": results.untested.text,
+        "next": next_steps(results) or None,
     }

@@ -20,6 +20,7 @@ from mutabot.results.divergence import weight_of
 if TYPE_CHECKING:
     from mutabot.model import Site, Span
     from mutabot.results.results import MutantResult, Results
+    from mutabot.results.suggested import Suggestion
 
 #: XML and strict JSON cannot hold these: controls, halves of surrogate pairs, and what is no character at all
 _UNFIT = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufdd0-\ufdef\ufffe\uffff]")
@@ -180,16 +181,32 @@ def survivor_text(result: MutantResult) -> str:
     return ". ".join(filter(None, [f"{what}: {rounds_text(result)}", told_text(result), next_step(result)]))
 
 
-def next_step(result: MutantResult) -> str:
-    """Return what to do about a survivor; empty for other mutants, and for magnitudes of a ladder."""
+def next_step(result: MutantResult, suggestion: Suggestion | None = None) -> str:
+    """Return what to do about a survivor; empty for other mutants, and for magnitudes of a ladder.
+
+    Args:
+        suggestion: what was suggested for it; None if nothing was looked for.
+    """
     if not result.is_survivor or result.mutant.ladder:
         return ""
     if result.status is Verdict.NOT_COVERED:
         return "Add a test that runs this line."
+    if suggestion is not None and suggestion.reason:
+        return f"No check was found: {suggestion.reason}"
+    number = result.mutant.number
     if result.indistinguishable:
-        add = "Add a probe or a test that would show one, or accept it as an equivalent mutant."
-        return f"No measured difference. {add}"
-    return f"Run `mutabot suggest --only {result.mutant.number}` to search for a check and verify it."
+        accept = f"accept it as an equivalent mutant: `mutabot accept {number} --why …`"
+        return f"Add a probe or a test that would show a difference, or {accept}."
+    return f"Run `mutabot suggest --only {number}` to search for a check and verify it."
+
+
+def next_steps(results: Results) -> str:
+    """Return what to do about the survivors of a campaign; empty if no test that ran let one through."""
+    survivors = [result for result in results.survivors if result.status is not Verdict.NOT_COVERED]
+    if not survivors:
+        return ""
+    show = f"`mutabot show {survivors[0].mutant.number}` prints the details of a survivor"
+    return f"{show}, `mutabot suggest` searches for checks that kill survivors."
 
 
 def also_text(site: Site) -> str:

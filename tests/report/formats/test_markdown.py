@@ -42,6 +42,7 @@ def test_survivors_come_worst_first_with_place_and_reason(tmp_path: Path) -> Non
     assert "- 1 survivor without a measured effect: mutant 4" in text
     assert rows[0][1:4] == ["mission.py:2", "skip", "gripper.command: do nothing"]
     assert rows[0][4] == "box_position.x: 0.8 instead of 0.488 (off by 0.312)"
+    assert text.endswith("`mutabot suggest` searches for checks that kill survivors.\n\n")
 
 
 def test_what_is_not_judged_says_why(tmp_path: Path) -> None:

@@ -27,7 +27,7 @@ from mutabot.report.terminal.console import (
 )
 from mutabot.report.terminal.mutant import print_mutant
 from mutabot.report.texts import told_text
-from mutabot.results.results import Results, read_results
+from mutabot.results.results import MutantResult, Results, read_results
 from results import samples
 
 WIDTHS = pytest.mark.parametrize("width", [60, 80, 120, 200])
@@ -256,6 +256,7 @@ def test_a_run_ends_with_errors_scores_survivors_and_where_to_read_on(results: R
     assert [text.index(words) for words in order] == sorted(text.index(words) for words in order)
     # of the first round 1 of 2 and of the second 2 of 3; by a check 1 of 2 and 0 of 3
     assert re.search(r"robot · program.* 58\.3 %.* 25\.0 % +3 of 5", text)
+    assert "`mutabot show 2` prints the details of a survivor" in text
     assert "`mutabot results` lists all" in text
     assert "by-to" not in text  # neither survived nor in error: a row in the full table only
 
@@ -358,6 +359,13 @@ def test_one_screen_shows_the_rounds_that_tell_most(results: Results) -> None:
     assert "round 1: S survived" in text
     assert "killed by a check" not in text
     assert "Use --all for all rounds." in text  # it has no further checks
+
+
+def test_where_a_message_is_cut_and_there_is_one_round_no_further_rounds_are_promised() -> None:
+    outcome = replace(samples.OUTCOMES[0], message="\n".join(f"line {number}" for number in range(20)))
+    on = console(100)
+    print_mutant(on, MutantResult(samples.REVERSE, (outcome,), None, ""), lambda _: None)
+    assert "Use --all for all lines of the round." in written(on)
 
 
 def test_where_the_one_screen_has_everything_it_names_no_option_for_more(results: Results) -> None:

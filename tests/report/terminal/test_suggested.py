@@ -48,7 +48,7 @@ def test_where_none_was_looked_for_it_is_said_how(tmp_path: Path) -> None:
     text = shown(tmp_path, samples.NEGATE, None)
     assert "Add a probe or a test" in text  # nothing differs in this one
     left = Suggestion(reason="the original itself spreads 5 mm")
-    assert "None was found: the original itself spreads 5 mm" in shown(tmp_path, samples.NEGATE, left)
+    assert "No check was found: the original itself spreads 5 mm" in shown(tmp_path, samples.NEGATE, left)
     assert "A check" not in shown(tmp_path, samples.REVERSE, CHECK)
 
 

@@ -24,7 +24,7 @@ def mutant_line(result: MutantResult) -> str:
 
 
 def end_line(results: Results) -> str:
-    """Return the last line: how the campaign ended, counts of mutants and scores."""
+    """Return the last line: how the campaign ended, counts of mutants, scores, and what to do."""
     return _dumped({"event": "end", **end_data(results)})
 
 

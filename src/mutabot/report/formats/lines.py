@@ -28,16 +28,20 @@ def mutant_line(result: MutantResult) -> str:
     place = one_line(places_text(result.mutant.site, lambda span: span.place))
     what = one_line(result.mutant.description)
     keyword = data["status"].upper().replace(" ", "-")
-    cells = (keyword, str(data["number"]), place, data["operator"], what, data["why"])
+    cells = (keyword, str(data["number"]), place, data["operator"], what, data["effect"])
     return "\t".join(cells)
 
 
 def end_line(results: Results) -> str:
-    """Return the last line: how the campaign ended, counts of mutants, scores, and what no test reaches."""
+    """Return the last line: how the campaign ended, counts of mutants, scores, and further remarks.
+
+    These are what no test reaches, and what to do about survivors, which begins with ``next:``.
+    """
     data = end_data(results)
     counts = ", ".join(f"{count} {state}" for state, count in data["mutants"].items())
     scores = ", ".join(map(_score, data["scores"]))
-    return "\t".join(["END", data["state"], counts, scores, *filter(None, [data["untested"]])])
+    step = f"next: {data['next']}" if data["next"] else ""
+    return "\t".join(["END", data["state"], counts, scores, *filter(None, [data["untested"], step])])
 
 
 def _score(group: Mapping[str, Any]) -> str:

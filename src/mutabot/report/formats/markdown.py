@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from mutabot.report.sections import section_lines, sections, size_text
-from mutabot.report.texts import escaped
+from mutabot.report.texts import escaped, next_steps
 
 if TYPE_CHECKING:
     from mutabot.model import Span
@@ -38,3 +38,5 @@ def _lines(material: Material) -> Iterator[str]:
 
     for section in sections(campaign, place):
         yield from section_lines(section, _ROWS)
+    if steps := next_steps(campaign):
+        yield from (steps, "")

@@ -14,7 +14,7 @@ from mutabot.languages.registry import language_of
 from mutabot.model import Mutant, Span, Verdict
 from mutabot.report.document import dumps
 from mutabot.report.format import Material, utf16
-from mutabot.report.texts import ACCEPTED, NOT_RUN, also_text, reason_of, state_of
+from mutabot.report.texts import ACCEPTED, NOT_RUN, also_text, next_step, reason_of, state_of
 from mutabot.results.results import MutantResult, killing_tests
 
 _SCHEMA_VERSION = "2.0"
@@ -83,7 +83,7 @@ def _mutant(result: MutantResult, material: Material) -> dict[str, Any]:
         "replacement": _replacement(mutant, material),
         "location": _location(mutant.site.span, material),
         "status": _STATUS[state_of(result)],
-        "statusReason": reason_of(result),
+        "statusReason": "\n".join(filter(None, [reason_of(result), next_step(result)])),
         "coveredBy": [*dict.fromkeys([*material.campaign.reached_by(mutant), *killed_by])],
         "killedBy": [*killed_by],
         "testsCompleted": max((outcome.tests for outcome in result.outcomes), default=0),

@@ -26,7 +26,15 @@ from mutabot.model import By
 from mutabot.model.quantity import value_text
 from mutabot.report.document import data_of, finite
 from mutabot.report.terminal.console import mark_of
-from mutabot.report.texts import acceptance_text, effect_text, mapped, place_text, state_of, telling
+from mutabot.report.texts import (
+    acceptance_text,
+    effect_text,
+    mapped,
+    next_step,
+    place_text,
+    state_of,
+    telling,
+)
 from mutabot.results.divergence import weight_of
 from mutabot.results.films import KeptFilm
 from mutabot.results.results import MutantResult, Results, killing_tests, unlooked
@@ -397,6 +405,7 @@ def mutant_page(
         "change": result.change,
         "told": place,
         "suggestion": check,
+        "next": next_step(result, suggestion),
         "film": film,
     }
 

@@ -15,7 +15,7 @@ from rich.text import Text
 from mutabot.errors import plural
 from mutabot.report.document import data_of
 from mutabot.report.sections import Section, sections, size_text, skipped, untested
-from mutabot.report.texts import places_text
+from mutabot.report.texts import next_steps, places_text
 
 from .console import (
     Breakable,
@@ -41,10 +41,7 @@ _ROWS = 10
 #: the site in a mutant's id, and the value in a reason for leaving it out
 _SITE = re.compile(r".*#\d+(?=:)")
 _VALUE = re.compile(r" \(value [^()]*\)$")
-_NEXT = (
-    "\n`mutabot show N` prints the details of a mutant, `mutabot results` lists all, "
-    "`mutabot suggest` searches for checks that kill survivors."
-)
+_ALL = "`mutabot results` lists all mutants."
 
 
 def print_results(console: Console, results: Results) -> None:
@@ -63,7 +60,7 @@ def print_summary(console: Console, results: Results) -> None:
     for section in sections(results, short_place):
         if section.columns or not section.is_detail:
             print_section(console, Section(section.title) if section.is_detail else section, _ROWS)
-    console.print(Text(_NEXT, style="dim"))
+    console.print(Text(f"\n{' '.join(filter(None, [next_steps(results), _ALL]))}", style="dim"))
 
 
 def title(results: Results) -> str:

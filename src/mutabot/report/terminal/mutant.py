@@ -54,7 +54,8 @@ def print_mutant(
     rounds, checks = _rounds(result, everything=everything), [*_checks(result, everything=everything)]
     for section in (rounds, *_happened(result), *checks, *suggested_sections(result, suggestion)):
         print_section(console, section)
-    more = ["rounds"] if rounds != _rounds(result, everything=True) else []
+    hidden = "rounds" if len(result.rounds) > 1 else "lines of the round"
+    more = [hidden] if rounds != _rounds(result, everything=True) else []
     more += ["checks"] if checks != [*_checks(result, everything=True)] else []
     if more:
         console.print(Text(f"\nUse --all for all {' and '.join(more)}.", style="dim"))
@@ -200,5 +201,4 @@ def suggested_sections(result: MutantResult, found: Suggestion | None) -> Iterat
         more = "`mutabot suggest` prints it as a diff."
         yield Section(where, code=found.code, lines=[*found.notes, more])
         return
-    line = f"None was found: {found.reason}" if found is not None else next_step(result)
-    yield Section("A check that would catch it", lines=[line])
+    yield Section("A check that would catch it", lines=[next_step(result, found)])

@@ -282,7 +282,8 @@
 
   function suggestion(page) {
     const found = page.suggestion;
-    if (!found) return "";
+    if (!found && !page.next) return "";
+    if (!found) return h("section", { "aria-labelledby": "suggestion" }, h("h2", { id: "suggestion" }, "A check that would catch it"), h("p", null, page.next));
     return h("section", { class: "suggestion", "aria-labelledby": "suggestion" }, h("h2", { id: "suggestion" }, "A check that would catch it"), found.test ? h("p", null, "In ", h("code", null, found.test), ":") : null,
       h("pre", { tabindex: "0" }, h("code", null, found.code)), h("ul", { class: "plain" }, (found.notes || []).map((note) => h("li", null, note))));
   }
