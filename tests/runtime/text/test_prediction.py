@@ -7,8 +7,12 @@ import math
 import sys
 import weakref
 from dataclasses import dataclass
+from datetime import timedelta
+from decimal import Decimal
+from fractions import Fraction
 from typing import Any, NamedTuple
 
+import numpy
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -32,6 +36,11 @@ def frame_of(**variables: Any) -> Any:
 
 
 numbers = st.one_of(st.integers(-9, 9), st.floats(-9, 9), st.booleans())
+of_numpy = st.one_of(
+    st.floats(-9, 9).map(numpy.float64), st.floats(-9, 9, width=32).map(numpy.float32),
+    st.integers(-9, 9).map(numpy.int64), st.booleans().map(numpy.bool_),
+)  # fmt: skip
+values = numbers | of_numpy
 names = st.sampled_from(["x", "y", "z"])
 leaves = st.one_of(names, numbers.map(repr))
 
@@ -50,7 +59,8 @@ def nested(inner: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
 
 
 @pytest.mark.filterwarnings("ignore::SyntaxWarning")
-@given(st.recursive(leaves, nested, max_leaves=8), st.tuples(numbers, numbers, numbers))
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # of numpy, when it really calculates
+@given(st.recursive(leaves, nested, max_leaves=8), st.tuples(values, values, values))
 def test_what_is_predicted_is_what_an_evaluation_gives(text: str, values: tuple[Any, ...]) -> None:
     variables = dict(zip("xyz", values, strict=True))
     try:
@@ -63,6 +73,12 @@ def test_what_is_predicted_is_what_an_evaluation_gives(text: str, values: tuple[
         return
     expected = eval(text, variables)
     assert is_identical(found, expected) or (math.isnan(found) and math.isnan(expected))
+
+
+@pytest.mark.filterwarnings("error")
+def test_looking_ahead_lets_numpy_warn_nobody() -> None:
+    assert math.isinf(predict("x / y", x=numpy.float64(1), y=numpy.float64(0)))
+    assert math.isnan(predict("x - y", x=numpy.float64(math.inf), y=math.inf))
 
 
 class Stored(NamedTuple):
@@ -259,7 +275,21 @@ def run(thing):
         (1, 1.0, False),
         (1, True, False),
         (0.0, -0.0, False),
-        (math.nan, math.nan, False),
+        (math.nan, math.nan, True),
+        (math.nan, -math.nan, False),
+        (float("nan"), float("nan"), True),
+        (0j, -0j, False),
+        (2j, 1j + 1j, True),
+        (numpy.float64(1.5), numpy.float64(1.5), True),
+        (numpy.float64(0.0), numpy.float64(-0.0), False),
+        (numpy.float64(1.0), 1.0, False),
+        (numpy.float64(1.0), numpy.float32(1.0), False),
+        (timedelta(days=1), timedelta(hours=24), True),
+        (Decimal("1.0"), Decimal("1.00"), False),
+        (Fraction(1, 2), Fraction(2, 4), True),
+        ([], [], False),
+        ((1, 2), (1.0, 2.0), False),
+        (numpy.zeros(2), numpy.zeros(2), False),
         (None, None, True),
         ("a", "a", True),
     ],

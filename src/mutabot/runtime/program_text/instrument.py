@@ -45,7 +45,6 @@ _ExpressionKey = tuple[str, Extent]
 _Nodes = dict[int, ast.expr]
 _Node = TypeVar("_Node", bound=ast.AST)
 #: expressions without effects; attributes and items may be readings of a robot
-_PURE = (ast.Name, ast.Constant, ast.BinOp, ast.UnaryOp, ast.BoolOp, ast.Compare, ast.IfExp, ast.Tuple)
 _KEPT = Alternative.kept_name(0).partition("0")[0]
 #: up to so many places in a file, it is worth while to look where they are before anything is changed
 _FEW = 20
@@ -191,14 +190,8 @@ def _seen(value: ast.expr, place: TextPlace, node: ast.AST) -> ast.expr:
 
 
 def _observed(other: ast.expr, place: TextPlace, node: ast.expr) -> ast.expr:
-    """Return an alternative that reports its value, with the original as text if that has no side effects."""
-    original: list[ast.expr] = [ast.Constant(ast.unparse(node))] if _is_pure(node) else []
-    return placed(_asked(place.number, "became", other, *original), node)
-
-
-def _is_pure(node: ast.expr) -> bool:
-    """Return whether evaluating an expression again has no effect."""
-    return all(isinstance(part, _PURE) for part in ast.walk(node) if isinstance(part, ast.expr))
+    """Return an alternative that reports its value."""
+    return placed(_asked(place.number, "became", other), node)
 
 
 def _switch(number: int) -> ast.expr:

@@ -10,12 +10,15 @@ from __future__ import annotations
 
 import ast
 import math
+import struct
+import sys
 import types
 from collections.abc import Iterable, Mapping
-from contextlib import suppress
+from contextlib import AbstractContextManager, nullcontext, suppress
 from typing import Any, NamedTuple
 
 from mutabot.frozen import frozen
+from mutabot.model.data import is_of_numpy, is_textual
 from mutabot.model.program_text import RUNTIME
 
 #: integers of more bits are left to a real evaluation
@@ -80,19 +83,28 @@ class PredictedForm:
         if self._code is None:
             raise UnpredictableError
         values = {name: _read(leaf, frame) for name, leaf in self._leaves.items()}
-        self._check(values.values())
+        has_numpy = self._check(values.values())
         functions = {name: _read(leaf, frame) for name, leaf in self._functions.items()}
         if not all(any(function is known for known in _CALLABLE) for function in functions.values()):
             raise UnpredictableError
-        found = eval(self._code, {"__builtins__": {}, RUNTIME: [_HELPERS]}, values | functions)
+        with _silent() if has_numpy else nullcontext():
+            found = eval(self._code, {"__builtins__": {}, RUNTIME: [_HELPERS]}, values | functions)
         if type(found) is tuple:  # as ``max((a, b), (c, d))`` gives
             raise UnpredictableError
         return found
 
-    def _check(self, values: Iterable[Any]) -> None:
+    def _check(self, values: Iterable[Any]) -> bool:
+        """Refuse values that are not plain, and return whether any is of numpy."""
+        has_numpy = False
         for value in values:
-            if type(value) not in self._kinds or (type(value) is int and value.bit_length() > _LARGEST):
+            if type(value) in self._kinds:
+                if type(value) is int and value.bit_length() > _LARGEST:
+                    raise UnpredictableError
+            elif is_number_of_numpy(value):
+                has_numpy = True
+            else:
                 raise UnpredictableError
+        return has_numpy
 
 
 class _Leaves(ast.NodeTransformer):
@@ -168,10 +180,34 @@ class Forms:
 
 
 def is_identical(first: Any, second: Any) -> bool:
-    """Return whether a program cannot distinguish two plain values, except by identity."""
-    if type(first) is not type(second) or first != second:
+    """Return whether a program cannot distinguish two values, except by the identity of plain ones.
+
+    Of two objects that are not plain, the answer is False: to compare them would run code of the program,
+    and one that can be changed is not the other.
+    """
+    kind = type(first)
+    if first is second or kind is not type(second):
+        return first is second
+    if kind is float:
+        return struct.pack("d", first) == struct.pack("d", second)
+    if is_number_of_numpy(first):
+        return bool(first.tobytes() == second.tobytes())
+    if kind is complex or (is_textual(first) and not hasattr(first, "tzinfo")):
+        return repr(first) == repr(second)
+    return kind in _PLAIN_TYPES and bool(first == second)
+
+
+def is_number_of_numpy(value: Any) -> bool:
+    """Return whether a value is a number or truth value of numpy that is no longer than 64 bits."""
+    if not is_of_numpy(value) or type(value).__name__ == "ndarray":
         return False
-    return type(first) is not float or math.copysign(1.0, first) == math.copysign(1.0, second)
+    return value.dtype.kind in "biuf" and value.dtype.itemsize <= struct.calcsize("d")
+
+
+def _silent() -> AbstractContextManager[Any]:
+    """Return a context in which numpy tells nobody of overflows and divisions by zero."""
+    silent: AbstractContextManager[Any] = sys.modules["numpy"].errstate(all="ignore")
+    return silent
 
 
 def locals_of(frame: types.FrameType) -> Mapping[str, Any]:

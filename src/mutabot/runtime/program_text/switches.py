@@ -21,10 +21,16 @@ from contextlib import contextmanager, suppress
 from functools import cache
 from typing import Any, NoReturn
 
-from mutabot.model.data import is_of_numpy
+from mutabot.model.data import data_of, is_of_numpy
 from mutabot.model.path import class_name
 from mutabot.model.program_text import FATAL, IDENTITY, Sighting, TextPlace, fits_kinds
-from mutabot.runtime.program_text.prediction import Forms, UnpredictableError, locals_of
+from mutabot.runtime.program_text.prediction import (
+    Forms,
+    UnpredictableError,
+    is_identical,
+    is_number_of_numpy,
+    locals_of,
+)
 
 
 @cache
@@ -43,12 +49,11 @@ class Switch:
         watched: alternatives that are to be told as soon as they would change something.
     """
 
-    __slots__ = ("_before", "_code", "_owner", "index", "place", "watched")
+    __slots__ = ("_before", "_owner", "index", "place", "watched")
 
     def __init__(self, owner: Alternatives, place: int, index: int | None, watched: frozenset[int]) -> None:
         self._owner, self.place, self.index, self.watched = owner, place, index, watched
-        self._before: Any = _UNKNOWN
-        self._code: types.CodeType | None = None
+        self._before: dict[int, Any] = {}  # by thread
 
     def chosen(self) -> bool:
         """Return whether an alternative replaces the original; called at every evaluation."""
@@ -58,29 +63,16 @@ class Switch:
 
     def was(self, value: Any) -> Any:
         """Note the original's value, which the alternative uses."""
-        self._before = value
+        self._before[threading.get_ident()] = value
         return value
 
-    def became(self, value: Any, original: str = "") -> Any:
-        """Note the alternative's value; ``original`` is the original as text if it has no side effects."""
-        before, self._before = self._before, _UNKNOWN
-        frame = sys._getframe(1)
-        with self._owner.paused():  # operators and comparisons of the program may come to this place again
-            if before is _UNKNOWN and original:
-                before = self._value_of(original, frame)
-            elif before is _UNKNOWN:
-                before = self._owner.predicted(self.place, frame)
-            is_idle = before is not _UNKNOWN and _is_same(before, value)
-        self._owner.note(self.place, before, value, is_idle=is_idle)
+    def became(self, value: Any) -> Any:
+        """Note the alternative's value, beside the original's if that is known without side effects."""
+        before = self._before.pop(threading.get_ident(), _UNKNOWN)
+        if before is _UNKNOWN:
+            before = self._owner.predicted(self.place, sys._getframe(1))
+        self._owner.note(self.place, before, value, is_idle=is_identical(before, value))
         return value
-
-    def _value_of(self, original: str, frame: types.FrameType) -> Any:
-        try:
-            if self._code is None:
-                self._code = compile(original, "<original>", "eval")
-            return eval(self._code, frame.f_globals, locals_of(frame))
-        except Exception:  # what the original would have raised; the alternative did not
-            return _UNKNOWN
 
 
 class _Unknown:
@@ -271,27 +263,17 @@ class Alternatives:
 
 
 def _plain(value: Any) -> Any:
-    """Return a copy of the value for reports, made without side effects."""
-    if value is None or isinstance(value, bool | int | float | str):
-        return value
-    if isinstance(value, tuple | list) and len(value) <= _SHOWN:
-        return tuple(_plain(item) for item in value)
+    """Return a copy of the value for reports, made without running code of the program."""
+    found = value if type(value) in (list, tuple) else data_of(value)
+    if type(found) in (list, tuple) and len(found) <= _SHOWN:
+        return tuple(_plain(item) for item in found)
+    if is_number_of_numpy(found):
+        found = found.item()
+    if found is None or type(found) in (bool, int, float, str):
+        return found
     from mutabot.runtime.observation.probes import opaque  # noqa: PLC0415  # slow, and of no use to most processes
 
     return opaque(value)
-
-
-def _is_same(before: Any, after: Any) -> bool:
-    """Return whether two values are equal and of the same type."""
-    if before is after:
-        return True
-    if type(before) is not type(after):
-        return False
-    try:
-        equal = before == after
-        return bool(equal.all()) if hasattr(equal, "all") else bool(equal)
-    except Exception:  # values that cannot be compared are told apart by nobody
-        return False
 
 
 _PLAIN: dict[type, str] = {
