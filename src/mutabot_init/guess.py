@@ -128,6 +128,8 @@ def guess_argument(name: str, setting: NameContext) -> Guess:
     """Return what an argument means; an empty guess if neither the callable's name nor its own shows it."""
     words, unit = _without_unit(words_of(name))
     noun = noun_of(words)
+    if not noun and unit in UNITS["length"] and len(words) == 1 and len(words[0]) > 1:
+        noun = "length"  # its name is a unit: metres, mm
     if noun == "none" or any(isinstance(value, str) for value in setting.values):
         return Guess()  # a text says how to do it, not what
     is_open = noun in ("generic", "place", "opening", "switch", "ratio", "length")

@@ -21,6 +21,8 @@ _MOST_FILES = 1000
 #: what stands at the top of a project
 _OF_PROJECTS = ("pyproject.toml", "setup.py", "setup.cfg", "pytest.ini", "tox.ini")
 NOTHING_WRITTEN = "nothing was written: `mutabot init` runs the tests to see what the program calls"
+#: methods that no robot alone has
+_OF_BUILT_INS = frozenset(name for kind in (dict, list, set, str, bytes) for name in dir(kind))
 #: words in a file's name that say "this is a robot program", where there is a choice
 _PROGRAM_NAMES = (
     "mission", "program", "main", "task", "job", "app", "process", "pick", "place", "pallet", "sort",
@@ -166,7 +168,7 @@ def _places(root: Path, given: Sequence[Path]) -> list[Path]:
 
 
 def _guess_program(code: Sequence[Path], tests: Sequence[Path], root: Path) -> list[Path]:
-    """Return files that no other file of the program imports, preferring telling names.
+    """Return files that no other file of the program imports; those with telling names, or that command.
 
     Only those that the tests reach, where they import any: what no test runs has no mutants to judge.
     """
@@ -176,11 +178,30 @@ def _guess_program(code: Sequence[Path], tests: Sequence[Path], root: Path) -> l
     code = [path for path in candidates if path in reached] or candidates
     used = {path: modules.reached([path], through="__init__.py") - {path} for path in code}
     below = set().union(*used.values())
-    using = [path for path in code if imported_modules(path)]
+    commanding = {path for path in code if _calls_methods(path)}
+    using = [path for path in code if path in commanding or imported_modules(path)]
     free = [path for path in using if path not in below] or using or list(code)
     telling = [path for path in free if _is_telling(path.stem)]
     busy = [path for path in free if used[path]]
-    return telling or busy or free
+    return telling or busy or [path for path in free if path in commanding] or free
+
+
+def _calls_methods(path: Path) -> bool:
+    """Return whether a file calls methods of objects, as of a robot that it is given or holds.
+
+    Those of built-in types, of modules and of ``self`` do not count: a driver calls them as well.
+    """
+    tree = parsed(path)
+    imports = (node for node in ast.walk(tree) if isinstance(node, ast.Import))
+    modules = {(alias.asname or alias.name).partition(".")[0] for node in imports for alias in node.names}
+    owners = {
+        ast.unparse(node.func.value)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute)
+        if node.func.attr not in _OF_BUILT_INS
+    }
+    names = {owner for owner in owners - {"self", "cls", "super()"} if re.match(r"[^\W\d]", owner)}
+    return any(re.split(r"\W", owner)[0] not in modules for owner in names)
 
 
 def _is_telling(stem: str) -> bool:

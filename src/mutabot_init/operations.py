@@ -15,6 +15,7 @@ from .layout import with_compared
 from .observations import Command, WatchedCallable, WatchedPart
 from .words import (
     CAMERAS,
+    CHANGES,
     COMMANDS,
     GRIPPER,
     HOUSEKEEPING,
@@ -214,8 +215,9 @@ def _argument(name: str, part: WatchedPart, call: WatchedCallable) -> Iterator[t
         words = (*setting.words, *(() if is_told else (*words_of(name), *mode)))
         doc = f"{part.doc}\n{setting.doc}"
         setting = replace(setting, words=words, doc=doc, annotation="", names=frozenset({"x", "y"}))
-    if call.is_set and not any(MODES.get(word) == "by" for word in (*setting.words, *words_of(own))):
-        setting = replace(setting, words=(*setting.words, "to"))  # what is assigned is where to go
+    if call.is_set and not CHANGES & {*setting.words, *words_of(own)}:  # what is assigned is where to go
+        other = (word for word in setting.words if MODES.get(word) != "by")
+        setting = replace(setting, words=(*other, "to"))
     guess = guess_argument(own, setting)
     if guess.table:
         yield part.path, guess

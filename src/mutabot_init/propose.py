@@ -383,6 +383,6 @@ def _counted(found: _Findings) -> str:
     mine, rest = _by_side([call for call in found.seen.calls if call.sites])
     times = counted(sum(call.count for call in mine), "time")
     names = {(entry.key, entry.name) for entry in found.named if not entry.of_tests}
-    more = f", the tests {len(rest)} more" if rest else ""
+    more = f"; the tests call {len(rest)} more" if rest else ""
     more += f", and uses {counted(len(names), 'name')} of ROS" if names else ""
     return f"the program calls {counted(len(mine), 'callable')}, {times}{more}"

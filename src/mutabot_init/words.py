@@ -49,6 +49,8 @@ MODES = _by_word(
         "positions pose joints",
     }
 )
+#: words by which an assigned value is a change
+CHANGES = _words("by relative rel offset shift jog delta increment")
 #: callables that make the robot do something, and those that only read
 COMMANDS = _words(
     "home park move movej movel movep movec go goto pick place grasp grip grab release open close lock "
@@ -159,6 +161,11 @@ _SPELT: Mapping[str, str] = {
     "Hz": r"Hz|(?i:hertz)",
     "percent": r"%|(?i:percent(?:ages?)?)",
     "degC": r"°C|(?i:celsius)",
+    "Pa": r"Pa|(?i:pascals?)",
+    "kPa": r"kPa|(?i:kilopascals?)",
+    "mbar": r"(?i:mbar|millibars?)",
+    "bar": r"(?i:bars?)",
+    "psi": r"(?i:psi)",
 }
 _UNIT = re.compile(
     r"(?<![\w/'’°])(?:"
@@ -176,7 +183,7 @@ UNITS: Mapping[str, tuple[str, ...]] = {
     "torque": ("Nm",),
     "mass": ("kg", "g"),
     "temperature": ("degC",),
-    "pressure": ("Pa", "kPa", "bar"),
+    "pressure": ("Pa", "kPa", "mbar", "bar", "psi"),
     "voltage": ("V",),
     "frequency": ("Hz",),
     "ratio": ("percent", "fraction"),

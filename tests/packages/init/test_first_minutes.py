@@ -155,6 +155,25 @@ def test_a_number_that_may_count_steps_is_a_question(doc: str, is_sure: bool) ->
     assert (found.table["kind"], found.is_sure) == ("duration", is_sure)
 
 
+@pytest.mark.parametrize(
+    ("call", "name", "expected"),
+    [
+        ("forward", "metres", {"kind": "translation", "axis": "x", "unit": "m", "mode": "by"}),
+        ("drive", "mm", {"kind": "translation", "unit": "mm", "mode": "by"}),
+        ("attach", "m", {}),  # a mass, for all that is known
+    ],
+)
+def test_an_argument_named_by_its_unit_is_a_length(call: str, name: str, expected: dict[str, str]) -> None:
+    found = guess_argument(name, NameContext(words_of(call), values=[50, 120]))
+    assert found.table == expected
+    assert found.is_sure or not expected
+
+
+def test_a_unit_of_pressure_is_taken_from_the_docstring() -> None:
+    setting = NameContext(words_of("set_pressure"), doc="Set the level in mbar.", values=[-620])
+    assert guess_argument("value", setting).table == {"kind": "pressure", "unit": "mbar"}
+
+
 def test_a_vector_is_asked_about_by_its_coordinates(toolbox: Path) -> None:
     text = (toolbox / "robot.toml").read_text()
     asked = {axis: f'# arguments."linear.{axis}" = {{ kind = "speed", axis = "{axis}"' for axis in "xyz"}
@@ -190,6 +209,10 @@ PLC = """
         @angle.setter
         def angle(self, value): self._angle = value
         @property
+        def lift_height(self): return self._height
+        @lift_height.setter
+        def lift_height(self, value): self._height = value
+        @property
         def speed_rpm(self): return self._speed
         @speed_rpm.setter
         def speed_rpm(self, value): self._speed = value
@@ -207,6 +230,7 @@ CELL = """
         drive.ramp = 2.5
         drive.speed_rpm = 300.0
         drive.angle = 90
+        drive.lift_height = 0.25
         drive.note = "ready"
         return drive.speed_rpm
 """
@@ -277,6 +301,8 @@ def test_assignments_to_properties_are_listed(fieldbus: Path) -> None:
     assert (speed.kind, speed.unit) == ("speed", "rpm")
     (angle,) = operations(fieldbus)["plc:Drive.angle"].arguments
     assert (angle.kind, angle.mode) == ("rotation", "to")
+    (height,) = operations(fieldbus)["plc:Drive.lift_height"].arguments
+    assert (height.kind, height.axis, height.mode) == ("translation", "z", "to")
     assert '# call = "plc:Drive.ramp"\n# arguments.value  # seen: 2.5' in text
     assert "limits" not in text
     assert "note" not in text
@@ -330,7 +356,7 @@ def test_what_ends_or_begins_something_is_a_command(tmp_path: Path, name: str, i
 def test_check_reaches_every_write_that_is_drafted(fieldbus: Path) -> None:
     done = mutabot(fieldbus, "check")
     assert done.returncode == 0, done.stderr
-    assert "sites     9 reached" in done.stdout
+    assert "sites     10 reached" in done.stdout
 
 
 def mutabot(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:

@@ -108,6 +108,22 @@ LAYOUTS = {
         ("arm", "palletizer"),
         "palletizer.py",
     ),
+    "a program that imports nothing, beside a driver that does": (
+        {
+            "arm.py": "import asyncio\nimport os.path\n"
+            + dedent(ARM)
+            + """
+    def settle(self):
+        self.log = {{}}
+        self.log.update(x=os.path.join("a", "b"))
+        asyncio.run(asyncio.sleep(0))
+""",
+            "transfer.py": "def transfer(arm): arm.move_to(0.4)\n",
+            "test_transfer.py": TEST,
+        },
+        ("arm", "transfer"),
+        "transfer.py",
+    ),
     "tools that import the program": (
         {
             "setup.py": SETUP,
