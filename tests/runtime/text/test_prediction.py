@@ -120,6 +120,11 @@ class Robot:
         self.asked.append("angle")
         return 1.0
 
+    @property  # type: ignore[misc]
+    def __class__(self) -> type:
+        self.asked.append("__class__")
+        return Robot
+
     def __getattr__(self, name: str) -> float:
         self.asked.append(name)
         return 1.0

@@ -237,10 +237,11 @@ def plain_attribute(owner: Any, name: str) -> Any:
     Raises UnpredictableError for all others: to read a property may be to read a robot.
     """
     kind = type(owner)
-    if isinstance(owner, type) or kind.__getattribute__ not in _PLAIN_LOOK_UPS or _is_mangled(name):
+    # ``isinstance`` would ask an object for its ``__class__``
+    if issubclass(kind, type) or kind.__getattribute__ not in _PLAIN_LOOK_UPS or _is_mangled(name):
         raise UnpredictableError
-    found = next((vars(base)[name] for base in kind.__mro__ if name in vars(base)), None)
-    if isinstance(found, _STORED):
+    found: Any = next((vars(base)[name] for base in kind.__mro__ if name in vars(base)), None)
+    if type(found) in _STORED:
         return found.__get__(owner, kind)
     if found is not None and hasattr(type(found), "__get__"):
         raise UnpredictableError
