@@ -36,8 +36,8 @@ reader at the latest, or, if the file may be read before any test, runs in proce
 from the first reader on judge. Your files stay as they are; where [files cannot be
 private](shared-state.md), such mutants are errors.
 
-An alternative with the original's value has not acted. mutabot knows this of plain values and numbers of numpy
-where the original is a part of the alternative, or can be [evaluated
+An alternative with the original's value has not acted. mutabot knows this of plain values and numbers of
+numpy where the original is a part of the alternative, or can be [evaluated
 beforehand](engines.md#mutants-of-the-program-text). Any other alternative counts as having acted when it is
 reached: mutabot runs no operator of your classes to find out, and two equal lists or arrays are two objects.
 
