@@ -17,8 +17,8 @@ EXTENSION = Extension(
     executors={
         "hardware": Described(
             "mutabot_hardware.choice:HardwareChoice",
-            "Run on the hardware of the table hardware: ask before each mutant, or yes to all; repeat allows "
-            "motions that were stopped before.",
+            "Run on the hardware of the configuration's table hardware: ask before each mutant, or yes to "
+            "all; repeat allows motions that were stopped before.",
             "ask|yes|repeat",
         )
     },

@@ -171,7 +171,7 @@ def motion(
     """Show what one mutant of the last campaign did in one test, beside the original.
 
     Without --test and --round, it is the test and the round with the largest deviation. --video runs both and
-    films them. The others run nothing: they show the test as the campaign recorded it.
+    films them. The other options run nothing: they show the test as the campaign recorded it.
     """
     viewers = list(viewers_of(context.journal.parent, rerun=rerun, rrd=rrd, mcap=mcap))
     if video is not None:

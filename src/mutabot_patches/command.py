@@ -19,7 +19,7 @@ _FromGit = Annotated[
     str, typer.Option("--from-git", metavar="A..B", help="The commits to look at, as git names them.")
 ]
 _Match = Annotated[
-    str, typer.Option("--match", metavar="REGEX", help="What the message of a commit that mends has in it.")
+    str, typer.Option("--match", metavar="REGEX", help="What the message of a commit has that is a fix.")
 ]
 _To = Annotated[str, typer.Option("--to", metavar="FOLDER", help="Where patches are written.")]
 
@@ -33,9 +33,9 @@ def patches(
     to: _To = "patches",
     json: bool = False,
 ) -> None:
-    """Write the reverted fixes of the repository's history as patches.
+    """Write patches that take back fixes of the repository's history.
 
-    Each takes the program's part of a commit back, if that still applies. `mutabot run --family patch` runs
+    Each undoes what one commit changed in the program, if it still applies. `mutabot run --family patch` runs
     them.
     """
     root = context.journal.parent.parent
@@ -63,7 +63,7 @@ def _write(root: Path, to: str, commit: Reverted) -> dict[str, str | None]:
         return {"file": None, "why_not": commit.why_not}
     path = root / to / commit.name
     if not path.resolve().is_relative_to(root.resolve()):
-        raise UsageError(f"--to {to}: a folder in that of the project")
+        raise UsageError(f"--to {to} lies outside the project: name a folder in it")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(commit.content)

@@ -79,7 +79,7 @@ class ParameterTable(Table):
         if (self.path is None) == (self.apply is None):
             raise ValueError(f"{self.name}: name what is changed, either by path or by apply")
         if tuple(sorted(set(self.ladder))) != self.ladder:
-            raise ValueError(f"{self.name}: the magnitudes of a ladder rise, but they are {[*self.ladder]}")
+            raise ValueError(f"{self.name}: the magnitudes of a ladder must rise; they are {[*self.ladder]}")
         if self.change == "set" and self.directions:
             raise ValueError(f"{self.name}: what is set has no directions")
         if self.change == "scale" and self.unit not in (None, "percent"):

@@ -30,7 +30,7 @@ Version = Annotated[
 ]
 Json = Annotated[bool, Option("--json", help="Print JSON.")]
 All = Annotated[bool, Option("--all", help="Also list every skipped mutant.")]
-EveryRound = Annotated[bool, Option("--all", help="Show every round.")]
+EveryRound = Annotated[bool, Option("--all", help="Show all rounds and checks, and whole messages.")]
 _ONLY = (
     "Only these mutants: id, number, numbers (3,16-20), file, file:line, operator, family or role; globs "
     "too; @FILE for a list, one per line. Repeatable."
@@ -43,7 +43,7 @@ _OPERATORS = (
     "are useless."
 )
 _SAMPLE = "Only a random sample: 10% of each family and role, or 50 of each family."
-_SINCE = "Run only what changes since this git revision could have affected; reuse the other results."
+_SINCE = "Run only mutants that may be affected by changes since this git revision; reuse the other results."
 _JOURNAL = "Also reuse valid outcomes from this journal, e.g. one downloaded from CI."
 _BUDGET = "Stop after this much time (90s, 10m), baseline included; run the most informative mutants first."
 _VERIFY = "Re-run N random outcomes in fresh processes; exit with 4 if one ends differently."

@@ -141,7 +141,7 @@ class KrlMachine(Machine):
 
 
 def machine_of(task: Evaluation) -> KrlMachine:
-    """The run that a task belongs to."""
+    """Return the machine that runs a task."""
     assert isinstance(task.machine, KrlMachine)
     return task.machine
 

@@ -15,7 +15,7 @@ from mutabot_languages.core.tree import ProgramNode
 
 
 def _number(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Hashable:
-    """What tells the interrupt of a variable: the variable itself, or how an element is written."""
+    """Return a key for an interrupt: the identity of its variable; of an element, its text as written."""
     found = task.find(node.name, scope) if node.kind == "name" else None
     if found is not None:
         return id(found)

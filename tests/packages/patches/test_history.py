@@ -81,7 +81,7 @@ def test_messages_and_files_can_be_chosen(project: Path) -> None:
         (["--from-git", "v0..v1"], "git says: fatal: "),
         (["--from-git", "--output=x"], "'--output=x' is no range of commits, such as v1.0..HEAD"),
         (["--from-git", "HEAD", "--match", "("], "--match '(' is no regular expression"),
-        (["--from-git", "HEAD~6..HEAD", "--to", "../x"], "--to ../x: a folder in that of the project"),
+        (["--from-git", "HEAD~6..HEAD", "--to", "../x"], "--to ../x lies outside the project"),
     ],
 )
 def test_what_cannot_be_meant_is_named(words: list[str], said: str, project: Path) -> None:

@@ -192,7 +192,7 @@ def test_a_share_of_nothing_is_no_disturbance(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("wrong", "said"),
     [
-        ("ladder = [0.01, 10, 50]|ladder = [10, 5]", "the magnitudes of a ladder rise"),
+        ("ladder = [0.01, 10, 50]|ladder = [10, 5]", "the magnitudes of a ladder must rise"),
         ('path = "speed"|', "name what is changed, either by path or by apply"),
         ('change = "scale"|unit = "furlong"', "'furlong' is not a unit of disturbances"),
         ('change = "scale"|when = "soon"', "'soon' is not a moment of a disturbance"),
