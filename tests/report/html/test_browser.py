@@ -124,6 +124,33 @@ def test_the_list_is_searched_filtered_and_sorted_and_the_address_remembers(visi
     assert visit.wrong == []
 
 
+@pytest.mark.parametrize(
+    ("copies", "expected"), [(0, "2 survivors\n"), (40, "42 survivors without a measured effect")]
+)
+def test_survivors_are_described_if_nothing_else_says_which_they_are_and_are_in_order(
+    visit: Visit, copies: int, expected: str
+) -> None:
+    visit.open("#/mutants")
+    visit.page.evaluate(
+        """(copies) => {
+            const { mutants } = mutabot.campaign, [survivor] = mutants.filter((one) => one.survives);
+            for (const one of mutants) Object.assign(one, { indistinguishable: true, deviation: 0 });
+            for (let at = copies; at; at -= 1) mutants.push({ ...survivor, number: 100 + at });
+            location.hash = "#/";
+        }""",
+        copies,
+    )
+    section = visit.page.locator("section[aria-labelledby=survivors]")
+    section.wait_for()
+    assert expected in section.inner_text()
+    assert section.locator("ol.findings li").count() == (0 if copies else 2)
+    links = [link.inner_text() for link in section.locator("p.hint a").all()]
+    numbers = [int(text) for text in links if text.isdecimal()]
+    assert len(numbers) == (30 if copies else 0)
+    assert numbers == sorted(numbers)
+    assert (" and 12 more" in section.inner_text()) == bool(copies)
+
+
 def test_what_the_list_is_sorted_by_takes_two_lines_of_a_telephone(browser: Any, plain: Path) -> None:
     page = browser.new_page(viewport={"width": 390, "height": 800})
     visit = Visit(page, plain)

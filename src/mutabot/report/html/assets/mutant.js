@@ -24,7 +24,7 @@
         upper || lower ? h("nav", { "aria-label": "Survivors beside this one in the source" }, h("span", null, "Survivors in the source:"),
           step(upper, upper && `↑ ${upper.number} in ${upper.place}`, "Shift+P"), step(lower, lower && `↓ ${lower.number} in ${lower.place}`, "Shift+N")) : null),
       h("h1", { tabindex: "-1" }, h("span", { class: "number" }, `${one.number} `), one.description),
-      h("p", { class: "under" }, marks.status(one.status), marks.ends(one.ends), h("span", { class: "place" }, one.place, one.function ? ` in ${one.function}` : ""), h("span", null, `${one.operator} (${one.family}, ${one.role})`)),
+      h("p", { class: "under" }, marks.status(one.status), one.ends.length > 1 ? marks.ends(one.ends) : null, h("span", { class: "place" }, one.place, one.function ? ` in ${one.function}` : ""), h("span", null, `${one.operator} (${one.family}, ${one.role})`)),
       h("p", { class: "story big" }, mutabot.breakable(one.why)));
     const holder = h("div", null, h("p", { class: "wait" }, "The mutant is being read …"));
     body.append(holder);
@@ -237,7 +237,7 @@
   function apart(diverged) {
     if (!diverged || !(diverged.apart.length || diverged.measurements.length)) return "";
     const known = (found, unit) => found === null || found === undefined ? "–" : amount(found, unit);
-    const units = (one) => `${number(one.deviation ?? 0, 2)}×`;
+    const units = (one) => `${(one.deviation ?? 0) < 0.01 ? 0 : number(one.deviation, 2)}×`;
     const table = (title, names, rows) => rows.length ? h("div", null, h("h3", null, title), h("div", { class: "scroll", role: "region", tabindex: "0", "aria-label": title }, h("table", null,
       h("thead", null, h("tr", null, names.map((name, index) => h("th", { scope: "col", class: index ? "n" : null }, name || h("span", { class: "unseen" }, "what"))))),
       h("tbody", null, rows.map(([name, ...cells]) => h("tr", null, h("th", { scope: "row" }, name), cells.map((cell) => h("td", { class: "n" }, cell)))))))) : null;

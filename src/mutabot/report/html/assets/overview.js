@@ -119,7 +119,9 @@
   function toActOn(all, campaign) {
     const survivors = all.filter((one) => one.status !== "not covered"), idle = all.length - survivors.length;
     const more = idle ? h("p", { class: "hint" }, h("a", { href: address(["mutants"], { status: "not covered" }) }, `${count(idle, "mutant")} not covered`), ", since no test reaches the place") : null;
-    const [loud, calm] = [false, true].map((is) => survivors.filter((one) => one.indistinguishable === is));
+    let [loud, calm] = [false, true].map((is) => survivors.filter((one) => one.indistinguishable === is));
+    if (!loud.length && calm.length <= SHOWN) [loud, calm] = [calm, []]; // else nothing would say which faults these are
+    calm.sort((one, other) => one.number - other.number);
     const heading = h("h2", { id: "survivors" }, survivors.length ? `${count(survivors.length, "survivor")}${loud.length > 1 && loud.some((one) => one.deviation) ? ", largest deviation from the original first" : ""}` : "Survivors");
     if (!survivors.length) {
       const judged = campaign.mutants.some((one) => one.valid && one.status !== "not covered");
@@ -130,7 +132,7 @@
     }
     return h("section", { "aria-labelledby": "survivors" }, heading,
       h("ol", { class: "findings" }, loud.slice(0, SHOWN).map((one) => finding(one))),
-      calm.length ? h("p", { class: "hint" }, `${count(calm.length, "survivor")} without a measured effect on what the robot did: `, calm.slice(0, 3 * SHOWN).map((one, index) => [index ? ", " : "", h("a", { href: address(["mutant", String(one.number)]) }, one.number)])) : null,
+      calm.length ? h("p", { class: "hint" }, `${count(calm.length, "survivor")} without a measured effect on what the robot did: `, calm.slice(0, 3 * SHOWN).map((one, index) => [index ? ", " : "", h("a", { href: address(["mutant", String(one.number)]) }, one.number)]), calm.length > 3 * SHOWN ? ` and ${calm.length - 3 * SHOWN} more` : null) : null,
       loud.length > SHOWN ? h("p", null, h("a", { class: "more", href: address(["mutants"], { status: "survived", sort: "deviation" }) }, `All ${survivors.length} survivors`)) : null,
       more);
   }
