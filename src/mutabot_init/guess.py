@@ -379,7 +379,7 @@ def guess_elements(part: WatchedPart, name: str, setting: NameContext, *, writte
     if noun in ("none", "acceleration", "force", "torque", "time", "speed") or verb == "speed":
         return {}
     for about, meaning in ((words, noun), (setting.words, verb)):
-        is_turning = meaning == "joints" or (meaning == "angle" and length > 3)
+        is_turning = meaning == "joints" or (meaning == "angle" and 3 < length <= 7)
         is_turning = is_turning or (meaning == "place" and ("joint" in about or _is_no_pose(setting.values)))
         is_turning = is_turning or bool({"movej", "servoj", "getj", "j"} & set(about))
         if is_turning and 1 <= length <= _MOST_JOINTS and not setting.is_of_gripper:

@@ -144,9 +144,14 @@ def _walk(folder: Path) -> Iterator[Path]:
 
 
 def _is_test_side(path: Path) -> bool:
-    in_folder = any(part in _TEST_FOLDERS for part in path.parts[:-1])
+    in_folder = any(_holds_tests(part) for part in path.parts[:-1])
     stem = path.stem
-    return in_folder or stem.startswith("test_") or stem.endswith("_test") or stem == "conftest"
+    return in_folder or stem.startswith("test_") or stem.endswith(("_test", "_tests")) or stem == "conftest"
+
+
+def _holds_tests(folder: str) -> bool:
+    """Return whether a folder of this name holds tests: ``tests``, ``sys_test``, ``unit-tests``."""
+    return folder in _TEST_FOLDERS or re.search(r"[_-]tests?$", folder) is not None
 
 
 def _named(root: Path, given: Sequence[Path]) -> list[Path]:
@@ -256,7 +261,7 @@ def _arguments(root: Path, tests: Sequence[Path]) -> list[str]:
     found = []
     for path in tests:
         parts = path.relative_to(root).parts
-        folder = next((index for index, part in enumerate(parts[:-1]) if part in _TEST_FOLDERS), None)
+        folder = next((index for index, part in enumerate(parts[:-1]) if _holds_tests(part)), None)
         if folder is not None:
             found.append("/".join(parts[: folder + 1]))
         elif path.stem != "conftest":

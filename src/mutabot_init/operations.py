@@ -123,7 +123,7 @@ def _proposal(call: WatchedCallable, groups: Sequence[Sequence[Any]]) -> Proposa
     for name, values in call.arguments.items():
         if name != proposal.message:
             for part in values.parts.values():
-                if values.always(part) or part.path == name:
+                if (values.always(part) or part.path == name) and not _is_row(part, name):
                     proposal.arguments.update(_argument(name, part, call))
     _share_units(proposal.arguments)
     by_name = proposal.message is None or proposal.reads_by_name
@@ -140,6 +140,11 @@ def _proposal(call: WatchedCallable, groups: Sequence[Sequence[Any]]) -> Proposa
             # what a command answers says whether it was carried out; no sensor reads it
             proposal.result = {}
     return proposal
+
+
+def _is_row(part: WatchedPart, name: str) -> bool:
+    """Return whether it is a row of an argument that is a table: rows have no meanings of their own."""
+    return part.length is not None and not part.name and part.path != name
 
 
 def _share_units(guesses: dict[str, Guess]) -> None:
@@ -161,6 +166,7 @@ def _is_housekeeping(call: WatchedCallable) -> bool:
 def _computes(call: WatchedCallable) -> bool:
     """Return whether it makes or computes something from its arguments, without the robot."""
     is_constructor = call.is_of_class and call.owner != "" and call.result.type == call.owner
+    is_constructor = is_constructor or call.result.type in ("property", "function", "type")
     is_pure = call.only_computes and bool(call.arguments)
     return is_constructor or ((is_pure or _fills_buffer(call)) and not _reads(call))
 
@@ -378,10 +384,16 @@ def _notation(text: str) -> str:
 
 
 def tells_commands(call: WatchedCallable) -> bool:
-    """Return whether there are commands, and their texts look like names."""
+    """Return whether there are commands, and their texts look like names.
+
+    What tells an object apart whose method is called is an address (``ns=2;s=Gate``), not a description
+    (``Bus, channel 0``).
+    """
     if not call.commands:
         return False
-    return call.told_by != "self" or len(call.commands) > 1 or "=" in next(iter(call.commands))
+    are_addresses = call.is_set or all("=" in text or not re.search(r"\s", text) for text in call.commands)
+    is_one = len(call.commands) == 1 and "=" not in next(iter(call.commands))
+    return call.told_by != "self" or (are_addresses and not is_one)
 
 
 def is_read(call: WatchedCallable) -> bool:

@@ -335,7 +335,8 @@ def _told(found: _Findings, questions: int) -> list[str]:
     counts = ", ".join(f"{count} {outcome}" for outcome, count in run.outcomes.items())
     lines = [f"program: {', '.join(found.program)}{how}"]
     if run.trouble:
-        lines.append(f"the tests could not be watched: {run.trouble}")
+        what = "not all tests were watched" if counts else "the tests could not be watched"
+        lines.append(f"{what}: {run.trouble}")
     if counts:
         lines.append(f"tests: {counts}; {_counted(found)}")
     lines += [f"  {problem}" for problem in run.problems[:3] if not run.trouble]

@@ -70,7 +70,7 @@ SETUP = _words("create connect disconnect load make init initialize configure si
 #: what lets a simulation go on, and what has such a clock
 STEPS = _words("step tick advance stepSimulation step_simulation")
 SIMULATORS = _words("sim simulation simulator world physics scene engine")
-TALK = _words("log print say show info warn warning debug error display")
+TALK = _words("log print say show info warn warning debug error display event")
 #: predicates of replies and of connections, which no sensor reads
 HOUSEKEEPING = _words("error ok success connected alive valid failed exception")
 REPLIES = _words("response reply result error exception future pdu packet message status")
@@ -80,6 +80,9 @@ INPUTS = _words("joystick gamepad stick xbox keyboard mouse")
 CAMERAS = _words("camera cam video capture frame picture image")
 GRIPPER = _words("gripper grip hand finger fingers claw jaw vacuum suction suck grasp grasping hande robotiq")
 OUTPUT = _words("output outputs digital signal valve relay lamp coil io do out led gpio solenoid")
+
+#: what has a width in seconds, hertz or bits
+SIGNALS = _words("pulse frame band bit data bus line")
 
 #: words that undo each other
 OPPOSITES = (
@@ -101,7 +104,7 @@ NOUNS = _by_word(
         "temperature": "temperature temp",
         "pressure": "pressure",
         "voltage": "voltage volts",
-        "frequency": "frequency freq hz",
+        "frequency": "frequency freq hz bandwidth",
         "ratio": "ratio percent percentage brightness throttle power throttle duty",
         "height": "height altitude depth lift",
         "length": "distance dist length amount travel range gap ultrasonic lidar width",
@@ -199,7 +202,8 @@ def units_in(text: str, dimension: str) -> list[str]:
 
 def noun_of(words: Sequence[str]) -> str:
     """Return what a value with such a name is, by its last known noun; empty without one."""
-    return next((NOUNS[word] for word in reversed(words) if word in NOUNS), "")
+    noun = next((NOUNS[word] for word in reversed(words) if word in NOUNS), "")
+    return "" if noun == "length" and "width" in words and SIGNALS & set(words) else noun
 
 
 def first(table: Mapping[str, str], words: Iterable[str]) -> str | None:

@@ -37,10 +37,10 @@ class Duration:
 
     @property
     def text(self) -> str:
-        """``up to about 4 min for 130 runs, 2 at a time``."""
+        """``about 4 min for 130 runs, 2 at a time``."""
         step = 5 if self.seconds < 100 else 30 if self.seconds < 1000 else 300
         about = max(step, step * round(self.seconds / step))
-        return f"up to about {duration_text(about)} for {plural(self.runs, 'run')}, {self.jobs} at a time"
+        return f"about {duration_text(about)} for {plural(self.runs, 'run')}, {self.jobs} at a time"
 
 
 def duration_of(campaign: Campaign, mutants: Sequence[Mutant]) -> Duration:

@@ -93,7 +93,8 @@ class CampaignRun(Campaign):
             self.baseline.faults.by_id[mutant.id] = PlannedMutant(mutant, active=Activation.of_call(place))
             return mutant
         if mutant.id not in self.planned:
-            raise SelectionError(f"the program has changed: no test reaches {mutant.id} any more")
+            why = "the program has changed, or the configuration does not name its file any more"
+            raise SelectionError(f"no test reaches {mutant.id} now: {why}")
         return replace(self.planned[mutant.id], number=mutant.number)
 
     def prove(self, mutants: Iterable[Mutant]) -> None:

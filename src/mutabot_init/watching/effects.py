@@ -71,12 +71,23 @@ class _Function:
     @property
     def only_computes(self) -> bool:
         """Whether it returns what it computes, and has no other effect."""
-        if self._tree is None or len(self._callers) > _DEPTH:
-            return False
-        nodes = list(ast.walk(self._tree))
-        returned = [node.value for node in nodes if isinstance(node, ast.Return) and node.value is not None]
-        is_computed = any(not isinstance(expression, ast.Constant) for expression in returned)
-        return is_computed and self._uses_arguments(nodes) and self._has_no_effect(nodes)
+        returned = [node.value for node in self._nodes if isinstance(node, ast.Return)]
+        is_computed = any(not isinstance(value, ast.Constant | None) for value in returned)
+        return is_computed and self._may_be_left_out
+
+    @property
+    def only_checks(self) -> bool:
+        """Whether all it does is to raise where something is wrong with its arguments."""
+        return any(isinstance(node, ast.Raise) for node in self._nodes) and self._may_be_left_out
+
+    @cached_property
+    def _nodes(self) -> list[ast.AST]:
+        is_known = self._tree is not None and len(self._callers) <= _DEPTH
+        return list(ast.walk(self._tree)) if is_known else []
+
+    @property
+    def _may_be_left_out(self) -> bool:
+        return self._uses_arguments(self._nodes) and self._has_no_effect(self._nodes)
 
     def _uses_arguments(self, nodes: list[ast.AST]) -> bool:
         """Return whether it uses its arguments; a fake of the robot does not."""
@@ -142,7 +153,10 @@ class _Function:
         if module in _COMPUTING:
             return True
         is_text = isinstance(found, FunctionType | staticmethod | classmethod)
-        return is_text and _Function.of(found, owner, self._callers).only_computes
+        if not is_text:
+            return False
+        function = _Function.of(found, owner, self._callers)
+        return function.only_computes or function.only_checks
 
     def _found(self, node: ast.expr) -> Any:
         """Return the object to which a name, or attributes of one, refer now."""

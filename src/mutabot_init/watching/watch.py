@@ -16,7 +16,7 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field, is_dataclass, replace
 from fnmatch import fnmatchcase
 from functools import cache, cached_property, partial
-from types import ModuleType
+from types import FunctionType, ModuleType
 from typing import Any
 
 from mutabot.api.processes import CallOrigin, Observer
@@ -90,7 +90,8 @@ class Watch(Observer):
         super().__init__(libraries, is_test)
         self._seen: dict[tuple[str, bool, bool], _Seen] = {}
         self._method_of = cache(method_of)
-        self._only_class = cache(_only_class)
+        self._function_of = cache(function_of)
+        self._classes_named = cache(_classes_named)
         self._uses: dict[tuple[Form, str, bool, bool], Use] = {}
         self._lock = threading.RLock()
         self._beside = {name: proposer.watch() for name, proposer in brought_proposers().items()}
@@ -99,7 +100,7 @@ class Watch(Observer):
         """Return what is called in the place of ``found``, which was read from ``receiver``."""
         if isinstance(found, type):
             return found
-        callee = function_of(found) if receiver is None else self._method(receiver, name)
+        callee = self._function(found) if receiver is None else self._method(receiver, name)
         if receiver is not None and not caller.is_test:
             callee = self._replaced_callee(receiver, name, callee, found)
         return self._wrapped(found, self._of(callee, caller), caller)
@@ -152,17 +153,33 @@ class Watch(Observer):
     def _is_of_tests(self, callee: Callee) -> bool:
         return self.is_test(callee.file) is True
 
+    def _is_test_class(self, callee: Callee) -> bool:
+        """Return whether it is a method of a class of tests, which the program may call back."""
+        owner: Any = callee.owner
+        unittest = sys.modules.get("unittest")
+        if unittest is not None and issubclass(owner, unittest.TestCase):
+            return True
+        is_plain = owner.__init__ is object.__init__  # pytest collects no other class
+        return is_plain and owner.__name__.startswith("Test") and self._is_of_tests(callee)
+
     def _method(self, value: Any, name: str) -> Callee | None:
         """Return a method by its name; cached for each class."""
         if inspect.ismodule(value) or isinstance(value, super) or name in getattr(value, "__dict__", ()):
             return method_of(value, name)
         return self._method_of(value if isinstance(value, type) else type(value), name)
 
+    def _function(self, found: Any) -> Callee | None:
+        """Return a function by its name; cached for those that are the same object at each call."""
+        return self._function_of(found) if isinstance(found, FunctionType) else function_of(found)
+
     def _replaced_callee(self, value: Any, name: str, callee: Callee | None, found: Any) -> Callee | None:
         """Return what a mock or fake replaces: the robot's callable, or any callable with its name."""
         if _is_mock(value):
             spelt = re.split(r"\W", value._extract_mock_name())[0]
-            kind = vars(value).get("_spec_class") or self._only_class(spelt, name)
+            kinds = self._classes_named(spelt, name)
+            if kinds and all(_is_no_robot(kind.__module__.partition(".")[0]) for kind in kinds):
+                return None  # of an event, a thread, a socket
+            kind = vars(value).get("_spec_class") or (kinds[0] if len(kinds) == 1 else None)
             return (replaced_method(kind, name) if kind is not None else None) or any_method(name)
         if _is_mock(found) and isinstance(value, type | ModuleType):
             where = f"{value.__name__}:" if isinstance(value, ModuleType) else f"{class_name(value)}."
@@ -179,7 +196,7 @@ class Watch(Observer):
 
     def _of(self, callee: Callee | None, caller: CallOrigin) -> _Seen | None:
         """Return this side's observations of a callable; None if it is not a robot's."""
-        if callee is None:
+        if callee is None or (callee.owner is not None and self._is_test_class(callee)):
             return None
         key = (callee.target, caller.is_test, callee.is_set)
         known = self._seen.get(key)
@@ -293,15 +310,15 @@ def _making(seen: _Seen) -> Iterator[None]:
             _under_way.reset(token)
 
 
-def _only_class(name: str, method: str) -> type | None:
-    """Return the class that a mock with this name replaces: the only one so named with such a method."""
+def _classes_named(name: str, method: str) -> list[type]:
+    """Return the classes that a mock with this name may replace: those so named with such a method."""
     kinds = {
         id(kind): kind
         for module in list(sys.modules.values())
         for kind in [getattr(module, "__dict__", {}).get(name)]
         if isinstance(kind, type) and kind.__name__ == name and callable(getattr(kind, method, None))
     }
-    return next(iter(kinds.values())) if len(kinds) == 1 else None
+    return list(kinds.values())
 
 
 def _limits(value: Any, instance: Any) -> list[list[float]] | None:

@@ -211,6 +211,20 @@ def test_check_says_what_stood_in_and_what_was_left_alone(stage: Stage) -> None:
     assert told["method"].endswith('if it is, write method = "move_by"')
 
 
+def test_check_names_what_a_test_puts_into_an_object_in_the_place_of_its_operation(stage: Stage) -> None:
+    session = stage.session(inspect=True)
+    stage.load_program()
+    arm = stage.load_robot().Arm()
+    arm.move_by = lambda *given, **named: None
+    session.start_test("test")
+    stage.run(session, "run", arm)
+    session.end_test()
+    session.finish()
+    (told,) = (line.text for line in stage.writer.lines if isinstance(line, Remark))
+    own = test_check_names_what_a_test_puts_into_an_object_in_the_place_of_its_operation.__qualname__
+    assert told == f"it is replaced by {__name__}:{own}.<locals>.<lambda> in 1 test"
+
+
 def test_check_calls_no_operation_left_alone_that_is_kept_under_the_name_of_another(stage: Stage) -> None:
     session = stage.session(inspect=True)
     stage.load_program()

@@ -16,7 +16,7 @@ from mutabot.campaign.baseline.writes import written_through
 from mutabot.campaign.probe_readings import probe_intervals_of
 from mutabot.campaign.request import Progress, Request
 from mutabot.config.mistakes import problem_error
-from mutabot.errors import BaselineError, NothingToDoError, in_short
+from mutabot.errors import BaselineError, NothingToDoError, in_short, plural
 from mutabot.execution.task import ABNORMAL, Result, Task, tail_of
 from mutabot.families import OF_CALLS
 from mutabot.languages.python import unused_calls
@@ -85,7 +85,7 @@ def refuse_failing(request: Request, failing: Failing) -> None:
 
 
 _KNOWN_LATER = (
-    "at {} sites some tests call an operation and others what nothing tells to be one: it counts there "
+    "at {} some tests call an operation and others what nothing tells to be one: it counts there "
     "as one, and the tests are recorded again"
 )
 _NOT_IN_COPIES = (
@@ -224,7 +224,7 @@ def _run(
     if if_all_pass and suite.failing():
         return False
     if suite.learns():
-        suite.progress.note(_KNOWN_LATER.format(len(suite.known)))
+        suite.progress.note(_KNOWN_LATER.format(plural(len(suite.known), "site")))
         suite.remarks.clear()
         suite.run(_first_runs(suite, recording if is_looked_at else None))
     if not is_looked_at:

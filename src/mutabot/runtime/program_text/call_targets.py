@@ -77,7 +77,7 @@ class CallFindings:
 
     def note(self, site: CallSite, operation: Operation | None, found: Any, receiver: Any) -> None:
         """Note what was called at a site, as this operation or as none."""
-        what = _shown(found, receiver)
+        what = _shown(found, receiver, site.name)
         if operation is not None:
             self._sites.add(site)
             self._replaced.setdefault(operation.target, {}).setdefault(what, set()).add(self.test())
@@ -119,9 +119,11 @@ def mock_of(found: Any) -> Any:
     return made if is_mock(made) else None
 
 
-def _shown(found: Any, receiver: Any) -> str:
+def _shown(found: Any, receiver: Any, name: str) -> str:
     if mock_of(found) is not None or mock_of(receiver) is not None:
         return "a mock"
+    if isinstance(found, FunctionType | MethodType) and found is inspect.getattr_static(receiver, name, None):
+        return f"{found.__module__}:{found.__qualname__}"  # an attribute of this object alone
     if receiver is NOTHING or isinstance(receiver, ModuleType):
         return str(getattr(type(found), "__name__", ""))
     return class_name(receiver if isinstance(receiver, type) else type(receiver))

@@ -89,6 +89,25 @@ def filled(value: float) -> list[float]:
     return target
 
 
+def checked(value: float) -> float:
+    _refuse_nonsense(value)
+    return -value
+
+
+def _refuse_nonsense(value: float) -> None:
+    if value < 0:
+        raise ValueError(value)
+
+
+def commanded(value: float) -> float:
+    _stub(value)
+    return -value
+
+
+def _stub(value: float) -> None:
+    """Any robot may be behind this."""
+
+
 def shown(value: float) -> float:
     print(value)
     return value
@@ -106,7 +125,7 @@ def remove(name: str) -> Any:
     ("function", "expected"),
     [
         (Robot.__dict__["at"], True), (Robot.forward, True), (Robot.where, True), (filled, True),
-        (table, True), (fetched, False),
+        (table, True), (fetched, False), (checked, True), (commanded, False), (_refuse_nonsense, False),
         (factorial, True), (Robot.ask, False), (Robot.move, False), (Robot.alias, False),
         (Robot.each, False), (Robot.turn, False), (Robot.wait, False), (Robot.stands_in, False),
         (Robot.agrees, False), (Robot.later, False), (fill, False), (shown, False), (remove, False),
