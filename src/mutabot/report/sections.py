@@ -106,7 +106,9 @@ def _scores(results: Results) -> Iterator[Section]:
         yield Section("Scores", columns, rows, [*lines, *results.bugs_caught])
     if results.drawing is not None:
         drawn = sum(group.mutants for group in results.drawn)
-        title = f"Sample of {results.drawing.sample}: {drawn} of {plural(results.drawing.selected, 'mutant')}"
+        size = results.drawing.sample
+        each = "" if size.endswith("%") else " of each family"
+        title = f"Sample of {size}{each}: {drawn} of {plural(results.drawing.selected, 'mutant')}"
         lines = [_sample_line(group) for group in results.drawn if group.population is not None]
         yield Section(title, lines=lines)
 

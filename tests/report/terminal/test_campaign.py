@@ -128,12 +128,15 @@ def test_with_one_round_there_is_no_interval(tmp_path: Path) -> None:
 
 
 @WIDTHS
-def test_a_sample_is_told_with_what_it_says_about_all(tmp_path: Path, width: int) -> None:
+@pytest.mark.parametrize(("size", "told"), [("10%", "10%"), ("3", "3 of each family")])
+def test_a_sample_is_told_with_what_it_says_about_all(
+    tmp_path: Path, width: int, size: str, told: str
+) -> None:
     stratum = {"family": "robot", "role": "program", "population": 30, "drawn": 3}
-    drawing = {"sample": "10%", "selected": 60, "strata": [stratum]}
+    drawing = {"sample": size, "selected": 60, "strata": [stratum]}
     with Journal.open(samples.write_journal(tmp_path / "journal.sqlite", drawing=drawing)) as journal:
         text = " ".join(report(read_results(journal), width).split())
-    assert "Sample of 10%: 5 of 60 mutants" in text
+    assert f"Sample of {told}: 5 of 60 mutants" in text
     assert "robot · program: 3 of 30; score of all of them in these rounds " in text
 
 

@@ -45,7 +45,7 @@
     const complete = campaign.state === "complete" && campaign.done >= campaign.planned;
     const facts = [typeof meta.seconds === "number" && `the last run took ${duration(meta.seconds)}`,
       meta.families && `${meta.families.length > 1 ? "families" : "family"} ${meta.families.join(", ")}`, count(campaign.tests.length, "test"),
-      campaign.drawing && `a sample of ${campaign.drawing.size} of ${count(campaign.drawing.selected, "mutant")}`];
+      campaign.drawing && `a sample of ${campaign.drawing.size}${campaign.drawing.size.endsWith("%") ? "" : " of each family,"} of ${count(campaign.drawing.selected, "mutant")}`];
     return [
       h("p", { class: "lead" }, complete ? "complete · " : "", facts.filter(Boolean).join(" · ")),
       complete || isUnderWay(campaign) ? null : h("p", { class: "notice" }, h("strong", null, `This campaign is not complete (${campaign.state}): `),
