@@ -59,6 +59,6 @@ def test_more_rounds_take_longer_and_more_jobs_less(
 def test_both_commands_say_it(tmp_path: Path, script: Script, capsys: pytest.CaptureFixture[str]) -> None:
     project = write_project(tmp_path, MISSION, TESTS)
     assert main(["-C", str(project), "list"]) == 0
-    assert "A run takes about " in capsys.readouterr().out
+    assert "`mutabot run` takes about " in capsys.readouterr().out
     assert main(["-C", str(project), "check"]) == 0
     assert "\ntime      about " in capsys.readouterr().out

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -104,3 +105,10 @@ def test_what_to_do_about_a_survivor_is_the_same_in_every_format_for_scripts(tmp
     assert [found["next"] for found in streamed] == [found["next"] for found in shown]
     assert [found["effect"] for found in streamed] == [found["effect"] for found in shown]
     assert [found["number"] for found in streamed if found["next"]] == [2, 4, 5]  # survived or not covered
+
+
+def test_no_check_is_promised_where_nothing_was_measured(tmp_path: Path) -> None:
+    ends = tuple(replace(outcome, indistinguishable=True, divergence=()) for outcome in samples.OUTCOMES)
+    *_, end = map(json.loads, made("jsonl", stored(tmp_path, outcomes=ends)).splitlines())
+    assert end["next"] == "`mutabot show 2` prints the details of a survivor."
+    assert end["untested"] is None

@@ -56,7 +56,7 @@ def list_(
         context.print_json({**data, "runs": planned.duration.runs, "seconds": planned.duration.seconds})
     else:
         print_plan(make_console(), planned.mutants, planned.left_out, planned.untested, everything=all)
-        context.print(f"\nA run takes {planned.duration.text}; less where results are reused.")
+        context.print(f"\n`mutabot run` takes {planned.duration.text}; less where results are reused.")
 
 
 def run(

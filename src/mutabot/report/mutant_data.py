@@ -51,6 +51,6 @@ def end_data(results: Results) -> dict[str, Any]:
         "state": results.state,
         "mutants": dict(Counter(map(state_of, results.mutants))),
         "scores": [_DATA_OF.facts(group, _GROUP) for group in results.groups],
-        "untested": results.untested.text,
+        "untested": results.untested.text or None,
         "next": next_steps(results) or None,
     }

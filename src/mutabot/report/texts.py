@@ -205,8 +205,10 @@ def next_steps(results: Results) -> str:
     survivors = [result for result in results.survivors if result.status is not Verdict.NOT_COVERED]
     if not survivors:
         return ""
-    show = f"`mutabot show {survivors[0].mutant.number}` prints the details of a survivor"
-    return f"{show}, `mutabot suggest` searches for checks that kill survivors."
+    steps = [f"`mutabot show {survivors[0].mutant.number}` prints the details of a survivor"]
+    if not all(result.indistinguishable for result in survivors):
+        steps.append("`mutabot suggest` searches for checks that kill survivors")
+    return f"{', '.join(steps)}."
 
 
 def also_text(site: Site) -> str:
