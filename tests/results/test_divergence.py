@@ -34,6 +34,12 @@ def test_a_reading_is_told_with_its_unit_and_what_became_of_the_world() -> None:
     )
 
 
+def test_what_was_not_compared_at_all_is_not_listed() -> None:
+    found = explain(REVERSE, [replace(READ, compared=Compared(calls=26), example=None)], VOCABULARY)
+    assert found == "nothing differs in 26 calls (indistinguishable)"
+    assert Compared().text == "0 calls"
+
+
 def test_a_command_is_sent_rather_than_read() -> None:
     end = replace(READ, example=(0.2, -0.2))
     assert explain(REVERSE, [end], VOCABULARY).startswith("sent -0.2 m instead of 0.2 m")

@@ -112,14 +112,13 @@ class Compared:
 
     @property
     def text(self) -> str:
-        """``14 calls, probes at 9 moments, 1 returned value``."""
-        return ", ".join(
-            (
-                f"{self.calls} {'call' if self.calls == 1 else 'calls'}",
-                f"probes at {self.moments} {'moment' if self.moments == 1 else 'moments'}",
-                f"{self.returned} returned {'value' if self.returned == 1 else 'values'}",
-            )
+        """``14 calls, probes at 9 moments, 1 returned value``; what was not compared at all is not listed."""
+        parts = (
+            (self.calls, f"{self.calls} {'call' if self.calls == 1 else 'calls'}"),
+            (self.moments, f"probes at {self.moments} {'moment' if self.moments == 1 else 'moments'}"),
+            (self.returned, f"{self.returned} returned {'value' if self.returned == 1 else 'values'}"),
         )
+        return ", ".join(text for count, text in parts if count) or parts[0][1]
 
 
 @frozen
