@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from mutabot.model.activation import FatalFault
 from mutabot.model.events import Acted, Problem
-from mutabot.operators.command import FatalFault
 from mutabot.runtime.meter import Meter, TimeExceeded
 from tests.runtime.stage import Make
 

@@ -236,7 +236,7 @@ class Result:
 def how_ended(code: int) -> str:
     """Return how a process ended without a report, by its exit code."""
     if code == UNWRITTEN:
-        return "the tests' process could not write what it had to tell; is the disk full?"
+        return "the tests' process could not write what it had to tell: a full disk, or RLIMIT_FSIZE?"
     return f"killed by signal {-code}" if code < 0 else f"the process ended with exit code {code}"
 
 

@@ -30,6 +30,10 @@ IDENTITY_CONTROL = "mutabot.runtime.active_fault:IdentityControl"
 FATAL_CONTROL = "mutabot.runtime.active_fault:FatalControl"
 
 
+class FatalFault(BaseException):
+    """Raised by the fatal control. Not an ``Exception``, so that no program handles it by mistake."""
+
+
 def at_text(place: int, index: int) -> Key:
     """Return the key of a place in the program text where this alternative may differ from the original."""
     return (TEXT, place, index)

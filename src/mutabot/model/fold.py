@@ -186,7 +186,7 @@ class Children:
             now = b""
         is_number = self.number is None or now[:8] == self.number.to_bytes(8, sys.byteorder)
         if any(now[8:]):
-            self._note("one of them could not write what it had to tell; is the disk full?")
+            self._note("one of them could not write what it had to tell: a full disk, or RLIMIT_FSIZE?")
         elif len(now) < 16 or not is_number:  # they have read another number, or died of reading
             self._note("the number of the running test was deleted or changed")
 

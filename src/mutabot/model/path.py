@@ -288,3 +288,8 @@ def _stored_as(value: Any, name: str) -> str:
 def class_name(kind: type[Any]) -> str:
     """``module:Qualified.Name``."""
     return f"{kind.__module__}:{kind.__qualname__}"
+
+
+def opaque(value: Any) -> dict[str, str]:
+    """Return a placeholder for a value that is not plain data."""
+    return {"opaque": class_name(type(value))}

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from mutabot.families import CONTROL
 from mutabot.model import Call, Middleware, Operation, Proceed, Reply, Unchanged
+from mutabot.model.activation import FatalFault
 from mutabot.model.operation import Form
 
 from .operator import Context, Example, Operator, Subject
@@ -88,10 +89,6 @@ class CommandOperator(Operator):
 
 
 _HOME = Operation("robot:Arm.home")
-
-
-class FatalFault(BaseException):
-    """Raised by the fatal control. Not an ``Exception``, so that no program handles it by mistake."""
 
 
 class Identity(CommandOperator):

@@ -10,14 +10,14 @@ from abc import ABC, abstractmethod
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
-from mutabot.model.activation import NTH, TEST, Key
+from mutabot.model.activation import NTH, TEST, FatalFault, Key
+from mutabot.model.path import opaque
 from mutabot.runtime.activity import Activity
 
 if TYPE_CHECKING:
     from random import Random
 
     from mutabot.model import Mutant
-    from mutabot.operators.command import FatalFault
 
 
 class FaultContext(Protocol):
@@ -178,14 +178,10 @@ class FatalControl(_ControlFault):
     @property
     def error(self) -> FatalFault:
         """The error that the control raises."""
-        from mutabot.operators.command import FatalFault  # noqa: PLC0415  # once in a campaign
-
         return FatalFault(f"control: {self.mutant.site.place} fails")
 
 
 def _plain(value: Any) -> Any:
     if value is None or isinstance(value, bool | int | float | str):
         return value
-    from mutabot.runtime.observation.probes import opaque  # noqa: PLC0415  # slow, and of no use to most
-
     return opaque(value)

@@ -13,6 +13,7 @@ import ast
 import builtins
 import os
 import sys
+from sys import _getframe
 from types import CodeType, FrameType
 from typing import Any
 
@@ -165,13 +166,13 @@ class ExecutedUnits(SourceStep):
             if name is not None and name not in self._loaded:
                 self._keep({(name, WHOLE)})
         elif event in STARTS and not (
-            is_own(sys._getframe(FRAMES)) or _is_foreign(event, arguments) or self._is_of_library()
+            is_own(_getframe(FRAMES)) or _is_foreign(event, arguments) or self._is_of_library()
         ):
             self._keep({(ALL_FILES, WHOLE)})
 
     def _is_of_library(self) -> bool:
         """Return whether an installed package causes the event while it is imported."""
-        frame: FrameType | None = sys._getframe(1 + FRAMES)
+        frame: FrameType | None = _getframe(1 + FRAMES)
         while frame is not None:
             file = frame.f_code.co_filename
             if "site-packages" in file and frame.f_code.co_name == "<module>":

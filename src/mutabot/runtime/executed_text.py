@@ -7,9 +7,9 @@ well, compiled, is the program: it is mutated at the same places. Where it stand
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 from contextlib import suppress
+from sys import _getframe
 from types import CodeType, FrameType
 from typing import Any
 
@@ -40,7 +40,7 @@ def file_of(code: CodeType) -> str:
 def install() -> None:
     """Look at all text that is being run, by this thread, or is run from now on."""
     listen(("exec",), lambda event, arguments: look_at(arguments[0]))
-    frame: FrameType | None = sys._getframe()
+    frame: FrameType | None = _getframe()
     while frame is not None:
         look_at(frame.f_code)
         frame = frame.f_back

@@ -18,8 +18,7 @@ import wrapt
 
 from mutabot.errors import error_text
 from mutabot.model import Mutant
-from mutabot.model.activation import Activation, Key
-from mutabot.operators.command import FatalFault
+from mutabot.model.activation import Activation, FatalFault, Key
 from mutabot.runtime.active_fault import ActiveFault, FatalControl, FaultContext
 from mutabot.runtime.activity import Activity
 from mutabot.runtime.exceptions import Refusal, everything

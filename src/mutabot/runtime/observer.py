@@ -16,6 +16,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from functools import cache
 from importlib import import_module
+from sys import _getframe
 from types import FrameType
 from typing import Any
 
@@ -201,13 +202,13 @@ class _Uses(Messages):
         """Return the observer's handler of a use; None for a set-up, which is reported at once."""
         observer, locator = self._observer, self._locator
         if form not in _PASSING:
-            caller = _caller(locator.locate(sys._getframe(1)))
+            caller = _caller(locator.locate(_getframe(1)))
             observer.used(form, name, caller, (), is_callback=False)
             return None
 
         def handle(wrapped: Any, instance: Any, args: Any, kwargs: Any, where: Where = NOWHERE) -> Any:
             code = where.code
-            place = locator.locate(sys._getframe(1)) if code is None else locator.locate_definition(code)
+            place = locator.locate(_getframe(1)) if code is None else locator.locate_definition(code)
             answered = observer.used(form, name, _caller(place), args[:1], is_callback=code is not None)
             if inspect.iscoroutinefunction(wrapped):
                 return _awaited(wrapped(*args, **kwargs), answered)

@@ -130,10 +130,10 @@ class SessionHooks:
         watch_forks(members.folder, self.session)
         if job.mutant is not None:
             self.tests.left_out = job.left_out(job.mutant.id)
+        compile_all()  # tests may take away what that needs (``sys.modules``, ``exec``)
         if job.forking is not None:
             preload({mutant.operator for mutant in job.forking.mutants})  # and not in every fork
             fault_runner.preload(job.active.values())
-            compile_all()
             track_event_loops()
             event_file, tests = self.session.writer, job.tests or ()
             assert isinstance(event_file, EventFile)

@@ -14,6 +14,7 @@ import sys
 from collections.abc import Callable, Iterable, Iterator
 from functools import wraps
 from glob import glob
+from sys import _getframe
 from types import FrameType
 from typing import Any
 
@@ -76,7 +77,7 @@ class TextReads:
         if not isinstance(path, str | bytes | os.PathLike):
             return
         try:
-            frame = sys._getframe(FRAMES)
+            frame = _getframe(FRAMES)
         except ValueError:  # the interpreter opens the script that it is to run: nobody reads that as text
             return
         if event == "open" and arguments[2] & (os.O_WRONLY | os.O_TRUNC):
@@ -99,7 +100,7 @@ class TextReads:
 
         Python is none: it runs them with the mutant in them.
         """
-        if is_own(sys._getframe(FRAMES)):
+        if is_own(_getframe(FRAMES)):
             return
         given = arguments[0 if event == "os.system" else 1]
         parts = [given] if isinstance(given, str | bytes | os.PathLike) else given or ()

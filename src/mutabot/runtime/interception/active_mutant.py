@@ -15,6 +15,7 @@ from typing import Any
 from mutabot.errors import OperatorError, PathError, error_text
 from mutabot.languages.registry import front_end_of
 from mutabot.model import Call, Middleware, Moment, Mutant, Operation, Proceed, Reply, Span
+from mutabot.model.activation import FatalFault
 from mutabot.model.answer import restore
 from mutabot.model.data import UNKNOWN, data_of, is_of_numpy
 from mutabot.model.enumeration import is_member, member_of
@@ -22,7 +23,6 @@ from mutabot.model.job import Idle, RefusedAt
 from mutabot.model.mutant import Extent
 from mutabot.model.operation import Form, Refused
 from mutabot.operators import Need, Subject, operator
-from mutabot.operators.command import FatalFault
 from mutabot.operators.middleware import CallRecord, Carried, run_middleware
 from mutabot.operators.operator import subject_of
 from mutabot.runtime.activity import REFUSALS, Activity

@@ -16,6 +16,7 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from functools import partial
+from sys import _getframe
 from types import CodeType, FrameType, FunctionType, MethodType
 from typing import TYPE_CHECKING, Any
 
@@ -148,7 +149,7 @@ class Dispatcher:
                 runs = _runs.get()
                 if runs == _UNTRACKED:
                     return alone(wrapped, instance, args, kwargs, where)
-                frame: Any = sys._getframe(1)
+                frame: Any = _getframe(1)
                 site = where.site or self._site(frame, where, adapter, runs == _OPERATION)
                 if runs and site is None:
                     return alone(wrapped, instance, args, kwargs, where)

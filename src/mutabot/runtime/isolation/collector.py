@@ -13,10 +13,10 @@ thawed alone.
 from __future__ import annotations
 
 import gc
-import sys
 import warnings
 from collections.abc import Callable
 from functools import wraps
+from sys import _getframe
 from types import FrameType
 from typing import Any
 
@@ -59,7 +59,7 @@ def _thaw() -> None:
 def _thawing(function: Callable[..., Any]) -> Callable[..., Any]:
     @wraps(function)
     def asked(*arguments: Any, **named: Any) -> Any:
-        caller = sys._getframe().f_back  # a thread may begin here, and has none
+        caller = _getframe().f_back  # a thread may begin here, and has none
         if caller is None or caller.f_globals.get("__name__") != _AT_THE_END or _counts(caller):
             _thaw()
         return function(*arguments, **named)

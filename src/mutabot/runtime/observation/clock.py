@@ -19,6 +19,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
 from math import isfinite
+from sys import _getframe
 from types import CoroutineType, ModuleType
 from typing import Any
 
@@ -145,7 +146,7 @@ def _alive(holds: dict[int, Any]) -> list[Any]:
 
 def _is_importing() -> bool:
     """Return whether a module is being imported, whose objects exist for all later tests."""
-    frame = sys._getframe(1)
+    frame = _getframe(1)
     while frame.f_back is not None:
         if frame.f_code.co_name == "<module>" and frame.f_back.f_globals.get("__name__") in _IMPORTERS:
             return True

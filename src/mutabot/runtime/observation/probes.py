@@ -28,7 +28,7 @@ from mutabot.evidence import recorder as recorders
 from mutabot.evidence.recording import RecordedCall, to_text
 from mutabot.model.clocks import monotonic, thread_time
 from mutabot.model.data import data_of, fields_of, is_of_numpy, is_textual, items_of
-from mutabot.model.path import class_name
+from mutabot.model.path import class_name, opaque
 from mutabot.runtime.targets.target import resolve
 from mutabot.runtime.targets.wrapper import Method
 
@@ -366,11 +366,6 @@ def _text(value: str | bytes | bytearray) -> Any:
     if len(value) <= _CHARACTERS:
         return value if isinstance(value, str) else repr(bytes(value))
     return {"digest": _digest(value.encode("utf-8", "replace") if isinstance(value, str) else bytes(value))}
-
-
-def opaque(value: Any) -> dict[str, str]:
-    """Return a placeholder for a value that is not plain data."""
-    return {"opaque": class_name(type(value))}
 
 
 def _digest(data: bytes) -> str:

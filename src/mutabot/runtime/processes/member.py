@@ -15,6 +15,7 @@ from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from functools import partial
+from sys import _getframe
 from typing import TYPE_CHECKING, Any
 
 from mutabot.errors import text_of
@@ -417,7 +418,7 @@ def watch_forks(folder: str, session: Session | TextOnly) -> None:
 def _after_fork() -> None:
     """Begin a member in a process that the program has forked."""
     global _member  # noqa: PLW0603  # see above
-    if _watched is not None and not sys._getframe(1).f_code.co_filename.startswith(OURS):
+    if _watched is not None and not _getframe(1).f_code.co_filename.startswith(OURS):
         folder, session = _watched
         _member = Member(folder, session.job, session)
         _member.go_on()

@@ -17,10 +17,10 @@ from __future__ import annotations
 import ast
 import builtins
 import copy
-import sys
 from collections.abc import Callable, Collection, Container, Iterator
 from dataclasses import dataclass, field, replace
 from functools import partial
+from sys import _getframe
 from types import FrameType, FunctionType, MethodType
 from typing import Any
 
@@ -210,7 +210,7 @@ class CallSites(SourceStep):
         return found if decide is None else decide(site, found, receiver, frame)
 
     def _attribute(self, site: CallSite) -> Callable[[Any], Any]:
-        name, left_alone, seen, frame_of = site.name, site.left_alone, self.sees_itself, sys._getframe
+        name, left_alone, seen, frame_of = site.name, site.left_alone, self.sees_itself, _getframe
 
         def read(receiver: Any) -> Any:
             __tracebackhide__ = True
@@ -233,7 +233,7 @@ class CallSites(SourceStep):
         return read
 
     def _name(self, site: CallSite) -> Callable[..., Any]:
-        left_alone, seen, frame_of = site.left_alone, self.sees_itself, sys._getframe
+        left_alone, seen, frame_of = site.left_alone, self.sees_itself, _getframe
 
         def read(found: Any, receiver: Any = NOTHING) -> Any:
             function = unbound(found)
@@ -252,7 +252,7 @@ class CallSites(SourceStep):
     def _handed_attribute(self, site: CallSite) -> Callable[[Any], Any]:
         def read(receiver: Any) -> Any:
             __tracebackhide__ = True
-            return self._decide(site, getattr(receiver, site.name), receiver, sys._getframe(1))
+            return self._decide(site, getattr(receiver, site.name), receiver, _getframe(1))
 
         return read
 
@@ -260,27 +260,27 @@ class CallSites(SourceStep):
         sites: dict[str, CallSite] = {}
 
         def read(function: Any) -> Any:
-            return partial(self._got, site, sites, sys._getframe(1)) if function is getattr else function
+            return partial(self._got, site, sites, _getframe(1)) if function is getattr else function
 
         return read
 
     def _stored_value(self, site: CallSite) -> Callable[[Any], Any]:
         def read(value: Any) -> Any:
-            self._parts[id(sys._getframe(1))] = [value]
+            self._parts[id(_getframe(1))] = [value]
             return value
 
         return read
 
     def _stored_holder(self, site: CallSite) -> Callable[[Any], Any]:
         def read(holder: Any) -> Any:
-            self._parts.setdefault(id(sys._getframe(1)), []).append(holder)
+            self._parts.setdefault(id(_getframe(1)), []).append(holder)
             return holder
 
         return read
 
     def _stored_item(self, site: CallSite) -> Callable[[Any], Any]:
         def read(key: Any) -> Any:
-            value, holder = self._parts.pop(id(sys._getframe(1)))
+            value, holder = self._parts.pop(id(_getframe(1)))
             assert self.stored is not None
             self.stored(site, holder, [key, value])
             return key
@@ -289,7 +289,7 @@ class CallSites(SourceStep):
 
     def _stored_attribute(self, site: CallSite) -> Callable[[Any], Any]:
         def read(holder: Any) -> Any:
-            (value,) = self._parts.pop(id(sys._getframe(1)))
+            (value,) = self._parts.pop(id(_getframe(1)))
             assert self.stored is not None
             self.stored(site, holder, [value])
             return holder

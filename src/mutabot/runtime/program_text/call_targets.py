@@ -36,6 +36,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from inspect import Signature
+from sys import _getframe
 from types import BuiltinMethodType, FrameType, FunctionType, MethodType, ModuleType
 from typing import Any
 
@@ -499,7 +500,7 @@ class PassedCallables:
         # it was made a method, or is one, maybe of a copy of its object
         if instance is not None and (receiver is NOTHING or is_others):
             receiver, found = instance, MethodType(function, instance) if is_others else wrapped
-        where = {"handed": place, "frame": sys._getframe(1), "stands_in": self._call_targets.stands_in(found)}
+        where = {"handed": place, "frame": _getframe(1), "stands_in": self._call_targets.stands_in(found)}
         return self._call_targets.call(adapter, where, found, receiver, *args, **kwargs)
 
     def _watch(self, mock: ModuleType) -> None:
@@ -509,7 +510,7 @@ class PassedCallables:
 
         def call(self: Any, /, *args: Any, **kwargs: Any) -> Any:
             __tracebackhide__ = True
-            return seen(original, self, sys._getframe(1), args, kwargs)
+            return seen(original, self, _getframe(1), args, kwargs)
 
         seen = self._seen
         call.__name__, call.__qualname__ = original.__name__, original.__qualname__

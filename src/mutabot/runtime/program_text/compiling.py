@@ -17,13 +17,13 @@ import ast
 import builtins
 import copy
 import os
-import sys
 import threading
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from importlib.util import decode_source
+from sys import _getframe
 from types import CodeType
 from typing import Any, Protocol
 
@@ -125,7 +125,7 @@ def _compile(
 ) -> Any:  # fmt: skip
     """Compile a source, with the steps; the replacement of ``compile``."""
     if not dont_inherit:
-        flags |= sys._getframe(1).f_code.co_flags & INHERITED
+        flags |= _getframe(1).f_code.co_flags & INHERITED
     plainly = partial(_builtin, source, filename, mode, flags, True, optimize, **more)
     request = requests.open[-1] if requests.open else None
     if mode != "exec" or (request is not None and request.is_off):
@@ -207,7 +207,7 @@ def _wanted(filename: Any) -> str | None:
 
 def _is_kept() -> bool:
     """Return whether ``py_compile`` is compiling, whose output may be run outside the campaign."""
-    frame = sys._getframe(2)
+    frame = _getframe(2)
     for _ in range(6):
         if frame.f_globals.get("__name__") == "py_compile":
             return True

@@ -17,6 +17,7 @@ import os
 import sys
 from collections.abc import Callable, Iterator
 from functools import cache
+from sys import _getframe
 from types import FrameType
 from typing import TYPE_CHECKING, Any
 
@@ -98,7 +99,7 @@ class Returns:
 
     def _returned(self, value: Any) -> Any:
         if self.is_on:
-            function = sys._getframe(1)
+            function = _getframe(1)
             around = function.f_back
             if around is not None and around.f_code.co_filename not in self._own and self._leaves(around):
                 self._note(function, lambda: [json_data(value)])
@@ -106,7 +107,7 @@ class Returns:
 
     def _raised(self) -> None:
         if self.is_on:
-            function, error = sys._getframe(1), sys.exc_info()[1]
+            function, error = _getframe(1), sys.exc_info()[1]
             around = function.f_back
             if isinstance(error, Exception) and around is not None and self._leaves(around):
                 self._note(function, lambda: {"raised": text_of_error(error)})

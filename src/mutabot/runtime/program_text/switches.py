@@ -14,15 +14,17 @@ from __future__ import annotations
 import enum
 import numbers
 import sys
-import threading
 import types
 from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from functools import cache
+from sys import _getframe
+from threading import active_count, get_ident
 from typing import Any, NoReturn
 
+from mutabot.model.activation import FatalFault
 from mutabot.model.data import data_of, is_of_numpy
-from mutabot.model.path import class_name
+from mutabot.model.path import class_name, opaque
 from mutabot.model.program_text import FATAL, IDENTITY, Sighting, TextPlace, fits_kinds
 from mutabot.runtime.program_text.prediction import (
     Forms,
@@ -57,20 +59,20 @@ class Switch:
 
     def chosen(self) -> bool:
         """Return whether an alternative replaces the original; called at every evaluation."""
-        return self._owner.reached(self, sys._getframe(1))
+        return self._owner.reached(self, _getframe(1))
 
     # what instrumented text calls around an alternative, so that one sees whether it changed anything
 
     def was(self, value: Any) -> Any:
         """Note the original's value, which the alternative uses."""
-        self._before[threading.get_ident()] = value
+        self._before[get_ident()] = value
         return value
 
     def became(self, value: Any) -> Any:
         """Note the alternative's value, beside the original's if that is known without side effects."""
-        before = self._before.pop(threading.get_ident(), _UNKNOWN)
+        before = self._before.pop(get_ident(), _UNKNOWN)
         if before is _UNKNOWN:
-            before = self._owner.predicted(self.place, sys._getframe(1))
+            before = self._owner.predicted(self.place, _getframe(1))
         self._owner.note(self.place, before, value, is_idle=is_identical(before, value))
         return value
 
@@ -174,7 +176,7 @@ class Alternatives:
     @contextmanager
     def paused(self) -> Iterator[None]:
         """Evaluate all places as the original in this thread inside the context, without counting."""
-        thread = threading.get_ident()
+        thread = get_ident()
         self._paused_in.add(thread)
         try:
             yield
@@ -183,7 +185,7 @@ class Alternatives:
 
     def reached(self, switch: Switch, frame: types.FrameType) -> bool:
         """Return whether an alternative replaces the original at a place that is being evaluated."""
-        if self._paused_in and threading.get_ident() in self._paused_in:
+        if self._paused_in and get_ident() in self._paused_in:
             return False
         place = switch.place
         hits = self.hits[place] = self.hits.get(place, 0) + 1
@@ -219,7 +221,7 @@ class Alternatives:
     def _differing(self, switch: Switch, frame: types.FrameType) -> frozenset[int]:
         """Return the watched alternatives that may differ from the original."""
         forms = self.forms(switch.place)
-        if forms is None or self.hits[switch.place] > _LOOKS or threading.active_count() > 1:
+        if forms is None or self.hits[switch.place] > _LOOKS or active_count() > 1:
             return switch.watched  # another thread may change what an evaluation depends on
         unpredictable = frozenset(index for index in switch.watched if index < 0)
         return unpredictable | forms.differing(switch.watched - unpredictable, frame)
@@ -228,8 +230,6 @@ class Alternatives:
         """Act as a control, which every place has: do nothing, or raise."""
         if index == FATAL:
             self.tell()
-            from mutabot.operators.command import FatalFault  # noqa: PLC0415  # a control, once in a campaign
-
             raise FatalFault(f"control: place {place} fails")
         assert index == IDENTITY
         self.idle[place] = self.idle.get(place, 0) + 1
@@ -271,8 +271,6 @@ def _plain(value: Any) -> Any:
         found = found.item()
     if found is None or type(found) in (bool, int, float, str):
         return found
-    from mutabot.runtime.observation.probes import opaque  # noqa: PLC0415  # slow, and of no use to most processes
-
     return opaque(value)
 
 
@@ -404,7 +402,7 @@ class _Witness:
             self._note_kind(kind, value)
         if self._is_around and self.looks_around < LOOKS_AROUND:
             self.looks_around += 1
-            self._keep_variables(value, sys._getframe(1))
+            self._keep_variables(value, _getframe(1))
         if self.looks >= LOOKS or self.is_exhausted:
             self._owner.switches[self.place] = hand_through
         return value
