@@ -161,7 +161,12 @@ class Judge:
         return all((self.folder / f"{file}.py").is_file() for file in files)
 
     def _names_a_refusal(self, output: str, mutant: Mapping[str, Any]) -> bool:
-        """Whether each test that fails ends in a refusal, whose traceback goes through the mutated call."""
+        """Whether each test that fails ends in a refusal, whose traceback goes through the mutated call.
+
+        What is read is never refused: what the program makes of it may be, and may stand in the same line.
+        """
+        if mutant["operation"] and ": reads " in mutant["description"]:
+            return False
         names = [name.rpartition(":")[2].rpartition(".")[2] for name in Facts.of(self.folder).refusals]
         lines = range(mutant["span"]["line"], mutant["span"]["end_line"] + 1)
         places = [rf"^{re.escape(mutant['file'])}:{line}: in " for line in lines]

@@ -390,3 +390,11 @@ def test_a_mutant_is_refused_if_its_own_call_is_wherever_a_test_fails(
     found = mutant("arm.move(0.5)", source, operator="reverse", operation="robot:Arm.move", file="mission.py")
     judge_says = judge._names_a_refusal(REFUSED.format(line), found)
     assert judge_says is is_refused
+
+
+def test_a_command_made_of_a_mutated_reading_in_its_line_is_no_refusal_of_the_reading(tmp_path: Path) -> None:
+    source = "arm.move(arm.pose())\n"
+    judge = Judge(project(tmp_path, source))
+    found = mutant("arm.pose()", source, operator="negate", operation="robot:Arm.pose", file="mission.py")
+    found |= {"call": "arm.pose", "description": "arm.pose: reads z -0.2 m instead of 0.2 m"}
+    assert not judge._names_a_refusal(REFUSED.format(1), found)
