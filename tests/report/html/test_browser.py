@@ -151,6 +151,15 @@ def test_survivors_are_described_if_nothing_else_says_which_they_are_and_are_in_
     assert (" and 12 more" in section.inner_text()) == bool(copies)
 
 
+def test_the_source_of_a_mutant_is_in_a_picture_of_the_whole_page(visit: Visit) -> None:
+    visit.open("#/mutant/2")
+    code = visit.page.locator(".code.small")
+    code.wait_for()
+    # it is below the first screen
+    assert not code.evaluate("(box) => box.getBoundingClientRect().top < innerHeight")
+    assert "gripper.command" in code.inner_text()
+
+
 def test_what_the_list_is_sorted_by_takes_two_lines_of_a_telephone(browser: Any, plain: Path) -> None:
     page = browser.new_page(viewport={"width": 390, "height": 800})
     visit = Visit(page, plain)
