@@ -182,6 +182,10 @@ _COMPUTING = frozenset(
         "copy",
         "statistics",
         "builtins",
+        "_struct",
+        "binascii",
+        "re",
+        "zlib",
     }
 )
 #: built-in functions that do more than compute

@@ -15,8 +15,8 @@ from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from dataclasses import dataclass, field, is_dataclass, replace
 from fnmatch import fnmatchcase
-from functools import cache, cached_property, partial
-from types import FunctionType, ModuleType
+from functools import cache, cached_property, lru_cache, partial
+from types import BuiltinFunctionType, FunctionType, ModuleType
 from typing import Any
 
 from mutabot.api.processes import CallOrigin, Observer
@@ -37,6 +37,8 @@ from mutabot_init.watching.values import look, plain
 
 #: calls of one callable whose values are looked at; more are only counted
 MOST_CALLS = 300
+#: functions of which it is remembered what they are
+_MOST_FUNCTIONS = 1000
 #: packages that talk to no robot
 _NO_ROBOTS = frozenset(
     {
@@ -90,7 +92,7 @@ class Watch(Observer):
         super().__init__(libraries, is_test)
         self._seen: dict[tuple[str, bool, bool], _Seen] = {}
         self._method_of = cache(method_of)
-        self._function_of = cache(function_of)
+        self._function_of = lru_cache(_MOST_FUNCTIONS)(function_of)
         self._classes_named = cache(_classes_named)
         self._uses: dict[tuple[Form, str, bool, bool], Use] = {}
         self._lock = threading.RLock()
@@ -170,7 +172,9 @@ class Watch(Observer):
 
     def _function(self, found: Any) -> Callee | None:
         """Return a function by its name; cached for those that are the same object at each call."""
-        return self._function_of(found) if isinstance(found, FunctionType) else function_of(found)
+        is_of_module = isinstance(found, BuiltinFunctionType) and isinstance(found.__self__, ModuleType)
+        is_same = is_of_module or (isinstance(found, FunctionType) and found.__closure__ is None)
+        return self._function_of(found) if is_same else function_of(found)
 
     def _replaced_callee(self, value: Any, name: str, callee: Callee | None, found: Any) -> Callee | None:
         """Return what a mock or fake replaces: the robot's callable, or any callable with its name."""
@@ -187,6 +191,8 @@ class Watch(Observer):
             return None if is_class else Callee(f"{where}{name}", None, None, "", stands_in=True)
         if callee is None or callee.owner is None or not self._is_of_tests(callee):
             return callee
+        if _is_no_robot(callee.owner.__module__.partition(".")[0]):
+            return None  # a method of the standard library, which a test replaces
         meant = (replaced_method(kind, name) for kind in callee.owner.__mro__[1:-1])
         robots = next(
             (candidate for candidate in meant if candidate is not None and not self._is_of_tests(candidate)),

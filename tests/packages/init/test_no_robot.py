@@ -56,7 +56,7 @@ FILES = {
             def start(self, target): self.target = target
 
             def test_two(self):
-                with patch("program.threading.Event"):
+                with patch.object(program.threading.Event, "wait", lambda self, timeout=None: True):
                     program.Drive(Bus(1), self).move(0.5)
     """,
 }

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 import socket
+import struct
 import time
 from typing import Any
 
@@ -99,6 +100,10 @@ def _refuse_nonsense(value: float) -> None:
         raise ValueError(value)
 
 
+def packed(value: int) -> bytes:
+    return struct.pack("<H", value)
+
+
 def commanded(value: float) -> float:
     _stub(value)
     return -value
@@ -125,7 +130,8 @@ def remove(name: str) -> Any:
     ("function", "expected"),
     [
         (Robot.__dict__["at"], True), (Robot.forward, True), (Robot.where, True), (filled, True),
-        (table, True), (fetched, False), (checked, True), (commanded, False), (_refuse_nonsense, False),
+        (table, True), (fetched, False), (checked, True), (packed, True),
+        (commanded, False), (_refuse_nonsense, False),
         (factorial, True), (Robot.ask, False), (Robot.move, False), (Robot.alias, False),
         (Robot.each, False), (Robot.turn, False), (Robot.wait, False), (Robot.stands_in, False),
         (Robot.agrees, False), (Robot.later, False), (fill, False), (shown, False), (remove, False),
