@@ -8,7 +8,7 @@ from typing import Any
 from mutabot.api.reports import MutantResult
 
 from .candidates import ONLY_TIME
-from .checks import CheckProposal, is_clock, last_name
+from .checks import CheckProposal, Monitor, is_clock, last_name
 from .forms import is_number
 from .readings import Measured, is_reading, reading_of
 from .results import Unsolved
@@ -27,6 +27,8 @@ NOT_REACHED = "no test reaches it: add a test that does"
 _NEAR, _TURNED = 0.03, 15.0
 #: how the reason begins for a survivor that the suite allows
 _SO_LITTLE = "at most"
+#: how the reason tells that only the way differs
+_END_ALLOWED = "at the end within your tolerance of"
 #: what a thing moves that a robot holds
 _IN_GRIP = {"slip", "drag"}
 #: names of lengths and of angles in checks
@@ -50,6 +52,8 @@ def why_unsolved(
     if gaps and not recorded:  # what its readings differ by may be the original's own
         return Unsolved(mutant, f"it could not be compared with the original: {gaps[0]}")
     tried = [proposal for proposal in found if proposal in failed and mutant in dict(proposal.trials)]
+    if _END_ALLOWED in recorded:  # what a test reads at its end is then no check of what differs
+        tried = [proposal for proposal in tried if isinstance(proposal, Monitor)]
     if tried:
         return Unsolved(mutant, _why_failed(tried[0], failed[tried[0]]))
     if mutant in measured.lost:
@@ -101,7 +105,7 @@ def _of_recordings(survivor: MutantResult, measured: Measured, suite: SuiteCheck
             why = "no bound on the way tells it from the original, which turns as well"
         elif unit == "m" and way < _NEAR:
             why = "on the way it is too near to the original for a bound"
-        return f"{found.story}: at the end within your tolerance of {allowed}; {why}"
+        return f"{found.story}: {_END_ALLOWED} {allowed}; {why}"
     moved = [
         measurement.value or 0.0
         for measurement in found.measurements

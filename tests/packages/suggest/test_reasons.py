@@ -13,6 +13,7 @@ from mutabot.model import Mutant, Outcome, Role, Site, Span, Verdict
 from mutabot.model.outcome import Looked
 from mutabot.model.world_difference import Apart, Diverged, Measurement
 from mutabot.results.results import MutantResult
+from mutabot_suggest.checks import CheckAtEnd, Monitor
 from mutabot_suggest.output import print_suggestions
 from mutabot_suggest.places import chosen_places, other_places
 from mutabot_suggest.project import PlaceInTest
@@ -105,6 +106,28 @@ def test_without_a_probe_the_reason_asks_for_one_and_with_one_for_a_check_on_the
 def test_what_ends_within_the_suites_tolerance_is_told_so(suite: SuiteChecks) -> None:
     told = in_test("test_it", "box ended 1.4 mm from its position", apart(0.0014, 0.0049))
     assert reason(suite, told) == "at most 4.9 mm, within your tolerance of 20 mm"
+
+
+@pytest.mark.parametrize("is_of_the_way", [True, False])
+def test_a_failed_check_of_the_end_is_no_reason_where_only_the_way_differs(
+    suite: SuiteChecks, is_of_the_way: bool
+) -> None:
+    trials = frozenset({(mutant().id, 0)})
+    monitor = Monitor(place=PLACE, trials=trials, owner="arm", condition="arm.x < 1", name="", distance=2.0)
+    end = CheckAtEnd(place=PLACE, trials=trials, reading=ReadExpression("belt(arm)", PROBE, 0.01), value=1.09)
+    (check,) = suite.checks
+    read = {f"{check.key}.actual": 0.3, f"{check.key}.expected": 0.3, f"{check.key}.tolerance": 0.02}
+    detour = survivor(in_test("test_it", "box left its path by up to 0.2 m", apart(0.0014, 0.2)))
+    measured = Measured(originals={PLACE: {(0, PLACE.node): read}})
+    tried = [end, *([monitor] if is_of_the_way else [])]
+    failed = dict.fromkeys(tried, "fails in the original with a new seed")
+    told = why_unsolved(detour, measured, suite, tried, failed, {}).reason
+    assert told == (
+        f"what would notice it, the original itself breaks with another seed: {monitor.statement}"
+        if is_of_the_way
+        else "box left its path by up to 0.2 m: at the end within your tolerance of 20 mm; "
+        "no bound on the way tells it from the original"
+    )
 
 
 def test_a_small_detour_is_told_with_the_tolerance_at_the_end(suite: SuiteChecks) -> None:
