@@ -179,17 +179,19 @@ def keep_real_files() -> None:
 
 
 @contextmanager
-def alarm_held() -> Iterator[None]:
-    """Stop the process's alarm inside the context, and let a process forked in it have the rest.
+def timers_held() -> Iterator[None]:
+    """Stop the process's timers inside the context, and let a process forked in it have the rest.
 
-    A fork inherits no alarm; and a parent that waits for its forks has not used that time itself.
+    A fork inherits none; and a parent that waits for its forks has not used that time itself.
     """
-    left, interval = signal.setitimer(signal.ITIMER_REAL, 0.0)
+    timers = (signal.ITIMER_REAL, signal.ITIMER_VIRTUAL, signal.ITIMER_PROF)
+    held = [(timer, *signal.setitimer(timer, 0.0)) for timer in timers]
     try:
         yield
     finally:
-        if left:
-            signal.setitimer(signal.ITIMER_REAL, left, interval)
+        for timer, left, interval in held:
+            if left:
+                signal.setitimer(timer, left, interval)
 
 
 def watched(test: str, seconds: float, by: str) -> Watched:

@@ -32,7 +32,7 @@ from mutabot.operators.command import Identity
 from mutabot.runtime.event_file import EventFile
 from mutabot.runtime.isolation import forkable, namespaces
 from mutabot.runtime.isolation.files import PrivateFiles
-from mutabot.runtime.plugins import alarm_held
+from mutabot.runtime.plugins import timers_held
 
 #: exit code of a child whose test decides about its mutant: no other test needs to run. These codes are
 #: unlike any that a program would leave with by itself
@@ -189,7 +189,7 @@ class ForkParent:
         due = [mutant for mutant in mutants if mutant.id not in self._gone]
         if not due or os.getpid() != self._pid:  # a copy that the test has forked for itself
             return
-        with alarm_held():
+        with timers_held():
             self._gone.update(mutant.id for mutant in due)
             self._places = None
             for key, here in self._live.items():
