@@ -17,6 +17,7 @@ from .words import (
     CAMERAS,
     CHANGES,
     COMMANDS,
+    COMPUTERS,
     GRIPPER,
     HOUSEKEEPING,
     MODES,
@@ -167,7 +168,8 @@ def _computes(call: WatchedCallable) -> bool:
     """Return whether it makes or computes something from its arguments, without the robot."""
     is_constructor = call.is_of_class and call.owner != "" and call.result.type == call.owner
     is_constructor = is_constructor or call.result.type in ("property", "function", "type")
-    is_pure = call.only_computes and bool(call.arguments)
+    is_called_so = not COMPUTERS.isdisjoint(words_of(call.name)[:1])
+    is_pure = bool(call.arguments) and (call.only_computes or is_called_so)
     return is_constructor or ((is_pure or _fills_buffer(call)) and not _reads(call))
 
 

@@ -65,6 +65,8 @@ READERS = _words(
 )
 #: how functions are called that put values into a buffer
 PACKERS = _words("set put pack encode insert")
+#: how what only computes is called, whatever its text does on the way
+COMPUTERS = _words("calculate calc compute parse format encode decode serialize deserialize")
 #: what is made ready before the robot does anything, and the clock of a simulator
 SETUP = _words("create connect disconnect load make init initialize configure simulation reset safety")
 #: what lets a simulation go on, and what has such a clock

@@ -21,6 +21,12 @@ FILES = {
             def __str__(self): return f"Virtual bus, channel {self.channel}"
             def send(self, frame): self.sent.append(frame)
 
+        def parse_reply(text):
+            LOG.append(text)
+            return {"is_open": text == "1"}
+
+        LOG = []
+
         def text_property(command):
             return property(lambda self: self.bus.send(command))
     """,
@@ -34,6 +40,7 @@ FILES = {
                 self.bus, self.seen, self.stopped = bus, seen, threading.Event()
             def move(self, target):
                 self.bus.send((7, target))
+                assert bus.parse_reply("1")["is_open"]
                 self.seen.start(target)
                 self.stopped.wait(1.0)
     """,
@@ -72,7 +79,7 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def test_callbacks_of_tests_factories_and_mocked_events_are_none(project: Path) -> None:
+def test_callbacks_of_tests_factories_parsers_and_mocked_events_are_none(project: Path) -> None:
     found = load_vocabulary(["robot.toml"], project).operations
     assert [operation.target for operation in found] == ["bus:Bus.send"]
 
