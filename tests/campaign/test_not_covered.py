@@ -77,6 +77,30 @@ def test_calls_that_no_test_reaches_are_not_covered_and_lower_the_score(
     assert decide(results, min_score=0.9).exit_code is ExitCode.SCORE_TOO_LOW
 
 
+def test_a_function_without_statements_is_not_one_that_no_test_calls(tmp_path: Path) -> None:
+    folder = project(tmp_path)
+    stubs = """
+        from typing import Protocol, overload
+
+        class Arm(Protocol):
+            def move_by(self, x: float) -> None:
+                "Move."
+
+        @overload
+        def flee(arm: Arm) -> None: ...
+        @overload
+        def flee(arm: None) -> int: ...
+        def flee(arm):
+            return 1
+
+        def quiet(arm):
+            pass
+    """
+    (folder / "other.py").write_text(dedent(stubs), encoding="utf-8")
+    report = check(request_for(folder), Quiet())
+    assert report.data["untested"]["unreached_functions"] == ["mission.py:5 back", "other.py:12 flee"]
+
+
 def verdicts(result: Any) -> set[Verdict]:
     return {outcome.verdict for outcome in result.outcomes}
 
