@@ -443,3 +443,34 @@ def test_processes_of_a_campaign_remember_together(tmp_path: Path) -> None:
     assert {(outcome.verdict, outcome.by, outcome.engine) for outcome in found} == {
         (Verdict.KILLED, "check", "fork")
     }
+
+
+@pytest.mark.parametrize("stream", ["mock.Mock()", "None", "closed()"])
+def test_forks_leave_alone_what_a_test_writes_to(tmp_path: Path, stream: str) -> None:
+    write_project(
+        tmp_path,
+        "def run(arm):\n    arm.move_by(0.25)\n",
+        f"""
+        import io
+        import sys
+        from unittest import mock
+
+        import mission
+        from robot import Arm
+
+        def closed():
+            stream = io.TextIOWrapper(io.BytesIO())
+            stream.close()
+            return stream
+
+        def test_runs():
+            arm = Arm()
+            with mock.patch("sys.stdout", {stream}) as out, mock.patch("sys.stderr", {stream}):
+                mission.run(arm)
+                calls = getattr(out, "mock_calls", [])
+            assert arm.x == 0.25
+            assert calls == []
+        """,
+    )
+    found = outcomes(run_campaign(request_for(tmp_path, engine="fork", only=("skip",)), Quiet()))
+    assert [(outcome.verdict, outcome.engine) for outcome in found] == [(Verdict.KILLED, "fork")]

@@ -21,6 +21,7 @@ import sys
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from io import TextIOWrapper
 
 from mutabot.model import Mutant
 from mutabot.model.activation import TEXT, Activation, Key, at_test, at_text, of_kind
@@ -275,8 +276,10 @@ class ForkParent:
         self._finished[slot], self._tests[slot] = 0, self._number
         # random registers a hook that seeds anew in every child
         state, loop = random.getstate(), forkable.running_loop()
-        sys.stdout.flush()
-        sys.stderr.flush()
+        for stream in (sys.stdout, sys.stderr):
+            if issubclass(type(stream), TextIOWrapper):  # a test may put anything there
+                with suppress(OSError, ValueError):  # it may be closed
+                    stream.flush()
         self.event_file.forks += 1
         reading, writing = os.pipe()
         self._forking = True
