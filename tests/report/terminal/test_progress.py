@@ -153,6 +153,26 @@ def test_no_time_is_promised_while_no_step_is_done() -> None:
     assert pace.left == 400.0
 
 
+def test_how_long_a_stage_took_does_not_grow_after_its_last_step() -> None:
+    now = 0.0
+    pace = Pace(1, lambda: now)
+    now = 5.0
+    pace.advance()
+    now = 60.0
+    assert (pace.text, pace.idle) == ("took 0:05", 55.0)
+
+
+def test_a_sign_of_life_after_a_stage_says_how_long_ago_it_ended() -> None:
+    out = io.StringIO()
+    with Lines(make_console(out, width=80), every=0.01) as progress:
+        progress.stage("baseline", 1)
+        progress.advance()
+        while "ago" not in out.getvalue():
+            time.sleep(0.01)
+    *_, last = without_times(out.getvalue())
+    assert last == "baseline 1/1: took 0:00, 0:00 ago"
+
+
 def test_accepted_survivors_and_those_of_earlier_campaigns_are_only_counted() -> None:
     accepted = end(samples.SKIP, Verdict.SURVIVED, acceptance=Acceptance("why", "a.toml:1"))
     reused = end(samples.NEGATE, Verdict.SURVIVED, is_reused=True)

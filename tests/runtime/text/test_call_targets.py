@@ -207,8 +207,8 @@ def test_check_says_what_stood_in_and_what_was_left_alone(stage: Stage) -> None:
     session.finish()
     told = {line.key: line.text for line in stage.writer.lines if isinstance(line, Remark)}
     assert told["call"] == "it is replaced by a mock in 2 tests"
-    assert "1 call of this name left alone" in told["method"]
-    assert told["method"].endswith('if it is, write method = "move_by"')
+    assert told["method"].startswith("1 call of move_by on other objects may be another function: ")
+    assert told["method"].endswith('they get no mutants; if they are this one, write method = "move_by"')
 
 
 def test_check_names_what_a_test_puts_into_an_object_in_the_place_of_its_operation(stage: Stage) -> None:

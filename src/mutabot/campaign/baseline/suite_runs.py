@@ -85,8 +85,8 @@ def refuse_failing(request: Request, failing: Failing) -> None:
 
 
 _KNOWN_LATER = (
-    "at {} some tests call an operation and others what nothing tells to be one: it counts there "
-    "as one, and the tests are recorded again"
+    "at {} some tests call an operation and others what may be another function: it counts as the "
+    "operation there, and the tests are recorded again"
 )
 _NOT_IN_COPIES = (
     "tests fail in copies of a process that has imported and collected them, and not in fresh ones: each "
@@ -226,6 +226,7 @@ def _run(
     if suite.learns():
         suite.progress.note(_KNOWN_LATER.format(plural(len(suite.known), "site")))
         suite.remarks.clear()
+        suite.progress.stage("baseline again", request.rounds * repetitions)
         suite.run(_first_runs(suite, recording if is_looked_at else None))
     if not is_looked_at:
         for result in suite.results.values():

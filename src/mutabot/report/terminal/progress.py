@@ -60,20 +60,30 @@ class Pace:
         return self._clock() - self._began
 
     @property
+    def is_over(self) -> bool:
+        """Whether all steps are done."""
+        return self.total is not None and self.done >= self.total
+
+    @property
+    def idle(self) -> float:
+        """Seconds since the last step."""
+        return self._clock() - self._last
+
+    @property
     def left(self) -> float | None:
         """Seconds until the stage ends; None if too few steps are done to estimate that."""
         if self.total is None or self.done == 0 or self.done < _TELLING * self.total:
             return None
         spent = self.spent
-        if self._clock() - self._last > max(_STALE * spent, _RECENT):
+        if self.idle > max(_STALE * spent, _RECENT):
             return None
         return spent / self.done * max(0, self.total - self.done)
 
     @property
     def text(self) -> str:
-        """The times as text: ``0:08 elapsed, 0:20 left``; only the elapsed time when all is done."""
-        if self.total is not None and self.done >= self.total:
-            return f"took {clock_text(self.spent)}"
+        """The times as text: ``0:08 elapsed, 0:20 left``; how long it took when all is done."""
+        if self.is_over:
+            return f"took {clock_text(self._last - self._began)}"
         left = self.left
         return f"{clock_text(self.spent)} elapsed" + ("" if left is None else f", {clock_text(left)} left")
 
@@ -259,17 +269,18 @@ class Lines:
         """Print a line."""
         self._print(text)
 
-    def _print_progress(self, line: str | None = None) -> None:
+    def _print_progress(self, line: str | None = None, *, is_life_sign: bool = False) -> None:
         self._last = time.monotonic()
         pace = self._pace
         of = "" if pace.total is None else f"/{pace.total}"
         counts = self._tally.text or line
-        self._print(f"{self._text} {pace.done}{of}: {pace.text}{f' ({counts})' if counts else ''}")
+        times = pace.text + (f", {clock_text(pace.idle)} ago" if is_life_sign and pace.is_over else "")
+        self._print(f"{self._text} {pace.done}{of}: {times}{f' ({counts})' if counts else ''}")
 
     def _live(self) -> None:
         while not self._is_over.wait(self._every / 10):
             if self._text and time.monotonic() - self._last >= self._every:
-                self._print_progress()
+                self._print_progress(is_life_sign=True)
 
     def _print(self, text: str) -> None:
         with self._lock:

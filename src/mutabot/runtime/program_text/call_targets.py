@@ -109,9 +109,9 @@ class CallFindings:
             if alone:
                 listed = ", ".join(f"{place} ({what})" for place, what in list(alone.items())[:_MOST])
                 more = f" and {len(alone) - _MOST} more" if len(alone) > _MOST else ""
-                text = f"{_count(len(alone), 'call')} of this name left alone, since nothing says that it is"
-                advice = f'if it is, write method = "{name}"'
-                yield operation, Finding("method", f"{text} meant: {listed}{more}; {advice}", is_remark=True)
+                text = f"{_count(len(alone), 'call')} of {name} on other objects may be another function"
+                advice = f'they get no mutants; if they are this one, write method = "{name}"'
+                yield operation, Finding("method", f"{text}: {listed}{more}; {advice}", is_remark=True)
 
 
 def mock_of(found: Any) -> Any:
