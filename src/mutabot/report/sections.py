@@ -304,7 +304,8 @@ def _re_runs(what: str, found: Estimate | None, kinds: Sequence[tuple[str, Repea
         if repeat.repeated:
             were = "was" if repeat.changed == 1 else "were"
             dropped = f"{repeat.changed} gave a different result and {were} dropped"
-            parts.append(f"{repeat.repeated} of {of_kind} re-run, {dropped}")
+            ended = dropped if repeat.changed else "with the same result"
+            parts.append(f"{repeat.repeated} of {of_kind} re-run, {ended}")
         elif parts and repeat.outcomes:
             parts.append(f"{of_kind} not re-run (--verify N re-runs some)")
     if parts and found is not None:
