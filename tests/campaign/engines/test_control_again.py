@@ -85,6 +85,20 @@ def test_a_control_that_hangs_twice_ends_the_campaign(tmp_path: Path) -> None:
     assert "no end after 2 s of wall clock" in str(caught.value)
 
 
+def test_a_test_that_fails_under_the_identity_is_named_with_one_line_of_its_message(
+    tmp_path: Path, script: Script
+) -> None:
+    late = {"outcome": "failed", "exception": "builtins:AssertionError", "message": "late\nby 16 ms"}
+    script.control = lambda run: late if is_identity(run) else None
+    project(tmp_path, MISSION)
+    with pytest.raises(ControlError) as caught:
+        run_campaign(request_for(tmp_path, engine="replay", only=("*:reverse",)), Quiet())
+    first, _, last = str(caught.value).partition(" ended wrongly in tests/test_mission.py::test_moves: ")
+    assert first.startswith("the identity control of tests/test_mission.py at ")
+    assert "late; no verdict" in last
+    assert last.endswith("if that test fails by chance or load, deselect it")
+
+
 IN_ORDER = """
     import mission
     from robot import Arm

@@ -30,6 +30,7 @@ from mutabot.families import CALLS, CONTROL
 from mutabot.journal.records import ControlEnd
 from mutabot.model import Mutant, Outcome, Verdict
 from mutabot.model.mutant import Place
+from mutabot.model.outcome_text import first_line
 from mutabot.operators.command import Fatal, Identity
 
 if TYPE_CHECKING:
@@ -93,7 +94,7 @@ class Control:
             return None
         if self.name == FATAL and outcome.verdict is Verdict.SURVIVED:
             return f"the test passes although the {provider(self.provider).location} raises"
-        return f"{outcome.verdict}: {outcome.message or 'it changed something'}"
+        return f"{outcome.verdict}: {first_line(outcome.message or 'it changed something')}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -194,9 +195,12 @@ def _settled(campaign: Campaign, control: Control, outcome: Outcome) -> Iterator
     campaign.progress.advance(f"{control.name}, {control.subject}: {wrong or 'passed'}")
     yield control.end(outcome)
     if wrong is not None:
+        where, advice = "", ""
+        if outcome.test is not None:
+            where, advice = f" in {outcome.test}", "; if that test fails by chance or load, deselect it"
         raise ControlError(
-            f"the {control.name} control of {control.subject} at {control.place.site.place} ended wrongly: "
-            f"{wrong}; no verdict of this campaign could be believed"
+            f"the {control.name} control of {control.subject} at {control.place.site.place} ended wrongly"
+            f"{where}: {wrong}; no verdict of this campaign could be believed{advice}"
         )
     campaign.proven.add((REPLAY, *control.way))
 
@@ -231,10 +235,11 @@ class ForkTrust:
         is_of_test = control.name == IDENTITY and outcome.test in control.tests
         self._distrust(control.tests.index(outcome.test or "") if is_of_test else 0)
         where = f" in {outcome.test}" if outcome.test is not None else ""
-        why, which = wrong.partition("\n")[0], "that and later tests" if is_of_test else "any test"
+        which = "that and later tests" if is_of_test else "any test"
         self._campaign.progress.note(
             f"the {control.name} control of {control.subject} ended wrongly in a fork{where} "
-            f"({why}): what forks tell of {which} does not count; their mutants run in processes of their own"
+            f"({wrong}): what forks tell of {which} does not count; their mutants run in processes of their "
+            "own"
         )
 
     def close(self) -> None:
