@@ -151,6 +151,23 @@ def test_survivors_are_described_if_nothing_else_says_which_they_are_and_are_in_
     assert (" and 12 more" in section.inner_text()) == bool(copies)
 
 
+def test_a_page_without_movements_says_what_would_record_them(visit: Visit) -> None:
+    visit.open("#/")
+    visit.page.evaluate(
+        """() => {
+            const recording = mutabot.recordings.recording;
+            mutabot.recordings.recording = (data) => recording({ ...data, tracks: [] });
+            location.hash = "#/mutant/2";
+        }"""
+    )
+    visit.page.wait_for_selector(".events, #events")
+    text = visit.page.locator("section.robot").inner_text()
+    assert "recorded where the simulator has a feed" in text
+    assert "docs/evidence.md" in text
+    assert visit.page.locator("canvas.scene").count() == 0
+    assert visit.wrong == []
+
+
 def test_the_source_of_a_mutant_is_in_a_picture_of_the_whole_page(visit: Visit) -> None:
     visit.open("#/mutant/2")
     code = visit.page.locator(".code.small")

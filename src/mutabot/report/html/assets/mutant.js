@@ -157,9 +157,12 @@
     if (one.status === "not covered") return empty("No test runs this line.", "The fault was never executed. Add a test that runs this line.");
     const where = page.rounds.some((outcome) => outcome && outcome.divergence.length) ? "What differs otherwise is listed below, by round. " : "";
     if (!mutabot.campaign.recorded) return empty("Nothing was recorded in this campaign.", where, "Recording is off (", h("code", null, "evidence = 0"), " in the configuration), or the file of recordings was deleted.");
-    return empty("No recorded command, reading or movement differs.", where, "Movements and contacts are recorded where the simulator has a feed (",
-      h("code", null, "mutabot.api.processes.Feed"), "), as mutabot's own cells have; its lines show the arm.");
+    return empty("No recorded command, reading or movement differs.", where, feed());
   }
+
+  /** What makes movements visible. */
+  const feed = () => ["Movements and contacts are recorded where the simulator has a feed (", h("code", null, "mutabot.api.processes.Feed"),
+    "), as mutabot's own cells have, and the arm where the feed has a line. docs/evidence.md shows how to add them, also with ROS."];
 
   function pair(holder, events, one, page, found, usual, mutant, stop) {
     const ends = [usual, mutant].map((each) => (each ? Math.max(each.end || 0, ...each.calls.map((call) => call.ended || 0), 0) : 0));
@@ -180,7 +183,7 @@
       drawn.append(h("div", { class: "world" }, key(usual), made.canvas, made.controls));
       drawn.append(h("div", { class: "multiples" }, mutabot.charts(usual, mutant, clock, diverged ? diverged.apart : [])));
       holder.append(slider(clock, mutant, made.canvas, stop), drawn);
-    }
+    } else holder.append(h("p", { class: "hint" }, feed()));
     holder.append(first);
     events.replaceChildren(h("h2", { id: "events" }, "Commands, readings and contacts"), mutabot.timeline.lanes(usual, mutant, clock), mutabot.timeline.table(usual, mutant, clock, fault(one, diverged)), apart(diverged));
     if (mutant.problems.length) events.append(h("p", { class: "hint" }, `Not recorded: ${mutant.problems.join("; ")}`));
