@@ -136,6 +136,16 @@ def test_the_first_call_that_differs_is_named(calls: list[tuple[str, dict[str, f
     assert found.what == what
 
 
+def test_a_text_command_is_named_by_its_text() -> None:
+    original, mutant = (
+        Recording(calls=[RecordedCall(0.0, 0.5, "link:send", "m.py:1", pattern, {}, {})])
+        for pattern in ("turn/{angle:g}", "release")
+    )
+    found = apart(original, mutant)
+    assert found is not None
+    assert found.what == "m.py:1 send release is called instead of m.py:1 send turn/{angle}"
+
+
 def with_arm(recording: Recording, height: float) -> Recording:
     """The same with an arm that is drawn."""
     values = array("f", [0.0, 0.0, 0.0, 0.0, 0.0, height]) * len(recording.times)

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from math import isclose
 from typing import TYPE_CHECKING, Any
 
+from mutabot.model.notation import Notation
 from mutabot.model.quantity import distinct_texts, is_number, value_text
 
 if TYPE_CHECKING:
@@ -56,4 +57,5 @@ def _are_equal(value: Any, other: Any) -> bool:
 
 
 def _name(call: RecordedCall) -> str:
-    return f"{call.place} {call.operation.rpartition(':')[2]}"
+    command = f" {Notation.compile(call.pattern).short}" if call.pattern is not None else ""
+    return f"{call.place} {call.operation.rpartition(':')[2]}{command}"

@@ -46,7 +46,7 @@ def recording(*, off: float = 0.0, name: str = "box", has_arm: bool = False) -> 
         box.extend((0.1 * time, y, 0.4))
         arm.extend((0.0, 0.0, 0.0, 0.0, 0.0, 0.5, 0.1 * time, y, 0.5))
     calls = [
-        RecordedCall(0.0, 2.0, "robot:Arm.move_by", "mission.py:3", None, {"dx": 0.2}, {}),
+        RecordedCall(0.0, 2.0, "robot:Arm.move_by", "mission.py:3", "by {dx:g}", {"dx": 0.2}, {}),
         RecordedCall(
             2.0, 9.0, "robot:Arm.move_by", "mission.py:4", None, {"dx": -0.3, "how": "slowly " * 9}, {}
         ),

@@ -96,7 +96,7 @@
 
   function facts(one, page) {
     const rows = [["id", h("code", null, page.id)],
-      one.operation ? ["operation", one.operation + (page.pattern ? `, command ${page.pattern.replace(/:[^{}]*}/g, "}")}` : "")] : null,
+      one.operation ? ["operation", one.operation + (page.pattern ? `, command ${mutabot.command(page.pattern)}` : "")] : null,
       one.operation ? ["quantity", one.quantity ? `${one.quantity}${page.meaning ? `: ${["kind", "axis", "unit", "frame"].map((name) => page.meaning[name]).filter(Boolean).join(", ")}` : ""}` : "the call as a whole"] : null,
       ["operator", h("span", null, `${one.operator}${one.variant ? ` (${one.variant})` : ""}`, mutabot.campaign.operators[one.operator] ? h("small", null, mutabot.campaign.operators[one.operator]) : null)],
       ["killed", `in ${one.killed} of ${count(one.valid, "valid round")}${page.kill_rate.interval ? `; 95 % interval ${between(page.kill_rate.interval)}` : ""}`],

@@ -63,5 +63,8 @@
     set(time) { this.time = Math.min(this.end, Math.max(0, time)); for (const tell of this.told) tell(this.time); }
   }
 
-  Object.assign(mutabot, { recordings: { recording, at, axes, turned, Clock } });
+  /** A command's pattern as texts name it, without format specifications. */
+  const command = (pattern) => pattern.replace(/:[^{}]*}/g, "}");
+
+  Object.assign(mutabot, { command, recordings: { recording, at, axes, turned, Clock } });
 })();

@@ -44,7 +44,7 @@
   }
 
   const differs = ([one, other]) => !one || !other || (one.call ? !same(one.call, other.call) : Math.abs((one.time ?? 0) - (other.time ?? 0)) > LATE);
-  const name = (call) => call.operation.replace(/^.*:/, "");
+  const name = (call) => call.operation.replace(/^.*:/, "") + (call.pattern ? ` ${mutabot.command(call.pattern)}` : "");
   /** Values in words; those that read otherwise on the other side are marked. */
   const amounts = (pairs, fault, others) => pairs.filter(([what, value]) => value !== 0 || pairs.length === 1 || (fault && what === fault.name))
     .map(([what, value]) => {
@@ -108,7 +108,7 @@
         if (call.began === null || call.ended === null) continue;
         const bar = put(h("span", { class: `call ${call.role}`, title: `${name(call)} ${number(call.began, 4)}–${number(call.ended, 4)} s` }), call.began);
         bar.style.width = `${100 * Math.max(0, call.ended - call.began) / end}%`;
-        if (call.ended - call.began > 0.07 * end) bar.append(name(call).replace(/^.*\./, ""));
+        if (call.ended - call.began > 0.07 * end) bar.append(name(call).replace(/^\S*\./, ""));
         lane.append(bar);
       }
       for (const [time, what, text] of recording.moments) lane.append(put(h("span", { class: `tick ${what}`, title: `${what} ${text}, ${number(time, 4)} s` }), time));
