@@ -11,6 +11,8 @@ import stat
 from collections.abc import Iterator
 from contextlib import suppress
 
+#: bound before a test can replace it, as by ``mock_open``
+real_open = open
 _SAFELY = os.O_NONBLOCK | os.O_NOFOLLOW | os.O_CLOEXEC
 _WRITING = os.O_WRONLY | os.O_RDWR
 

@@ -15,6 +15,7 @@ from functools import cache
 
 from mutabot.frozen import frozen
 from mutabot.model.clocks import monotonic
+from mutabot.model.files import real_open
 
 _PRESSURE = "/proc/pressure/cpu"
 
@@ -137,7 +138,7 @@ def _names(folder: str) -> list[str]:
 
 
 def _read(path: str) -> str:
-    with open(path, encoding="ascii", errors="replace") as file:  # noqa: PTH123  # likewise
+    with real_open(path, encoding="ascii", errors="replace") as file:
         return file.read()
 
 

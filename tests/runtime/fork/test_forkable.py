@@ -17,6 +17,8 @@ known = open_now()
 {}
 print(why_not((), known))
 """
+LOCK = "import fcntl, tempfile; file = tempfile.TemporaryFile()"
+BLOCK = "import signal; signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGUSR1])"
 
 
 def asked(code: str) -> str:
@@ -36,10 +38,24 @@ def test_plain_process_is_safe() -> None:
         ("import threading; threading.Thread(target=threading.Event().wait, daemon=True).start()", "thread"),
         ("import socket; s = socket.socket()", "1 open socket"),
         ("import subprocess; p = subprocess.Popen(['sleep', '1'])", "1 subprocess in flight"),
+        (f"{LOCK}; fcntl.flock(file, fcntl.LOCK_SH)", "a lock on /"),
+        (f"{LOCK}; fcntl.lockf(file, fcntl.LOCK_EX, 1)", "a lock on /"),
+        (f"{BLOCK}; signal.raise_signal(signal.SIGUSR1)", "blocked and waits (SIGUSR1)"),
     ],
 )
-def test_what_a_fork_would_share_is_named(code: str, reason: str) -> None:
+def test_what_a_fork_would_share_or_lack_is_named(code: str, reason: str) -> None:
     assert reason in asked(code)
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        f"{LOCK}; fcntl.lockf(file, fcntl.LOCK_EX); fcntl.lockf(file, fcntl.LOCK_UN)",
+        f"{BLOCK}; signal.raise_signal(signal.SIGUSR1); signal.sigwait([signal.SIGUSR1])",
+    ],
+)
+def test_what_is_over_is_no_reason(code: str) -> None:
+    assert asked(code) == "None"
 
 
 def test_graphics_library_is_noticed_however_it_was_loaded() -> None:

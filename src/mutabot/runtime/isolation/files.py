@@ -21,6 +21,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from mutabot.model.event_file import FOLDER, FORKS
+from mutabot.model.files import real_open
 from mutabot.runtime.isolation.forkable import descriptors, own_event_loops
 from mutabot.runtime.isolation.namespaces import asks_for_id, call, keeps_ids
 from mutabot.runtime.paths import is_below
@@ -128,7 +129,7 @@ class PrivateFiles:
         if not is_below(file, self.root):
             raise PermissionError(f"{path} cannot be changed: it is not a file of the project")
         before = os.stat(file).st_mtime if os.path.exists(file) else 0.0
-        with open(file, "wb") as opened:
+        with real_open(file, "wb") as opened:
             opened.write(content)
         # Python takes bytecode for that of a text if it has its size, and its time in seconds
         after = max(os.stat(file).st_mtime, before + 2.0)
@@ -240,7 +241,8 @@ def _copy(source: str, target: str, links: dict[tuple[int, int], str]) -> None:
     elif stat.S_ISLNK(status.st_mode):
         os.symlink(os.readlink(source), target)
     elif stat.S_ISREG(status.st_mode):
-        shutil.copyfile(source, target)
+        with real_open(source, "rb") as old, real_open(target, "wb") as new:
+            shutil.copyfileobj(old, new)
     elif stat.S_ISCHR(status.st_mode) or stat.S_ISFIFO(status.st_mode):  # what was deleted is such a device
         os.mknod(target, status.st_mode, status.st_rdev)
     else:  # nobody is at the other end of a socket
@@ -279,7 +281,7 @@ def _enter_namespace() -> bool:
         ("uid_map", f"{user} {user} 1"),
         ("gid_map", f"{group} {group} 1"),
     ):
-        with open(f"/proc/self/{name}", "w", encoding="ascii") as file:
+        with real_open(f"/proc/self/{name}", "w", encoding="ascii") as file:
             file.write(text)
     return False
 
@@ -317,7 +319,7 @@ def _mount_overlay(folder: str, lower: int, layers: str) -> None:
 
 def _mounts_below(folders: Collection[str]) -> list[str]:
     """Return the mount points below these folders, outermost first, as an overlay would hide them."""
-    with open("/proc/self/mountinfo", "rb") as file:
+    with real_open("/proc/self/mountinfo", "rb") as file:
         points = [mount_point(line) for line in file]
     found = dict.fromkeys(
         point

@@ -28,6 +28,7 @@ from mutabot.model.activation import TEXT, Activation, Key, at_test, at_text, of
 from mutabot.model.clocks import monotonic
 from mutabot.model.deadline import Deadline, Limit
 from mutabot.model.events import ForkDied, ForkEnded, TestControls, TokensHeld, Undiverged, Unforked
+from mutabot.model.files import real_open
 from mutabot.model.job import STOP, Forking
 from mutabot.operators.command import Identity
 from mutabot.runtime.event_file import EventFile
@@ -300,7 +301,8 @@ class ForkParent:
             os.close(writing)
             return None
         os.close(writing)
-        with open(reading, "rb") as ready:  # what it inherits must not change before it has its own
+        # what it inherits must not change before it has its own
+        with real_open(reading, "rb") as ready:
             ready.read()
         return pids
 

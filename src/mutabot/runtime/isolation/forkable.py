@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import select
 import selectors
+import signal
 import stat
 import sys
 import weakref
@@ -16,6 +17,8 @@ from contextlib import suppress
 from typing import Any
 
 import wrapt
+
+from mutabot.model.files import real_open
 
 _loops: weakref.WeakSet[Any] = weakref.WeakSet()
 
@@ -97,6 +100,8 @@ def why_not(own_children: Iterable[int], known: frozenset[tuple[int, str]]) -> s
         return "another file system stands in the place of the real one, as by pyfakefs"
     if (busy := _threads() or subprocesses(own_children)) is not None:
         return busy
+    if (held := _pending() or _locked()) is not None:
+        return held
     maps = _maps()  # which takes a while
     return _open_since(known, maps) or _graphics(maps)
 
@@ -128,7 +133,7 @@ def count_threads() -> int:
 
 def _waits_in(thread: str, areas: list[tuple[int, int]]) -> bool:
     try:
-        with open(f"{_SELF}/task/{thread}/syscall", encoding="ascii") as file:
+        with real_open(f"{_SELF}/task/{thread}/syscall", encoding="ascii") as file:
             fields = file.read().split()
     except OSError:  # it has just ended, or the kernel does not tell
         return False
@@ -141,12 +146,26 @@ def _waits_in(thread: str, areas: list[tuple[int, int]]) -> bool:
 def subprocesses(own: Iterable[int]) -> str | None:
     """Return a text with the number of child processes other than ``own``; None if there are none."""
     try:
-        with open(f"{_SELF}/task/{os.getpid()}/children", encoding="ascii") as file:
+        with real_open(f"{_SELF}/task/{os.getpid()}/children", encoding="ascii") as file:
             children = {int(pid) for pid in file.read().split()}
     except OSError:  # a kernel that does not list them
         return None
     others = children.difference(own)
     return f"{len(others)} subprocess{'es' if len(others) > 1 else ''} in flight" if others else None
+
+
+def _pending() -> str | None:
+    names = sorted(str(getattr(number, "name", number)) for number in signal.sigpending())
+    return f"a signal that is blocked and waits ({names[0]})" if names else None
+
+
+def _locked() -> str | None:
+    """Return which file this process has locked, as a fork has a file of its own in its place."""
+    for descriptor, _ in descriptors():
+        with suppress(OSError), real_open(f"{_SELF}/fdinfo/{descriptor}", encoding="ascii") as file:
+            if "\nlock:" in file.read():
+                return f"a lock on {os.readlink(f'{_SELF}/fd/{descriptor}')}"
+    return None
 
 
 def _open_since(known: frozenset[tuple[int, str]], maps: list[str]) -> str | None:
@@ -195,5 +214,5 @@ def _graphics(maps: list[str]) -> str | None:
 
 
 def _maps() -> list[str]:
-    with open(f"{_SELF}/maps", encoding="utf-8", errors="replace") as file:
+    with real_open(f"{_SELF}/maps", encoding="utf-8", errors="replace") as file:
         return file.readlines()

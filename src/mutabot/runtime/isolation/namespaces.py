@@ -20,6 +20,8 @@ from contextlib import suppress
 from functools import cache
 from typing import Any, NamedTuple, NoReturn
 
+from mutabot.model.files import real_open
+
 _CLONE_VM, _CLONE_FILES, _CLONE_NEWTIME, _CLONE_NEWPID = 0x00000100, 0x00000400, 0x00000080, 0x20000000
 #: number of this system call on all architectures
 _CLONE3 = 435
@@ -52,7 +54,7 @@ def leave_out(seconds: float) -> None:
         raise OSError(errno.EUSERS, "there are other threads")
     call("unshare", _CLONE_NEWTIME)
     whole, rest = divmod(-round((_left_out + seconds) * 1e9), 10**9)
-    with open("/proc/self/timens_offsets", "w", encoding="ascii") as file:
+    with real_open("/proc/self/timens_offsets", "w", encoding="ascii") as file:
         file.write(f"monotonic {whole} {rest}\nboottime {whole} {rest}\n")
     _enter("/proc/self/ns/time_for_children", _CLONE_NEWTIME)
     _left_out += seconds
@@ -81,7 +83,7 @@ def asks_for_id(root: str) -> str | None:
 @cache
 def _mentions_id(file: str) -> bool:
     try:
-        with open(file, "rb") as text:
+        with real_open(file, "rb") as text:
             return b"getpid" in text.read()
     except OSError:
         return False
