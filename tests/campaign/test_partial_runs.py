@@ -51,6 +51,18 @@ def test_all_mutants_of_known_places_are_active_though_the_plan_has_them_no_long
             campaign.current(replace(planned[0], site=elsewhere))
 
 
+def test_a_mutant_of_a_call_is_replayed_with_its_controls_after_a_campaign_of_another_family(
+    project: Path,
+) -> None:
+    request = request_for(project).changed(tests=(f"tests/{GOES[0]}",))
+    with CampaignRun.open(request, Quiet()) as campaign:
+        earlier = next(mutant for mutant in campaign.planned.values() if mutant.operator == "skip")
+    with CampaignRun.open(replace(request, families=("conventional",)), Quiet()) as campaign:
+        assert earlier.id not in campaign.planned
+        campaign.prove([campaign.current(earlier)])
+        assert {(way, provider) for way, _, provider, _ in campaign.proven} == {("replay", "calls")}
+
+
 def test_the_original_is_run_in_the_rounds_asked_for_also_if_tests_fail(project: Path) -> None:
     with CampaignRun.of_original(request_for(project), [0, 3], Quiet()) as results:
         found = {result.task.key: [end.outcome for end in result.ends] for result in results}

@@ -58,12 +58,16 @@ class PlantedFaults:
             made.providers.update((place, provider) for _, place in found.reached)
             for item in found.mutants:
                 if item.reason is None:
-                    made.by_id[item.mutant.id] = item
-                    if item.active is not None:
-                        made._at_place.setdefault(Place.of(item.mutant), item.active)
+                    made.add(item)
                 elif provider not in (CALLS, MESSAGES):
                     made.left_out_beforehand.append(item)
         return made
+
+    def add(self, item: PlannedMutant) -> None:
+        """Add a mutant, and controls at its place."""
+        self.by_id[item.mutant.id] = item
+        if item.active is not None:
+            self._at_place.setdefault(Place.of(item.mutant), item.active)
 
     def active(self, mutant: Mutant) -> Activation:
         """Return the activation of a mutant, or of a control at the place of one."""
