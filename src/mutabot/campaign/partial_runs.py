@@ -90,7 +90,7 @@ class CampaignRun(Campaign):
         """
         place = Place.of(mutant)
         if place in self.baseline.hits:  # which it also is if nobody asks for its family or magnitude now
-            self.baseline.faults.add(PlannedMutant(mutant, active=Activation.of_call(place)))
+            self.baseline.plant(PlannedMutant(mutant, active=Activation.of_call(place)))
             return mutant
         if mutant.id not in self.planned:
             why = "the program has changed, or the configuration does not name its file any more"

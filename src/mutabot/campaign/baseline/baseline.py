@@ -275,6 +275,10 @@ class Baseline(Original):
         """Add remarks on the vocabulary or the configuration."""
         self.remarks = (*self.remarks, *remarks)
 
+    def plant(self, item: PlannedMutant) -> None:
+        """Add a mutant that the plan does not have, with controls at its place."""
+        self.faults.add(item)
+
     def doubt(self, test: str) -> None:
         """Note that a test failed once where equal runs pass: its kills may be chance."""
         self.doubted.add(test)
