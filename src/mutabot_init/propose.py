@@ -319,7 +319,9 @@ def _loads(text: str) -> bool:
 
 
 def _configuration(found: _Findings) -> str:
-    listed = {"program": found.program, "oracle": found.oracle, "tests": found.layout.arguments or ["tests"],
+    # what pytest's own configuration names needs no line
+    tests = found.layout.arguments or ["tests"] if found.run.tests == found.layout.arguments else []
+    listed = {"program": found.program, "oracle": found.oracle, "tests": tests,
               "vocabulary": found.vocabulary}  # fmt: skip
     notes = {
         "program": "  # makes the robot's calls",
@@ -372,7 +374,7 @@ def _told(found: _Findings, questions: int) -> list[str]:
     by_hand = "describe the robot by hand (docs/vocabulary.md)"
     if not found.makes_no_call:
         return [*lines, f"next: none of these calls looks like one of a robot or a device: {by_hand}"]
-    tests = " ".join(found.layout.arguments) or "tests"
+    tests = " ".join(found.run.tests) or "tests"
     return [
         *lines,
         f"next: make `python -m pytest {tests}` run tests that call the program, remove {CONFIGURATION} and "

@@ -21,6 +21,7 @@ from mutabot.families import USUAL
 from mutabot.faults import families_brought, known_families, need_vocabulary, why_unknown
 from mutabot.model import Moment
 from mutabot.model.mutant import EVERY
+from mutabot.testpaths import test_paths
 from mutabot.thresholds.demands import Demand
 
 from .demands import check_demands
@@ -115,7 +116,8 @@ class Settings(Table):
         oracle_nodes = ["/checker*"]
     """
     tests: _SomeTexts = ("tests",)
-    """Pytest's arguments that say which tests there are.
+    """Pytest's arguments that say which tests there are. Without it, what pytest's own `testpaths` names
+    counts, as for plain pytest.
 
         tests = ["tests", "acceptance/test_cell.py"]
     """
@@ -276,6 +278,8 @@ def _checked(
     if settings is None:
         raise_errors(place.errors)
         raise AssertionError("a table without a mistake is refused")
+    if "tests" not in raw:
+        settings = settings.model_copy(update={"tests": test_paths(folder) or settings.tests})
     paths = _Paths(folder.resolve())
     program = paths.sources(place / "program", settings.program)
     oracle = paths.sources(place / "oracle", settings.oracle)

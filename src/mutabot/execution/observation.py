@@ -8,7 +8,7 @@ import os
 import signal
 import subprocess
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Generic, TypeVar
@@ -19,6 +19,7 @@ from mutabot.extensions import libraries, references_for_processes
 from mutabot.model.codec import from_data, to_data
 from mutabot.model.event_file import FOLDER
 from mutabot.model.observation import JOB, SEEN, TESTS, VARIABLE, ObservationJob
+from mutabot.testpaths import test_paths
 
 T = TypeVar("T")
 #: of pytest, in which every assertion stays as it is written
@@ -36,12 +37,14 @@ class Observed(Generic[T]):
         outcomes: number of tests by outcome: ``passed``, ``failed``, ``skipped``.
         problems: the first failures, each with its test, in pytest's words.
         trouble: why less is known than a whole run tells; empty if nothing is missing.
+        tests: pytest's arguments that named the tests.
     """
 
     seen: list[T] = field(default_factory=list)
     outcomes: Mapping[str, int] = field(default_factory=dict)
     problems: Sequence[str] = ()
     trouble: str = ""
+    tests: Sequence[str] = ()
 
 
 def observe(
@@ -58,7 +61,7 @@ def observe(
 
     Args:
         root: the project.
-        arguments: pytest's, such as files and folders of tests.
+        arguments: pytest's that name the tests, such as folders; what its own ``testpaths`` names goes first.
         program, tests: files of either side, relative to ``root``, with ``/``.
         observer: ``module:Name`` of the ``Observer`` that watches in each process of the run.
         result: the dataclass that its ``data`` returns.
@@ -66,6 +69,7 @@ def observe(
 
     Raises ExtensionError for a package that cannot be used.
     """
+    arguments = test_paths(root) or arguments
     with TemporaryDirectory(ignore_cleanup_errors=True) as name:  # nodes may still write to their logs
         home = Path(name)
         folder, log = home / FOLDER, home / "log.txt"
@@ -76,16 +80,16 @@ def observe(
         (folder / JOB).write_text(json.dumps(to_data(job)), encoding="utf-8")
         command_line = [*command(arguments, home), *_OWN]
         is_overdue = _wait(command_line, root, {VARIABLE: str(folder)}, log, limit)
-        found = _read(folder, result)
+        found = replace(_read(folder, result), tests=arguments)
         if is_overdue:
             trouble = f"the tests took longer than {limit:.0f} s: only what was seen by then is known"
         elif found.outcomes:
-            return found
+            trouble = ""
         else:
             trouble = (
                 "; ".join(found.problems[:3]) or f"no test ran{tail_of(log.read_text(errors='replace'))}"
             )
-        return Observed(found.seen, found.outcomes, found.problems, trouble)
+        return replace(found, trouble=trouble)
 
 
 def _wait(

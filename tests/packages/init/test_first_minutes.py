@@ -392,6 +392,20 @@ def test_a_program_that_only_computes_is_said_to_call_no_robot(tmp_path: Path) -
     assert "run tests that call the program" not in done.stdout
 
 
+def test_what_pytests_own_configuration_names_is_watched_and_not_written_down(tmp_path: Path) -> None:
+    """A doctest of the program is a test as well; the files of tests alone would never show it."""
+    files = {
+        "pytest.ini": "[pytest]\ntestpaths = program.py test_it.py\naddopts = --doctest-modules\n",
+        "robot.py": "class Arm:\n    def move(self, metres): self.x = metres\n",
+        "program.py": "import robot\ndef run():\n    '>>> run()'\n    robot.Arm().move(0.5)\n",
+        "test_it.py": "def test_it(): pass\n",
+    }
+    write(tmp_path, files)
+    done = mutabot(tmp_path, "init")
+    assert "tests: 2 passed; the program calls 1 callable" in done.stdout, done.stderr
+    assert "tests =" not in (tmp_path / "mutabot.toml").read_text(encoding="utf-8")
+
+
 @pytest.mark.parametrize("broken", ["robot", "program", "test_program"])
 def test_a_file_that_is_no_python_is_named_and_nothing_is_written(tmp_path: Path, broken: str) -> None:
     files = {
