@@ -7,10 +7,11 @@ decides.
 from __future__ import annotations
 
 import os
-from collections.abc import Generator, Iterator, Mapping
+from collections.abc import Generator, Iterator
 from dataclasses import replace
 from functools import partial
 from itertools import islice
+from types import GetSetDescriptorType
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -344,9 +345,13 @@ def objects_of_fixtures(item: pytest.Item) -> Iterator[Any]:
 
 
 def _parts(value: Any) -> Iterator[Any]:
-    if isinstance(value, Mapping):
-        yield from value.values()
-    elif isinstance(value, list | tuple | set | frozenset):
-        yield from value
-    else:
-        yield from list(getattr(value, "__dict__", {}).values())
+    """Yield items or attributes without asking the object: a lazy proxy would be made by it."""
+    kind = type(value)
+    if issubclass(kind, dict):
+        yield from list(dict.values(value))
+    for base in (list, tuple, set, frozenset):
+        if issubclass(kind, base):
+            yield from list(base.__iter__(value))
+    slot = next((vars(base)["__dict__"] for base in kind.__mro__ if "__dict__" in vars(base)), None)
+    if type(slot) is GetSetDescriptorType:
+        yield from list(slot.__get__(value).values())

@@ -77,7 +77,7 @@ class Instances:
                     self._known.clear()
                     _note_made(found, self._note_made)
                     for value in list(vars(module).values()):  # made while the module was imported
-                        if isinstance(value, found):
+                        if issubclass(type(value), found):  # to ask a proxy makes what it stands for
                             self._note(value, is_of_test=False)
 
         wrapt.register_post_import_hook(imported, module_name)
