@@ -65,8 +65,8 @@ def test_the_same_tests_are_named_as_plain_pytest_collects(project: Path, name: 
 
 
 def test_they_are_the_tests_of_a_configuration_that_names_none(project: Path) -> None:
-    write(project, {**CONFIGURATIONS["pytest.ini"], "mission.py": ""})
-    own = 'program = ["mission.py"]\nfamilies = ["conventional"]\n'
+    write(project, {**CONFIGURATIONS["pytest.ini"], "mission.py": "", "robot.toml": ""})
+    own = 'program = ["mission.py"]\nvocabulary = ["robot.toml"]\n'
     write(project, {"mutabot.toml": own})
     assert load_configuration(project).tests == ("checks", "more/arm_tests")
     write(project, {"mutabot.toml": own + 'tests = ["tests"]\n'})
