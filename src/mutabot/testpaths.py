@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 import tomllib
+from contextlib import suppress
 from glob import glob
 from pathlib import Path
 from typing import Any
@@ -31,7 +32,8 @@ def test_paths(root: Path) -> tuple[str, ...]:
     found: list[str] = []
     for name in names:
         there = (root / name).exists()
-        found += [name] if there else sorted(glob(name, root_dir=root, recursive=True))  # noqa: PTH207  # as pytest
+        # as pytest does it: ``Path.glob`` takes no absolute patterns
+        found += [name] if there else sorted(glob(name, root_dir=root, recursive=True))  # noqa: PTH207
     return tuple(dict.fromkeys(found))
 
 
@@ -40,11 +42,10 @@ def _named(root: Path) -> list[Any]:
         tables = _sections(root / name, sections)
         value = next((table["testpaths"] for table in tables if "testpaths" in table), None)
         if isinstance(value, str):
-            return shlex.split(value)
-        if isinstance(value, list):
-            return value
+            with suppress(ValueError):  # a quotation that is not closed; plain pytest tells of it
+                return shlex.split(value)
         if tables or (is_taken_empty and (root / name).is_file()):
-            return []
+            return value if isinstance(value, list) else []
     return []
 
 

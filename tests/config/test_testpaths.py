@@ -73,7 +73,9 @@ def test_they_are_the_tests_of_a_configuration_that_names_none(project: Path) ->
     assert load_configuration(project).tests == ("tests",)
 
 
-@pytest.mark.parametrize("text", ["[pytest", "[pytest]\ntestpaths", "\udce9", "[pytest]\n[pytest]\n"])
+@pytest.mark.parametrize(
+    "text", ["[pytest", "[pytest]\ntestpaths", "[pytest]\ntestpaths = 'a b", "\udce9", "[pytest]\n[pytest]\n"]
+)
 def test_a_file_that_cannot_be_read_names_none(project: Path, text: str) -> None:
     (project / "pytest.ini").write_text(text, encoding="utf-8", errors="surrogateescape")
     assert paths_of(project) == ()

@@ -46,6 +46,11 @@ def is_of_numpy(value: Any) -> bool:
     return kind is array_kind or (issubclass(kind, scalar_kind) and kind.__module__.startswith("numpy"))
 
 
+def is_scalar_of_numpy(value: Any) -> bool:
+    """Return whether a value is a scalar of numpy, which cannot be changed, without importing numpy."""
+    return is_of_numpy(value) and type(value).__name__ != "ndarray"
+
+
 def is_textual(value: Any) -> bool:
     """Return whether a value is a date, time, decimal or fraction, without importing their modules."""
     kind = type(value)

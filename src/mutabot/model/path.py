@@ -22,7 +22,7 @@ from typing import Any
 
 from mutabot.errors import PathError, error_text, nearest_name, text_of
 from mutabot.frozen import frozen
-from mutabot.model.data import is_of_numpy, is_unchangeable
+from mutabot.model.data import is_scalar_of_numpy, is_unchangeable
 from mutabot.model.enumeration import is_member
 
 _STEP = re.compile(r"\.(?P<attribute>[^\W\d]\w*)|\[(?P<item>[^\[\]]*)\]")
@@ -264,7 +264,7 @@ def _can_be_set(copied: Any, name: str) -> bool:
 
 def _is_fixed(value: Any, step: Step) -> bool:
     """Return whether a step of an object is a part of it that Python lets nobody change, or is computed."""
-    if is_member(value) or (is_of_numpy(value) and type(value).__name__ != "ndarray"):
+    if is_member(value) or is_scalar_of_numpy(value):
         return True
     if step.attribute is None:
         return is_unchangeable(type(value))

@@ -11,8 +11,7 @@ from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from mutabot.model.activation import NTH, TEST, FatalFault, Key
-from mutabot.model.path import opaque
-from mutabot.runtime.activity import Activity
+from mutabot.runtime.activity import Activity, shown
 
 if TYPE_CHECKING:
     from random import Random
@@ -126,7 +125,7 @@ class ActiveFault(ABC):
         self._activity.hits += 1
         self._activity.acted += 1
         if self._activity.acted == 1:
-            self._activity.example = (_plain(before), _plain(after))
+            self._activity.example = (shown(before), shown(after))
             self.context.acted()
 
     def raising(self, error: BaseException) -> BaseException:
@@ -179,9 +178,3 @@ class FatalControl(_ControlFault):
     def error(self) -> FatalFault:
         """The error that the control raises."""
         return FatalFault(f"control: {self.mutant.site.place} fails")
-
-
-def _plain(value: Any) -> Any:
-    if value is None or isinstance(value, bool | int | float | str):
-        return value
-    return opaque(value)

@@ -5,10 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from mutabot.model.data import data_of, is_scalar_of_numpy
+from mutabot.model.path import opaque
 from mutabot.runtime.exceptions import KnownError, Refusal
 
 #: refusals of one test that are kept
 REFUSALS = 16
+#: items of a list or tuple that is shown
+_SHOWN = 12
 
 
 @dataclass(slots=True)
@@ -51,3 +55,14 @@ class Activity:
     def refusal(self) -> str | None:
         """The robot's text of refusing a mutated call; None if it refused none."""
         return self.refusals[-1].text if self.refusals else self.refusing_answer
+
+
+def shown(value: Any) -> Any:
+    """Return a copy of a value for reports, made without running code of the program."""
+    found = value if type(value) in (list, tuple) else data_of(value)
+    if type(found) in (list, tuple) and len(found) <= _SHOWN:
+        return tuple(shown(item) for item in found)
+    if is_scalar_of_numpy(found):
+        found = found.item()
+    is_plain = found is None or type(found) in (bool, int, float, str)
+    return found if is_plain else opaque(value)

@@ -44,7 +44,6 @@ _ExpressionKey = tuple[str, Extent]
 #: expressions by the numbers of their places
 _Nodes = dict[int, ast.expr]
 _Node = TypeVar("_Node", bound=ast.AST)
-#: expressions without effects; attributes and items may be readings of a robot
 _KEPT = Alternative.kept_name(0).partition("0")[0]
 #: up to so many places in a file, it is worth while to look where they are before anything is changed
 _FEW = 20

@@ -18,7 +18,7 @@ from contextlib import AbstractContextManager, nullcontext, suppress
 from typing import Any, NamedTuple
 
 from mutabot.frozen import frozen
-from mutabot.model.data import is_of_numpy, is_textual
+from mutabot.model.data import is_scalar_of_numpy, is_textual
 from mutabot.model.program_text import RUNTIME
 
 #: integers of more bits are left to a real evaluation
@@ -199,9 +199,8 @@ def is_identical(first: Any, second: Any) -> bool:
 
 def is_number_of_numpy(value: Any) -> bool:
     """Return whether a value is a number or truth value of numpy that is no longer than 64 bits."""
-    if not is_of_numpy(value) or type(value).__name__ == "ndarray":
-        return False
-    return value.dtype.kind in "biuf" and value.dtype.itemsize <= struct.calcsize("d")
+    is_number = is_scalar_of_numpy(value) and value.dtype.kind in "biuf"
+    return is_number and value.dtype.itemsize <= struct.calcsize("d")
 
 
 def _silent() -> AbstractContextManager[Any]:

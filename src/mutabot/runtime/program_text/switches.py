@@ -23,16 +23,11 @@ from threading import active_count, get_ident
 from typing import Any, NoReturn
 
 from mutabot.model.activation import FatalFault
-from mutabot.model.data import data_of, is_of_numpy
-from mutabot.model.path import class_name, opaque
+from mutabot.model.data import is_of_numpy
+from mutabot.model.path import class_name
 from mutabot.model.program_text import FATAL, IDENTITY, Sighting, TextPlace, fits_kinds
-from mutabot.runtime.program_text.prediction import (
-    Forms,
-    UnpredictableError,
-    is_identical,
-    is_number_of_numpy,
-    locals_of,
-)
+from mutabot.runtime.activity import shown
+from mutabot.runtime.program_text.prediction import Forms, UnpredictableError, is_identical, locals_of
 
 
 @cache
@@ -82,8 +77,6 @@ class _Unknown:
 
 
 _UNKNOWN = _Unknown()
-#: items of a list or tuple that is shown
-_SHOWN = 12
 #: evaluations of a place in one test after which it is no longer looked ahead: that takes its time
 _LOOKS = 1000
 
@@ -152,7 +145,7 @@ class Alternatives:
             self.on_idle()
             return
         if before is not _UNKNOWN and self.example is None:
-            self.example = (_plain(before), _plain(after))
+            self.example = (shown(before), shown(after))
         self.tell()
 
     def tell(self) -> None:
@@ -260,18 +253,6 @@ class Alternatives:
     def absolute(self, value: Any) -> Any:
         """Return the absolute value, even if the program has redefined ``abs``."""
         return abs(value)
-
-
-def _plain(value: Any) -> Any:
-    """Return a copy of the value for reports, made without running code of the program."""
-    found = value if type(value) in (list, tuple) else data_of(value)
-    if type(found) in (list, tuple) and len(found) <= _SHOWN:
-        return tuple(_plain(item) for item in found)
-    if is_number_of_numpy(found):
-        found = found.item()
-    if found is None or type(found) in (bool, int, float, str):
-        return found
-    return opaque(value)
 
 
 _PLAIN: dict[type, str] = {
