@@ -230,7 +230,7 @@ def test_a_mutant_s_page_tells_what_the_robot_did_and_who_looked(visit: Visit) -
     assert visit.page.locator("figure.chart").count() >= 6
     assert visit.page.locator(".events tr.faulty").count() == 1
     assert "Arm.move_by by {dx}" in text  # a command is named by its text
-    assert "Run `mutabot suggest --only 2` to search for a check" in text  # nothing was suggested yet
+    assert "Run mutabot suggest --only 2 to search for a check" in text  # nothing was suggested yet
 
 
 @pytest.mark.parametrize("width", [1280, 390])

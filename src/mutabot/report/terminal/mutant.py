@@ -201,4 +201,4 @@ def suggested_sections(result: MutantResult, found: Suggestion | None) -> Iterat
         more = "`mutabot suggest` prints it as a diff."
         yield Section(where, code=found.code, lines=[*found.notes, more])
         return
-    yield Section("A check that would catch it", lines=[next_step(result, found)])
+    yield Section("What to do", lines=[next_step(result, found)])

@@ -286,7 +286,10 @@
   function suggestion(page) {
     const found = page.suggestion;
     if (!found && !page.next) return "";
-    if (!found) return h("section", { "aria-labelledby": "suggestion" }, h("h2", { id: "suggestion" }, "A check that would catch it"), h("p", null, page.next));
+    if (!found) { // commands stand between backticks, as in the terminal
+      const parts = page.next.split("`").map((part, index) => index % 2 ? h("code", null, part) : part);
+      return h("section", { "aria-labelledby": "suggestion" }, h("h2", { id: "suggestion" }, "What to do"), h("p", null, parts));
+    }
     return h("section", { class: "suggestion", "aria-labelledby": "suggestion" }, h("h2", { id: "suggestion" }, "A check that would catch it"), found.test ? h("p", null, "In ", h("code", null, found.test), ":") : null,
       h("pre", { tabindex: "0" }, h("code", null, found.code)), h("ul", { class: "plain" }, (found.notes || []).map((note) => h("li", null, note))));
   }
