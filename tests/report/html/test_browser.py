@@ -53,11 +53,16 @@ class Visit:
         )
         page.on("pageerror", lambda error: self.wrong.append(str(error)))
         page.on("dialog", lambda dialog: self.wrong.append(dialog.message))
-        page.on("requestfailed", lambda request: self.wrong.append(request.url))
+        page.on("requestfailed", self._failed)
         page.on(
             "request",
             lambda request: None if request.url.startswith("file:") else self.wrong.append(request.url),
         )
+
+    def _failed(self, request: Any) -> None:
+        # A page that is left or reloaded gives up what it still loads: the browser asks for the icon late.
+        if request.failure != "net::ERR_ABORTED":
+            self.wrong.append(f"{request.url}: {request.failure}")
 
     def open(self, address: str) -> None:
         """Go there, and wait until it is drawn."""
