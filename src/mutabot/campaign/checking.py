@@ -7,6 +7,7 @@ from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mutabot.campaign.baseline.vocabulary_fit import never_ticks_text
 from mutabot.campaign.duration import Duration, duration_of
 from mutabot.campaign.engines.engine import try_controls
 from mutabot.campaign.request import CheckReport, ExecutorChoice, Preview, Progress, Request
@@ -64,8 +65,40 @@ def plan_only(request: Request, progress: Progress) -> PlannedCampaign:
     return PlannedCampaign(part.mutants, part.left_out, campaign.baseline.untested, duration)
 
 
+class _HeldNotes(Progress):
+    """Progress that holds its notes back until it is known which of them the report contains."""
+
+    def __init__(self, progress: Progress) -> None:
+        self._progress, self._notes = progress, dict[str, None]()
+
+    def stage(self, text: str, total: int | None = None) -> None:
+        self._progress.stage(text, total)
+
+    def advance(self, line: str | None = None) -> None:
+        self._progress.advance(line)
+
+    def note(self, text: str) -> None:
+        self._notes[text] = None
+
+    def tell(self, reported: str) -> None:
+        """Tell the notes that are not in a report."""
+        for text in self._notes:
+            if text not in reported:
+                self._progress.note(text)
+
+
 def check(request: Request, progress: Progress) -> CheckReport:
     """Try the whole set-up, controls included, without running other mutants."""
+    notes, reported = _HeldNotes(progress), ""
+    try:
+        report = _check(request, notes)
+        reported = "\n".join(report.lines)
+    finally:
+        notes.tell(reported)
+    return report
+
+
+def _check(request: Request, progress: Progress) -> CheckReport:
     refuse_tracked(request.journal_path)
     previews = dict(_previews(request))
     with locked_executor(request, progress) as opened, ExitStack() as stack:
@@ -135,7 +168,7 @@ def _report(
         *_untested(baseline.untested),
     ]
     if clock is not None and never_ticks:
-        lines.append(f"unused    clock: no test calls {clock.tick}, so there is no simulated time")
+        lines.append(f"unused    {never_ticks_text(clock)}")
     lines += [f"note      {remark}" for remark in (*baseline.remarks, request.ran_over) if remark]
     lines += [f"replay    {test}: {why}" for test, why in unhandled.reasons.items()]
     data = {

@@ -131,6 +131,14 @@ class MutantResult:
         """Whether all its survivors looked exactly like the original."""
         return bool(self.survived) and all(outcome.indistinguishable for outcome in self.survived)
 
+    @property
+    def is_unmeasured(self) -> bool:
+        """Whether calls of the robot may end differently, and neither a probe nor a recording tells how."""
+        if any(outcome.deviation is not None or outcome.diverged for outcome in self.survived):
+            return False
+        calls = sum(outcome.compared.calls for outcome in self.survived if outcome.compared is not None)
+        return bool(self.mutant.operation) or calls > 0
+
 
 @frozen
 class Results:

@@ -98,8 +98,9 @@ def test_check_tells_a_clock_that_never_ticks(tmp_path: Path) -> None:
     write_project(
         tmp_path, MISSION, TESTS, vocabulary=f'    clock = {{ tick = "robot:Arm.position" }}\n{VOCABULARY}'
     )
-    lines = check(request_for(tmp_path), Quiet()).lines
-    assert "unused    clock: no test calls robot:Arm.position, so there is no simulated time" in lines
+    told, words = Quiet(), "clock: no test calls robot:Arm.position, so there is no simulated time"
+    assert f"unused    {words}" in check(request_for(tmp_path), told).lines
+    assert words not in told.lines  # it is told once
 
 
 @pytest.mark.parametrize(

@@ -76,8 +76,10 @@ def test_what_the_robot_limits_itself_may_be_sent(engine: str, tmp_path: Path) -
 
 
 def test_check_tells_what_is_out_of_range(tmp_path: Path) -> None:
-    report = check(request_for(project(tmp_path), engine="fork"), Quiet())
+    told = Quiet()
+    report = check(request_for(project(tmp_path), engine="fork"), told)
     assert f"note      {REMARK}" in report.lines
+    assert REMARK not in told.lines  # it is told once
     assert REMARK.rpartition(": ")[2] in str(report.data["remarks"])
 
 

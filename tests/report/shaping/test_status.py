@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
-from mutabot.model import By, Outcome, Verdict
-from mutabot.report.texts import rounds_text
+from mutabot.model import By, Compared, Diverged, Outcome, Verdict
+from mutabot.report.texts import next_step, rounds_text
 from mutabot.results.results import MutantResult
 from results import samples
 
@@ -56,3 +58,31 @@ def test_rounds_are_told_by_their_end() -> None:
     )
     assert rounds_text(result(S, K, S, S, S)) == "survived in rounds 1 and 3 to 5, killed by check in round 2"
     assert rounds_text(result()) == "not run"
+
+
+@pytest.mark.parametrize(
+    ("survivor", "step"),
+    [
+        ({"distance": 312.0}, "Run `mutabot suggest"),
+        ({"indistinguishable": True, "distance": 0.0}, "Add a probe or a test"),
+        ({"diverged": (Diverged("test", 1.0, "box", "the box fell"),)}, "Run `mutabot suggest"),
+        # no probe, or none that could be read
+        ({}, "Add a [[probe]]"),
+        ({"divergence": ("call 2: wrote 1 instead of 2",)}, "Add a [[probe]]"),
+        ({"gaps": ("no probe reads anything",)}, "Add a [[probe]]"),
+    ],
+)
+def test_the_next_step_is_a_probe_where_nothing_read_how_the_world_ended(
+    survivor: dict[str, object], step: str
+) -> None:
+    found = MutantResult(samples.SKIP, (Outcome("m", 0, S, **survivor),), None, "")  # type: ignore[arg-type]
+    assert next_step(found).startswith(step)
+
+
+def test_a_project_without_calls_of_a_robot_needs_no_probe() -> None:
+    def step(calls: int) -> str:
+        survived = Outcome("m", 0, S, compared=Compared(calls=calls, returned=3))
+        return next_step(MutantResult(replace(samples.SKIP, operation=""), (survived,), None, ""))
+
+    assert step(0).startswith("Run `mutabot suggest")
+    assert step(2).startswith("Add a [[probe]]")

@@ -19,7 +19,7 @@ from mutabot.operators.kinds.readings import DEFAULT_DEVIATION
 if TYPE_CHECKING:
     from mutabot.campaign.baseline.baseline import Baseline
     from mutabot.campaign.request import Progress
-    from mutabot.model import Operation, Pattern, Probe, Quantity, Vocabulary
+    from mutabot.model import Clock, Operation, Pattern, Probe, Quantity, Vocabulary
 
 _NO_MIDDLEWARE = (
     "it is a name on a middleware, but no installed package brings one, so that nothing would be seen of it; "
@@ -78,9 +78,7 @@ def note_fit(
                 "survivors there cannot be classified as indistinguishable"
             )
     if vocabulary.clock is not None and ends and all(end.simulated is None for end in ends):
-        progress.note(
-            f"the clock {vocabulary.clock.tick} never ticks in a test: there is no limit of simulated time"
-        )
+        progress.note(never_ticks_text(vocabulary.clock))
     remarks = (
         *_out_of_range(baseline, vocabulary),
         *_no_numbers(baseline, vocabulary),
@@ -90,6 +88,11 @@ def note_fit(
     baseline.add_remarks(remarks)
     for remark in remarks:
         progress.note(str(remark))
+
+
+def never_ticks_text(clock: Clock) -> str:
+    """Return the note on a clock that no test calls."""
+    return f"clock: no test calls {clock.tick}, so there is no simulated time"
 
 
 def _with_calls(baseline: Baseline) -> list[TestEnd]:
