@@ -19,9 +19,13 @@ from .words import (
     INPUTS,
     KINDS,
     MODES,
+    NOUNS,
     OUTPUT,
     READERS,
     REPLIES,
+    SETTINGS,
+    SIZES,
+    STATES,
     SUBJECTS,
     TURNS,
     UNITS,
@@ -192,7 +196,7 @@ def _by_name(noun: str, stem: str) -> MotionMeaning | None:
     turned = stem if stem in _NAMED_TURNS else stem.removeprefix("d")
     if turned in _NAMED_TURNS:
         return "rotation", _NAMED_TURNS[turned], None if turned == stem else "by"
-    return _NAMED.get(noun)
+    return _NAMED.get(noun) if not SIZES & {*stem.split("_")} else None
 
 
 def _moved(
@@ -331,12 +335,19 @@ def guess_reading(name: str, setting: NameContext) -> Guess:
     noun, stem = noun_of(words), "_".join(words)
     is_predicate = bool({"is", "has", "can"} & about)
     is_reply = about & HOUSEKEEPING and (is_predicate or REPLIES & set(setting.owner))
-    if noun == "none" or INPUTS & set(setting.owner) or is_reply:
+    if noun == "none" or INPUTS & set(setting.owner) or is_reply or SETTINGS & set(words):
         return Guess()
     if _are_truth(setting) or (is_predicate and all(value in (0, 1) for value in setting.values)):
-        return Guess({"kind": "flag"})
-    if noun == "label" or setting.annotation == "str" or setting.annotation.startswith("Literal"):
+        return Guess({"kind": "flag"} if is_predicate or _tells_state(words, setting) else {})
+    is_read = bool(READERS & about) or noun == "switch"
+    if (
+        noun == "label"
+        or setting.annotation.startswith("Literal")
+        or (setting.annotation == "str" and is_read)
+    ):
         return _label(setting)
+    if any(isinstance(value, str) for value in setting.values):
+        return Guess()  # what may be a text is no quantity
     if GRIPPER & about:
         return measured({"kind": "distance"}, "length", unit, name, setting) if noun else Guess()
     motion = _by_name("", stem)
@@ -352,6 +363,14 @@ def guess_reading(name: str, setting: NameContext) -> Guess:
         _, kind, dimension = KINDS[noun]
         return measured({"kind": kind}, dimension, unit, name, setting)
     return Guess()
+
+
+def _tells_state(words: Sequence[str], setting: NameContext) -> bool:
+    """Return whether a truth value with such a name is a state that is read, and not a setting."""
+    if words and NOUNS.get(words[-1]) in ("switch", "opening", "label"):
+        return True
+    is_participle = any(word.endswith(("ed", "ing")) for word in setting.words)
+    return is_participle or bool((READERS | STATES) & {*words, *setting.words})
 
 
 def _label(setting: NameContext) -> Guess:

@@ -16,6 +16,7 @@ _SKIPPED = frozenset(
     {"node_modules", "build", "dist", "site-packages", "venv", "env", "__pycache__", "docs", "doc"}
 )
 _TEST_FOLDERS = ("tests", "test", "testing", "features")
+_TEST_FILES = ("conftest", "tests", "test")
 _NO_PROGRAMS = frozenset({"setup.py", "noxfile.py", "fabfile.py", "conftest.py", "__init__.py"})
 _MOST_FILES = 1000
 #: what stands at the top of a project
@@ -146,7 +147,7 @@ def _walk(folder: Path) -> Iterator[Path]:
 def _is_test_side(path: Path) -> bool:
     in_folder = any(_holds_tests(part) for part in path.parts[:-1])
     stem = path.stem
-    return in_folder or stem.startswith("test_") or stem.endswith(("_test", "_tests")) or stem == "conftest"
+    return in_folder or stem.startswith("test_") or stem.endswith(("_test", "_tests")) or stem in _TEST_FILES
 
 
 def _holds_tests(folder: str) -> bool:

@@ -76,6 +76,7 @@ class WatchedCallable:
         doc, owner, owner_doc: its docstring, its class, and that class's docstring.
         is_property: whether it is read like an attribute.
         is_set: whether it is a property that is assigned.
+        is_managed: whether its class is a context manager, which opens and closes a connection.
         is_of_class: whether it is a method of its class, and not of its objects.
         only_computes: whether its text shows that it changes nothing.
         signature: its arguments as a vocabulary writes them; empty if nothing tells them.
@@ -103,6 +104,7 @@ class WatchedCallable:
     owner_doc: str = ""
     is_property: bool = False
     is_set: bool = False
+    is_managed: bool = False
     is_of_class: bool = False
     only_computes: bool = False
     signature: str = ""

@@ -18,23 +18,35 @@ from .words import (
     CHANGES,
     COMMANDS,
     COMPUTERS,
+    CONNECTION,
     GRIPPER,
+    HELPERS,
     HOUSEKEEPING,
     MODES,
     OPPOSITES,
+    OUTPUT,
     PACKERS,
     READERS,
     REPLIES,
+    RUNNING,
+    SETTINGS,
     SETUP,
     SIMULATORS,
     STEPS,
     SUBJECTS,
     TALK,
+    VERBS,
     noun_of,
     words_of,
 )
 
 _REFUSAL = re.compile(r"refus|reach|limit|reject|range|unable|collision|violation", re.IGNORECASE)
+#: how predicates begin
+_COMPARING = frozenset({"is", "has", "can"})
+#: types of results that are made rather than read: the last are what ``with`` runs a block in
+_MADE = frozenset(
+    {"property", "function", "type", "_GeneratorContextManager", "_AsyncGeneratorContextManager"}
+)
 #: types of numbers; of those that are not finite no values are kept
 _NUMBERS = frozenset({"int", "float", "bool"})
 #: what tells where something is that a motion of this kind moves, and what kinds of readings tell that
@@ -100,7 +112,8 @@ class Proposal:
         if self.call.told_by and self.message == self.call.told_by and self.reads_by_name:
             return any(guess.table for _, guess in self.patterns)  # else nothing can be misread
         sure = any(guess.is_sure for guess in [*self.arguments.values(), *self.result.values()])
-        is_written = bool(self.arguments) and not _reads(self.call)
+        is_moved = not VERBS.keys().isdisjoint(words_of(self.call.name))
+        is_written = bool(self.arguments) and is_moved and not _reads(self.call)
         return sure or is_written or bool(self.patterns) or self.is_plain or _is_command(self.call)
 
 
@@ -159,18 +172,24 @@ def _share_units(guesses: dict[str, Guess]) -> None:
 
 
 def _is_housekeeping(call: WatchedCallable) -> bool:
-    """Return whether it queries the state of a reply or a connection."""
-    words = set(words_of(call.name))
-    return bool(words & HOUSEKEEPING) and ("is" in words or bool(REPLIES & set(words_of(call.owner))))
+    """Return whether it is about a connection, or queries the state of a reply."""
+    words, owner = set(words_of(call.name)), {*words_of(call.owner)}
+    is_link = (call.is_managed and words & CONNECTION) or (owner & HELPERS and words & (CONNECTION | RUNNING))
+    if is_link and not (GRIPPER | OUTPUT) & (words | owner):
+        return True
+    return bool(words & HOUSEKEEPING) and ("is" in words or bool(REPLIES & owner))
 
 
 def _computes(call: WatchedCallable) -> bool:
     """Return whether it makes or computes something from its arguments, without the robot."""
     is_constructor = call.is_of_class and call.owner != "" and call.result.type == call.owner
-    is_constructor = is_constructor or call.result.type in ("property", "function", "type")
+    is_constructor = is_constructor or call.result.type in _MADE
     is_called_so = not COMPUTERS.isdisjoint(words_of(call.name)[:1])
     is_pure = bool(call.arguments) and (call.only_computes or is_called_so)
-    return is_constructor or ((is_pure or _fills_buffer(call)) and not _reads(call))
+    # what computes from its arguments alone reads nothing, and nor does what compares with one
+    may_read = _reads(call) and (bool(call.owner) or not call.only_computes)
+    may_read = may_read and not (call.only_computes and _COMPARING & set(words_of(call.name)))
+    return is_constructor or ((is_pure or _fills_buffer(call)) and not may_read)
 
 
 def _fills_buffer(call: WatchedCallable) -> bool:
@@ -246,6 +265,9 @@ def _result(call: WatchedCallable, groups: Sequence[Sequence[Any]]) -> dict[str,
 def _reading(call: WatchedCallable, part: WatchedPart, groups: Sequence[Sequence[Any]]) -> dict[str, Guess]:
     setting = _setting(call, part, call.returns if not part.path else "")
     own = part.name or "_".join(words_of(call.name))
+    subject = noun_of(words_of(call.name))
+    if SETTINGS & {*words_of(call.name)} or (part.name in ("x", "y", "z") and subject in SUBJECTS):
+        return {}  # a velocity has parts that are no positions
     if part.name:  # a field says itself what it is
         setting = NameContext((), setting.owner, part.doc + setting.doc, values=part.values)
     if part.length is not None:
@@ -290,6 +312,8 @@ def _axes(axis: str) -> list[str]:
 
 
 def _find_opposite(proposal: Proposal, found: dict[str, Proposal]) -> None:
+    if proposal.is_reading:
+        return
     owner, name = proposal.target.removesuffix(proposal.call.name), proposal.call.name
     for other in _with_opposites(name):
         candidate = found.get(f"{owner}{other}")

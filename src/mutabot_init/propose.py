@@ -136,17 +136,19 @@ class _Findings:
         self.operations = proposals(self._new([call for call in mine if not call.own]), groups)
         if self.is_empty:  # program and robot share a file
             self.operations = proposals(mine, groups)
-        readings = [
-            proposal
-            for proposal in proposals(self._new(rest), groups)
-            if proposal.is_taken and proposal.is_reading
-        ]
-        self.operations += readings
         if self.is_empty:  # what is called at all can be skipped and repeated
             for operation in self.operations:
-                operation.is_plain = operation.is_taken = (
-                    not operation.call.problem and not operation.call.is_property
-                )
+                operation.is_plain = operation.is_taken = self._may_be_robot(operation.call)
+        else:  # without an operation of the program, what its tests read is no robot
+            known = {_holder(call) for call in mine}
+            self.operations += [
+                proposal
+                for proposal in proposals(self._new(rest), groups)
+                if proposal.is_taken
+                and proposal.is_reading
+                # what the program does not know, and what only computes, is no robot
+                and (_holder(proposal.call) in known or not proposal.call.only_computes)
+            ]
         self.oracle = self._files_that_read()
         self.beside = [
             line
@@ -214,6 +216,12 @@ class _Findings:
             or (_has_limits(call) and not any(vocabulary.knows_arguments(call) for vocabulary in self.known))
         ]
 
+    def _may_be_robot(self, call: WatchedCallable) -> bool:
+        """Return whether a call of which nothing is known may be left out: one of another package."""
+        folders = ((*Path(file).parts[:-1], Path(file).stem) for file in self.program)
+        own = {next(part for part in folder if part != "src") for folder in folders}
+        return not call.problem and not call.is_property and call.package not in own
+
     def _seen_by(self, name: str) -> list[Any]:
         return [calls.beside[name] for calls in self.run.seen if name in calls.beside]
 
@@ -267,6 +275,11 @@ def without_duplicates(calls: Sequence[WatchedCallable]) -> list[WatchedCallable
         if not call.target.startswith(ANY) and "." in call.target.partition(":")[2]
     }
     return [call for call in calls if not (call.target.startswith(ANY) and call.name in owned)]
+
+
+def _holder(call: WatchedCallable) -> str:
+    """Return the class or module that a callable belongs to."""
+    return call.target.removesuffix(call.name)
 
 
 def _nodes_tell(call: WatchedCallable) -> bool:
@@ -361,7 +374,7 @@ def _told(found: _Findings, questions: int) -> list[str]:
     if names:
         how = "as what they stand for, or by name for any object that has it"
         lines.append(f"seen on mocks or fakes, proposed {how}: {', '.join(names)}")
-    if found.layout.guessed and found.makes_no_call and not found.is_empty:
+    if found.layout.guessed and found.makes_no_call and found.calls:
         written = " and ".join([CONFIGURATION, *([VOCABULARY] if found.needs_vocabulary else [])])
         return [
             *lines,

@@ -24,7 +24,7 @@ def _by_word(table: Mapping[str, str]) -> dict[str, str]:
 #: what a motion does, by the verb in the name of a callable
 VERBS = _by_word(
     {
-        "translation": "move movel movep movec servol servop go goto travel drive fly approach translate "
+        "translation": "move movel movep movec servol servop go goto travel drive fly approach translate arc "
         "shift jog slide lift lower raise drop ascend descend curve linear",
         "rotation": "rotate turn spin swivel rot clockwise counterclockwise anticlockwise cw ccw movej "
         "servoj",
@@ -66,15 +66,31 @@ READERS = _words(
 #: how functions are called that put values into a buffer
 PACKERS = _words("set put pack encode insert")
 #: how what only computes is called, whatever its text does on the way
-COMPUTERS = _words("calculate calc compute parse format encode decode serialize deserialize")
+COMPUTERS = _words("calculate calc compute estimate parse format encode decode serialize deserialize")
 #: what is made ready before the robot does anything, and the clock of a simulator
-SETUP = _words("create connect disconnect load make init initialize configure simulation reset safety")
+SETUP = _words(
+    "create connect disconnect load make init initialize configure configuration simulation reset safety "
+    "handler callback listener"
+)
 #: what lets a simulation go on, and what has such a clock
 STEPS = _words("step tick advance stepSimulation step_simulation")
 SIMULATORS = _words("sim simulation simulator world physics scene engine")
-TALK = _words("log print say show info warn warning debug error display event")
+TALK = _words("log comment print say show info warn warning debug error display event")
+#: what a connection, or what runs beside the program, is told and asked
+CONNECTION = _words("open close closed opened")
+RUNNING = _words("start stop")
+#: what runs beside the program, and what it is connected by: beginning or ending them moves nothing
+HELPERS = _words(
+    "notifier listener thread timer logger socket connection transport interface serial port link session"
+)
+#: how long or wide something is, and not how far it goes, unless a verb says so
+SIZES = _words("length width")
+#: words of settings, which no sensor reads
+SETTINGS = _words("max maximum min minimum default initial limit limits")
+#: what else than a participle tells a state
+STATES = _words("in at found held lost stuck contact ready busy")
 #: predicates of replies and of connections, which no sensor reads
-HOUSEKEEPING = _words("error ok success connected alive valid failed exception")
+HOUSEKEEPING = _words("error ok success connected alive valid failed exception setup installed")
 REPLIES = _words("response reply result error exception future pdu packet message status")
 #: what a person moves, and not the robot
 INPUTS = _words("joystick gamepad stick xbox keyboard mouse")

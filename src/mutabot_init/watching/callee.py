@@ -172,6 +172,7 @@ def described(callee: Callee, *, of_tests: bool, own: bool) -> WatchedCallable:
         owner_doc=(owner.__doc__ or "")[:1500] if owner is not None else "",
         is_property=isinstance(callee.raw, property | functools.cached_property),
         is_set=callee.is_set,
+        is_managed=owner is not None and (hasattr(owner, "__exit__") or hasattr(owner, "__aexit__")),
         is_of_class=isinstance(callee.raw, classmethod | staticmethod),
         only_computes=not callee.stands_in and only_computes(function, owner),
         signature=spell_signature(signature) if signature is not None else "",
@@ -227,7 +228,7 @@ def _raised_by(function: Any) -> Iterator[str]:
     """Yield the exceptions that the function's text raises."""
     try:
         tree = ast.parse(textwrap.dedent(inspect.getsource(function)))
-    except (OSError, TypeError, SyntaxError):
+    except (OSError, TypeError, SyntaxError, SystemError):  # as in ``effects``
         return
     names = getattr(function, "__globals__", {})
     for node in ast.walk(tree):

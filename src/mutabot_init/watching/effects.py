@@ -63,7 +63,8 @@ class _Function:
         function = inspect.unwrap(function) if callable(function) else function
         try:
             tree: Any = ast.parse(textwrap.dedent(inspect.getsource(function))).body[0]
-        except (OSError, TypeError, SyntaxError, IndexError):
+        # SystemError: until Python 3.12, threads that parse at the same time may disturb each other
+        except (OSError, TypeError, SyntaxError, SystemError, IndexError):
             tree = None
         names = getattr(function, "__globals__", {})
         return cls(tree if isinstance(tree, ast.FunctionDef) else None, names, owner, callers | {function})

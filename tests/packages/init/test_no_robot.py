@@ -9,10 +9,12 @@ from typing import Any
 import pytest
 
 from mutabot.config.vocabulary import load_vocabulary
+from mutabot.errors import ConfigurationError
 from mutabot_init.guess import NameContext, guess_argument, guess_elements, guess_reading
 from mutabot_init.layout import look
 from mutabot_init.observations import WatchedPart
 from mutabot_init.propose import propose
+from mutabot_init.words import words_of
 
 FILES = {
     "bus.py": """
@@ -90,7 +92,9 @@ def test_a_description_of_an_object_tells_no_commands_apart(project: Path) -> No
     assert sending.command
 
 
-@pytest.mark.parametrize("path", ["sys_test/rig.py", "unit-tests/rig.py", "cell/rig_tests.py"])
+@pytest.mark.parametrize(
+    "path", ["sys_test/rig.py", "unit-tests/rig.py", "cell/rig_tests.py", "cell/tests.py"]
+)
 def test_files_of_tests_are_no_program(tmp_path: Path, path: str) -> None:
     for name in (path, "cell/mission.py"):
         (tmp_path / name).parent.mkdir(exist_ok=True)
@@ -116,3 +120,141 @@ def test_more_angles_than_an_arm_has_joints_are_no_joints(length: int, is_joints
     values: list[Any] = [[0.5] * length]
     part = WatchedPart("", values=values, length=length)
     assert bool(guess_elements(part, "angles", NameContext(values=values), written=False)) is is_joints
+
+
+LIBRARY = {
+    "link.py": """
+        from types import SimpleNamespace
+        LOG = []
+
+        class Session:
+            def __init__(self): self.closed, self.log = True, []
+            def __enter__(self): self.open(); return self
+            def __exit__(self, *_): self.close()
+            def open(self): self.closed = False
+            def close(self): self.closed = True
+            def send(self, frame): self.log.append(frame)
+            @property
+            def pull_up(self): return bool(self.log)
+            @property
+            def is_pressed(self): return len(self.log) > 0
+
+        class Listener:
+            def __init__(self): self.log = []
+            def start(self): self.log.append(1)
+
+        class Tree:
+            def __init__(self): self.rows = []
+            def assign_child(self, location): self.rows.append(location)
+            def recoverable(self): return bool(self.rows)
+            def host(self) -> str: return "one" if self.rows else "two"
+            def max_distance(self): return float(len(self.rows)) + 0.5
+
+        def is_fault(code): return code > 3
+
+        class Meter:
+            def __init__(self, number): self.number = number
+            def is_above(self, number): return self.number > number
+            def set_handler(self, number): self.number = number
+            @property
+            def start_frequency(self):
+                '''In Hz.'''
+                LOG.append(1)
+                return 100.0
+            @property
+            def stop_frequency(self):
+                '''In Hz.'''
+                LOG.append(2)
+                return 200.0
+            def max_velocity(self):
+                LOG.append(3)
+                return SimpleNamespace(x=1.0, y=0.5)
+            def velocity(self):
+                LOG.append(3)
+                return SimpleNamespace(x=1.0, y=0.5)
+
+        class Code:
+            def __init__(self, number): self.number = number
+            @property
+            def is_fault(self): return self.number > 3
+        """,
+    "program.py": """
+        from types import SimpleNamespace
+        import link
+
+        def run(tree):
+            listener = link.Listener()
+            listener.start()
+            session = link.Session()
+            session.open()
+            session.send(b"1")
+            tree.assign_child(SimpleNamespace(x=1, y=2))
+            found = tree.recoverable(), tree.host(), tree.max_distance(), session.pull_up, session.is_pressed
+            session.close()
+            meter = link.Meter(4)
+            meter.set_handler(4)
+            meter.start_frequency, meter.stop_frequency, meter.max_velocity(), meter.velocity()
+            return found, link.is_fault(4), meter.is_above(3)
+        """,
+    "test_it.py": """
+        import link, program
+        def test_it(): assert program.run(link.Tree())[1] and link.Code(4).is_fault
+        """,
+}
+
+
+def written(folder: Path, files: dict[str, str]) -> list[str]:
+    """The operations of the draft for a project."""
+    for name, text in files.items():
+        (folder / name).parent.mkdir(exist_ok=True, parents=True)
+        (folder / name).write_text(dedent(text))
+    propose(folder)
+    return [operation.target for operation in load_vocabulary(["robot.toml"], folder).operations]
+
+
+def test_connections_listeners_settings_and_what_computes_from_arguments_are_none(tmp_path: Path) -> None:
+    frequencies = ["link:Meter.start_frequency", "link:Meter.stop_frequency"]
+    assert written(tmp_path, LIBRARY) == ["link:Session.send", "link:Session.is_pressed", *frequencies]
+    # readings undo nothing
+    assert "opposite" not in (tmp_path / "robot.toml").read_text()
+
+
+@pytest.mark.parametrize(
+    ("name", "is_state"),
+    [
+        ("is_pressed", True), ("line_detected", True), ("in_range", True), ("part_found", True),
+        ("pull_up", False), ("readable", False), ("active_high", False), ("max_reached", False),
+    ],
+)  # fmt: skip
+def test_a_truth_value_is_a_reading_where_its_name_is_a_state(name: str, is_state: bool) -> None:
+    setting = NameContext(words_of(name), annotation="bool", values=[True, False])
+    assert (guess_reading(name, setting).table == {"kind": "flag"}) is is_state
+
+
+def test_what_may_be_a_text_is_no_quantity() -> None:
+    assert guess_reading("voltage", NameContext(values=[1.5])).table == {"kind": "voltage", "unit": "V"}
+    assert guess_reading("voltage", NameContext(values=["MIN", 1.5])).table == {}
+
+
+def test_what_tests_read_of_a_library_without_a_robot_is_none(tmp_path: Path) -> None:
+    files = {
+        "tree/nodes.py": """
+            class Node:
+                def __init__(self): self.children = []
+                def add(self, child): self.children.append(child)
+                @property
+                def is_empty(self): return not self.children
+            """,
+        "tree/__init__.py": "",
+        "tree/build.py": "from tree.nodes import Node\ndef run(node): node.add(Node())\n",
+        "tests/test_tree.py": """
+            from tree.build import run
+            from tree.nodes import Node
+            def test_it():
+                node = Node()
+                run(node)
+                assert not node.is_empty
+            """,
+    }
+    with pytest.raises(ConfigurationError, match="describes nothing"):
+        written(tmp_path, files)
