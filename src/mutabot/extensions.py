@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 #: version of this interface: raised when a package written for an older one would break
 INTERFACE = 2
 GROUP = "mutabot"
-#: what comes with mutabot's own packages: who asks for it is told which one is not installed
+#: what comes with mutabot's own packages: a message says which one is not installed
 _OF_OWN_PACKAGES = {
     "commands": {
         "diff": "mutabot_languages",
@@ -93,8 +93,8 @@ class Extension:
         environments: modules that keep ``runtime.targets.target.Environment``, by any name.
         futures: classes of futures, by the name under which recorded answers keep them: one that is made
             without arguments is not done until somebody completes it.
-        failures: classes of exceptions, by any name, that tell of the tools around a program and never of the
-            program: a run that met one is an error.
+        failures: classes of exceptions, by any name, that come from the tools around a program and never from
+            the program: a run that met one is an error.
         libraries: client libraries, by the name of the top-level package, in which ``*`` stands for any
             text. What a program does through them has names on a middleware: ``mutabot init`` proposes none
             of their callables as operations, but for these functions.
@@ -298,7 +298,7 @@ def use(parts: Mapping[str, Mapping[str, str]]) -> None:
 def libraries() -> dict[str, tuple[str, ...]]:
     """Return the client libraries of middlewares, with their functions that are operations.
 
-    Only the controller can tell.
+    Only the controller knows.
     """
     found: dict[str, tuple[str, ...]] = {}
     for _, extension in _declared():

@@ -231,13 +231,13 @@ class FaultProvider(ABC):
             magnitude=magnitude, unit=unit, has_sizes=rule.has_sizes, provider=self.name,
         )  # fmt: skip
 
-    def texts(self, project: Project, first: int, tell: Callable[[str], None]) -> Sequence[ProgramText]:
+    def texts(self, project: Project, first: int, notify: Callable[[str], None]) -> Sequence[ProgramText]:
         """Return the program text that the baseline's first run of each round has to instrument.
 
         Args:
             project: the project.
             first: the number of the first place in the texts; each has the next one.
-            tell: tells the user something.
+            notify: shows a message to the user.
         """
         return ()
 

@@ -25,7 +25,7 @@ class SharedMemory:
     """A cache of values by keys. New values replace the oldest ones once it is full.
 
     It takes up memory only as it is filled. Processes read and write without waiting for each other; a sum
-    tells of a value that is incomplete.
+    reports a value that is incomplete.
 
     Attributes:
         key_size: bytes of a key.
@@ -74,7 +74,7 @@ class SharedMemory:
         """Store a value.
 
         Args:
-            key: `key_size` bytes that tell apart all that the value depends on, such as a digest.
+            key: `key_size` bytes that identify all that the value depends on, such as a digest.
             value: if it is longer than the whole memory, it is not kept.
         """
         end = _HEAD.size + len(value)

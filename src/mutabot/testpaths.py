@@ -42,7 +42,7 @@ def _named(root: Path) -> list[Any]:
         tables = _sections(root / name, sections)
         value = next((table["testpaths"] for table in tables if "testpaths" in table), None)
         if isinstance(value, str):
-            with suppress(ValueError):  # a quotation that is not closed; plain pytest tells of it
+            with suppress(ValueError):  # a quotation that is not closed; plain pytest reports it
                 return shlex.split(value)
         if tables or (is_taken_empty and (root / name).is_file()):
             return value if isinstance(value, list) else []
@@ -50,7 +50,7 @@ def _named(root: Path) -> list[Any]:
 
 
 def _sections(file: Path, names: tuple[str, ...]) -> list[Any]:
-    """Return the sections that a file has; none if it cannot be read, of which pytest tells."""
+    """Return the sections that a file has; none if it cannot be read, which pytest reports."""
     try:
         if file.suffix != ".toml":
             read = iniconfig.IniConfig(str(file))

@@ -234,7 +234,7 @@ class UnreportedRefusal(CommandOperator):
     """
 
     name = "unreported-refusal"
-    by_chance = True  # what the robot refuses only the run can tell
+    by_chance = True  # what the robot refuses only the run shows
     family = CATALOGUE
     needs = frozenset({Need.IDLE, Need.ERROR, Need.PROGRAM})
     fault = "a refusal is not reported"

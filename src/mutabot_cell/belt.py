@@ -29,7 +29,7 @@ class ConveyorBelt:
     Attributes:
         name: of the fixture whose surface moves.
         direction: unit vector of positive speed, shape (3,), world frame, as it was when the cell was made:
-            the controller is not told of a conveyor that is moved afterwards.
+            the controller does not know of a conveyor that is moved afterwards.
         drive_factor, encoder_factor: what part of the commanded speed the drive gives, and of the travel the
             encoder reads; 1 for a belt without an error.
     """

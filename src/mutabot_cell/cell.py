@@ -164,7 +164,7 @@ class Cell:
         robots: the same of each robot, by its name; "" is that of the only one.
         truth: the exact state, for tests and monitors only.
         simulation: the clock and the physics; `simulation.tick` is the one way time advances.
-        feed: what the cell tells mutabot while a test is recorded; a test may tell more by it.
+        feed: what the cell reports to mutabot while a test is recorded; a test may report more by it.
     """
 
     def __init__(

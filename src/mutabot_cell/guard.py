@@ -27,7 +27,7 @@ class Guard:
 
     Attributes:
         explained: what else than contacts acts on the tool, as a torque on each joint, shape (joints,), Nm.
-        payload: that the controller has been told of, kg.
+        payload: that is set in the controller, kg.
         pressed_ticks: for how many ticks in a row something has pushed the arm too hard.
         planned: of each tick of a stretch, where the joints should be at its end, shape (LONGEST, joints),
             rad; the arm writes it.

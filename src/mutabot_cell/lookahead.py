@@ -24,7 +24,7 @@ class InputPlan:
     Attributes:
         write: writes its servos' inputs, an array of the shape (ticks, physics steps in a tick, servos), and
             gives how many of the ticks these are good for. It changes nothing else.
-        keep: told how many of these ticks have passed.
+        keep: called with the number of these ticks that have passed.
     """
 
     write: Callable[[Array], int]

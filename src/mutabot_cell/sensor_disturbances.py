@@ -11,7 +11,7 @@ from .cell import Cell
 from .disturbances import Changed, robots
 
 _AXES = "xyz"
-#: readings of one look of a sensor: the camera tells x, y and z
+#: readings of one look of a sensor: the camera gives x, y and z
 _PER_LOOK = {"box position": 3}
 
 

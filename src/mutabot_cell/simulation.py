@@ -189,7 +189,7 @@ class Simulation:
     def _sane(self, known: int, ticks: int) -> int:
         """Return after how many of the stretch's first ticks the physics was sane."""
         places, speeds = self._stretch.places[known:ticks], self._stretch.speeds[known:ticks]
-        # two numbers tell of all, in doubt each tick is looked at
+        # two numbers stand for all; in doubt each tick is looked at
         if _are_sane(places.ravel(), speeds.ravel()):
             return ticks
         moments = zip(places, speeds, strict=True)

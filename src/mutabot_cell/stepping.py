@@ -37,7 +37,7 @@ class Stepping:
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         self._model, self._data, self._servos = model, data, data.ctrl
-        # plugins and flexible bodies may have more to them than a state tells
+        # plugins and flexible bodies may have more to them than a state holds
         self._memory = None if model.nplugin or model.nflex else SharedMemory.current()
         self._key: bytes | None = None
         self._start: Array = np.zeros(mujoco.mj_stateSize(model, _STATE))

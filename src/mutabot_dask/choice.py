@@ -32,11 +32,11 @@ class ClusterChoice(ExecutorChoice):
         settings.check()
         return cls(settings)
 
-    def open(self, request: Request, tell: Callable[[str], None]) -> AbstractContextManager[Cluster]:
+    def open(self, request: Request, notify: Callable[[str], None]) -> AbstractContextManager[Cluster]:
         """Open the cluster; see ``ExecutorChoice``. Raises UsageError."""
         from .cluster import Cluster  # noqa: PLC0415  # it needs Dask
 
-        return Cluster.opened(request, self.settings, tell)
+        return Cluster.opened(request, self.settings, notify)
 
     @classmethod
     def preview(cls, request: Request) -> BundlePreview:

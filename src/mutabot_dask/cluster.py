@@ -27,12 +27,12 @@ class Cluster(RemoteExecutor):
     @classmethod
     @contextmanager
     def opened(
-        cls, request: Request, settings: ClusterSettings, tell: Callable[[str], None]
+        cls, request: Request, settings: ClusterSettings, notify: Callable[[str], None]
     ) -> Iterator[Cluster]:
         """Open a cluster for a campaign, with worker processes on this machine as well. Raises UsageError."""
         with (
-            request.on_this_machine(tell) as here,
-            closing(ClusterConnection(request, settings, tell)) as connection,
+            request.on_this_machine(notify) as here,
+            closing(ClusterConnection(request, settings, notify)) as connection,
         ):
             yield cls(connection, here)
 

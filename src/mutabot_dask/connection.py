@@ -37,7 +37,7 @@ class ClusterConnection:
     Args:
         request: the campaign.
         settings: the cluster.
-        tell: is told what the user should know.
+        notify: called with messages for the user.
 
     Attributes:
         link: the connection to the scheduler.
@@ -48,8 +48,8 @@ class ClusterConnection:
     Raises UsageError where no scheduler answers, or a worker does not fit.
     """
 
-    def __init__(self, request: Request, settings: ClusterSettings, tell: Callable[[str], None]) -> None:
-        self.tell = tell
+    def __init__(self, request: Request, settings: ClusterSettings, notify: Callable[[str], None]) -> None:
+        self.notify = notify
         self.done = 0
         self.is_given_up = False
         self._request, self._settings = request, settings
@@ -64,10 +64,10 @@ class ClusterConnection:
                 own = self._local.certificates
                 self._settings = replace(settings, ca=own.ca, cert=own.cert, key=own.key)
             self.link = Link(self._settings, self._address())
-            self.roster = Roster(self.link, Workers.versions(), tell)
+            self.roster = Roster(self.link, Workers.versions(), notify)
             stack.callback(self._dismiss)
             if not is_private(self.link.address):
-                tell(
+                notify(
                     f"the connection to {self.link.address} is not encrypted: whoever can reach its port "
                     "can run programs on the workers; tls:// closes it (docs/cluster.md, TLS)"
                 )
@@ -89,19 +89,19 @@ class ClusterConnection:
         root, shipment = self._request.root, Shipment.of(self._request)
         bundle = self.roster.bundle = Bundle.make(shipment)
         for text in (f"workers are sent {summary(bundle)}", *warnings(shipment, bundle)):
-            self.tell(text)
+            self.notify(text)
         paths = module_folders(root)
         return SharedData(bundle.digest, str(root), bundle.inner, self._request.arguments, decided(), paths)
 
     def give_up(self, why: str) -> None:
         """Leave the remaining tasks to this machine."""
         self.is_given_up = True
-        self.tell(f"{why}: the campaign goes on on this machine, {self._request.jobs} at a time")
+        self.notify(f"{why}: the campaign goes on on this machine, {self._request.jobs} at a time")
 
     def restart_workers(self) -> None:
         """Restart workers on this machine that have ended."""
         if self._local is not None and self._local.restart_lost_workers():
-            self.tell("the workers on this machine were gone, and are started again")
+            self.notify("the workers on this machine were gone, and are started again")
 
     def reconnect(self) -> bool:
         """Reconnect to the lost scheduler, or to another one in its place; return whether that worked."""
@@ -111,7 +111,7 @@ class ClusterConnection:
         if self._local is not None and self._restarts > _STARTS:
             return False
         how = "is started again" if self._local else f"is given {_RETURN:.0f} s to come back"
-        self.tell(f"the scheduler at {self.link.address} is gone; outcomes so far are kept, and it {how}")
+        self.notify(f"the scheduler at {self.link.address} is gone; outcomes so far are kept, and it {how}")
         until = time.monotonic() + _RETURN
         while True:
             try:
@@ -124,7 +124,7 @@ class ClusterConnection:
                 with interruptible():
                     time.sleep(1.0)
         before = self.roster
-        self.roster = Roster(self.link, before.versions, self.tell, before.bundle, before.reported)
+        self.roster = Roster(self.link, before.versions, self.notify, before.bundle, before.reported)
         return True
 
     def _address(self) -> str:
@@ -140,7 +140,7 @@ class ClusterConnection:
         until = time.monotonic() + _INTRODUCTION
         self.roster.update()
         if not self.link.workers:
-            self.tell(f"no worker is at {self.link.address} yet")
+            self.notify(f"no worker is at {self.link.address} yet")
         while not self.roster.is_settled and time.monotonic() < until:
             with interruptible():
                 time.sleep(0.05)

@@ -30,8 +30,8 @@ _PERIOD = 0.2
 _GRACE = 300.0
 #: seconds in which a worker that has come may get ready for what was lost elsewhere
 _COMING = 60.0
-#: seconds without any worker until that is told, and until nobody waits any more
-_TOLD, _PATIENCE = 5.0, 600.0
+#: seconds without any worker until that is reported, and until the campaign goes on without the cluster
+_REPORTED_AFTER, _PATIENCE = 5.0, 600.0
 
 
 @dataclass(slots=True)
@@ -45,7 +45,7 @@ class _RunningTask:
         answer: what became of the task where it was lost last, if that is known.
         unit: what the worker that runs it was given.
         until: when (``time.monotonic``) it must have ended, whatever it does.
-        number: tells it from others.
+        number: distinguishes it from others.
         lost_at: when it was lost last.
     """
 
@@ -75,7 +75,7 @@ class Dispatch:
         self._settled: deque[Answer] = deque()
         self._next = self._taken()
         self._lonely_since: float | None = None
-        self._was_told = False
+        self._was_reported = False
 
     def answers(self) -> Iterator[Answer | Task]:
         """Yield answers, and the tasks that have to run on this machine if the cluster is given up."""
@@ -214,9 +214,9 @@ class Dispatch:
         if now - self._lonely_since > _PATIENCE:
             cluster.give_up(f"no worker has come to {cluster.link.address} for {_PATIENCE / 60:.0f} minutes")
             return False
-        if now - self._lonely_since > _TOLD and not self._was_told:
-            self._was_told = True
-            cluster.tell(f"no worker is at {cluster.link.address}: waiting for one")
+        if now - self._lonely_since > _REPORTED_AFTER and not self._was_reported:
+            self._was_reported = True
+            cluster.notify(f"no worker is at {cluster.link.address}: waiting for one")
         return True
 
     def _rest(self) -> Iterator[Task]:

@@ -1,6 +1,6 @@
 """The controller's connection to a Dask scheduler: its workers, and the requests to them.
 
-Dask only ships functions and bytes here, and tells who is connected: which worker runs what is decided by
+Dask only ships functions and bytes here, and reports who is connected: which worker runs what is decided by
 the controller, and so is what the loss of one means.
 """
 
@@ -43,7 +43,7 @@ _FETCHERS = 4
 #: how a function of ours is called: one that went as itself would end a worker that cannot import it
 _CALL = "exec(code, names := {'given': given}) or names['answer']"
 _RAISED = b"!"
-#: by which the scheduler tells that there is nobody to run something
+#: by which the scheduler reports that no worker can run something
 _LOSSES = {"KilledWorker", "NoValidWorkerError"}
 #: characters of what a worker says that are shown
 _WORDS = 1000
@@ -162,7 +162,7 @@ class Link:
     def _fetched(self, number: int, future: Any) -> None:
         try:
             reply = _reply(number, future.result(timeout=_SILENCE))
-        except Exception as error:  # whatever a worker raises is only told
+        except Exception as error:  # whatever a worker raises is only reported
             reply = WorkerReply(number, None, one_line(guard.describe(error)), _is_foreign(error))
         if self._asked.pop(number, None) is not None:
             self.replies.put(reply)

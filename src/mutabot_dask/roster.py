@@ -15,8 +15,8 @@ from .unit import Introduction, InvalidData
 _FAILURES = 3
 #: units that may fail at a worker one after the other
 _FAILED_UNITS = 2
-#: differences that are named, and workers that are told of
-_SHOWN, _TOLD = 5, 10
+#: differences that are named, and workers that are reported
+_SHOWN, _MOST = 5, 10
 
 
 @dataclass(slots=True)
@@ -53,16 +53,16 @@ class Roster:
     Args:
         link: the connection.
         versions: what this machine runs with.
-        tell: is told of workers that are not used, once for each reason.
+        notify: called with workers that are not used, once for each reason.
 
     Attributes:
         bundle: the project; None as long as it is not needed.
-        reported: what users were told, in order.
+        reported: messages to users, in order.
     """
 
     link: Link
     versions: Mapping[str, str]
-    tell: Callable[[str], None]
+    notify: Callable[[str], None]
     bundle: Bundle | None = None
     reported: dict[str, None] = field(default_factory=dict)
     _workers: dict[str, _ClusterWorker] = field(default_factory=dict)
@@ -145,7 +145,7 @@ class Roster:
         worker = self._workers.get(address)
         if worker is not None and worker.refused is None:
             worker.refused, worker.is_fit = why, False
-            self._tell_once(one_line(f"worker {address} is not used: {why}"))
+            self._notify_once(one_line(f"worker {address} is not used: {why}"))
 
     def record_run(self, address: str) -> None:
         """Note that a worker has run a unit."""
@@ -181,7 +181,7 @@ class Roster:
             worker.failed.discard(unit)
             if worker.is_left_out and len(worker.failed) < _FAILED_UNITS:
                 worker.is_left_out, worker.refused, worker.is_fit = False, None, True
-                self.tell(f"worker {address} is used again: what failed there fails elsewhere, too")
+                self.notify(f"worker {address} is used again: what failed there fails elsewhere, too")
 
     def dismiss(self) -> None:
         """End the campaign on the workers, which need to keep nothing of it."""
@@ -210,10 +210,10 @@ class Roster:
             for index, chunk in enumerate(chunks):
                 self._ask(address, worker_side.receive, self.bundle.digest, index, len(chunks), chunk)
 
-    def _tell_once(self, text: str) -> None:
-        if text in self.reported or len(self.reported) > _TOLD:
+    def _notify_once(self, text: str) -> None:
+        if text in self.reported or len(self.reported) > _MOST:
             return
-        if len(self.reported) == _TOLD:
-            text = "more workers differ, or are not used: they are not told one by one"
+        if len(self.reported) == _MOST:
+            text = "more workers differ, or are not used: they are not listed one by one"
         self.reported[text] = None
-        self.tell(text)
+        self.notify(text)

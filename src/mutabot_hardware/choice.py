@@ -63,8 +63,10 @@ class HardwareChoice(ExecutorChoice):
             request, engine="replay", jobs=1, repeats=False, rounds=self.table.rounds, verify=0
         )  # fmt: skip
 
-    def open(self, request: Request, tell: Callable[[str], None]) -> AbstractContextManager[HardwareExecutor]:
+    def open(
+        self, request: Request, notify: Callable[[str], None]
+    ) -> AbstractContextManager[HardwareExecutor]:
         """Open the hardware's executor; see ``ExecutorChoice``. Raises UsageError."""
         from .executor import HardwareExecutor  # noqa: PLC0415  # it starts processes
 
-        return HardwareExecutor.opened(request, self.table, self.unasked, tell)
+        return HardwareExecutor.opened(request, self.table, self.unasked, notify)

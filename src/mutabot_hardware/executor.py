@@ -83,7 +83,7 @@ class HardwareExecutor:
     table: HardwareTable
     unasked: Unasked
     leave: Permissions
-    tell: Callable[[str], None]
+    notify: Callable[[str], None]
     log: HardwareLog
     rehearsal: Rehearsal
     spread: int = 1
@@ -94,7 +94,7 @@ class HardwareExecutor:
     @classmethod
     @contextmanager
     def opened(
-        cls, request: Request, table: HardwareTable, unasked: Unasked, tell: Callable[[str], None]
+        cls, request: Request, table: HardwareTable, unasked: Unasked, notify: Callable[[str], None]
     ) -> Iterator[Self]:
         """Open an executor whose processes may send commands until it is closed. Raises UsageError."""
         if unasked == "ask" and not sys.stdin.isatty():
@@ -104,7 +104,7 @@ class HardwareExecutor:
         journal = request.root / table.rehearsal if table.rehearsal is not None else None
         log = HardwareLog(home / NAME)
         with Permissions(log) as leave:
-            executor = cls(request, table, unasked, leave, tell, log, Rehearsal.read(journal))
+            executor = cls(request, table, unasked, leave, notify, log, Rehearsal.read(journal))
             executor._check()
             yield executor
 
@@ -210,7 +210,7 @@ class HardwareExecutor:
             beat = Heartbeat(attendant, self.leave, self._heartbeat, self.table.period)
             self.log.write(begin=True, **name)
             try:
-                with beat, self.request.on_this_machine(self.tell) as workers:
+                with beat, self.request.on_this_machine(self.notify) as workers:
                     yield from self._watched(workers, beat, replace(task, may_share=False))
             except BaseException as error:
                 self.leave.stop(f"the campaign was stopped: {type(error).__name__}")

@@ -33,7 +33,7 @@ def init(
     elif (made := _started(context, program or [])) is not None:
         lines = made
     else:
-        lines = propose(context.project, program or [], tell=lambda text: context.tell([text]))
+        lines = propose(context.project, program or [], notify=lambda text: context.notify([text]))
     for line in lines:
         context.print(line)
 

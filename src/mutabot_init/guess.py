@@ -62,7 +62,7 @@ _RANGES = (
 _SCALED = frozenset({"speed", "acceleration", "angle", "force", "torque"})
 #: where a scale without a unit ends: a fraction, or so many bits
 _TOPS = (1.0, 127.0, 255.0, 1023.0, 4095.0)
-#: how docstrings tell that a number counts
+#: words of docstrings for a number that counts
 _COUNT = re.compile(
     r"\b(?:number of(?! (?:milli|micro)?sec)|steps|samples|iterations|points)\b", re.IGNORECASE
 )
@@ -85,7 +85,7 @@ class Guess:
     Attributes:
         table: the quantity; empty if nothing could be guessed.
         questions: what the user must answer before it counts.
-        note: how it was told, where that was by the size of values.
+        note: how it was found, where that was by the size of values.
     """
 
     table: TomlTable = field(default_factory=dict)
@@ -179,8 +179,8 @@ def _by_verb(noun: str, stem: str, setting: NameContext) -> MotionMeaning | None
         return None
     if verb == "rotation":
         return "rotation", "z" if TURNS & set(setting.words) else None, None
-    is_told = axis is not None or (noun in ("length", "generic") and not is_axis)
-    return ("translation", axis, "by" if noun == "length" else None) if is_told else None
+    is_translation = axis is not None or (noun in ("length", "generic") and not is_axis)
+    return ("translation", axis, "by" if noun == "length" else None) if is_translation else None
 
 
 def _by_name(noun: str, stem: str) -> MotionMeaning | None:

@@ -187,9 +187,9 @@ def _guess_program(code: Sequence[Path], tests: Sequence[Path], root: Path) -> l
     commanding = {path for path in code if _calls_methods(path)}
     using = [path for path in code if path in commanding or imported_modules(path)]
     free = [path for path in using if path not in below] or using or list(code)
-    telling = [path for path in free if _is_telling(path.stem)]
+    named = [path for path in free if _names_a_program(path.stem)]
     busy = [path for path in free if used[path]]
-    return telling or busy or [path for path in free if path in commanding] or free
+    return named or busy or [path for path in free if path in commanding] or free
 
 
 def _calls_methods(path: Path) -> bool:
@@ -210,7 +210,7 @@ def _calls_methods(path: Path) -> bool:
     return any(re.split(r"\W", owner)[0] not in modules for owner in names)
 
 
-def _is_telling(stem: str) -> bool:
+def _names_a_program(stem: str) -> bool:
     return any(word.startswith(_PROGRAM_NAMES) for word in re.split(r"[^a-z]+", stem.lower()))
 
 

@@ -1,6 +1,6 @@
 """Proposes entries for names of a middleware, by the types of their messages.
 
-Units and axes are those of REP 103. Where no convention is known of a type, the names of its fields tell.
+Units and axes are those of REP 103. Where no convention is known of a type, the names of its fields decide.
 """
 
 from __future__ import annotations
@@ -107,7 +107,7 @@ def entries(found: Sequence[Use]) -> list[MessageEntry]:
         key, direction, _, _ = _ENTRIES[use.form]
         entry = made.setdefault((key, use.name, direction), MessageEntry(key, use.name, direction))
         if entry.uses and use.of_tests and not entry.of_tests:
-            continue  # what the program reads is told of the program alone
+            continue  # what the program reads is known from the program alone
         entry.uses.append(use)
         entry.type = entry.type or _type(use)
         known = {(part.table, part.path) for part in entry.parts}
@@ -146,7 +146,7 @@ _TWIST = "geometry_msgs/Twist"
 _GRIPPER = ("control_msgs/GripperCommand", "position")
 _RANGE = ("sensor_msgs/Range", "range")
 _JOINTS = {("sensor_msgs/JointState", "position"), ("trajectory_msgs/JointTrajectoryPoint", "positions")}
-#: types whose fields are as conventions say, or unknown; their names alone tell nothing
+#: types whose fields are as conventions say, or unknown; their names alone say nothing
 _STANDARD = re.compile(r"(?:geometry|sensor|nav|diagnostic|actionlib|action|visualization|shape)_msgs/.*")
 _MOST_JOINTS = 12
 _BYTES = ("uint8[", "char[", "byte[", "octet[", "sequence<uint8", "sequence<octet")

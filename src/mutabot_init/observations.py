@@ -23,7 +23,7 @@ class WatchedPart:
         within: the message types that hold it, each with the name of its field, the outermost first.
         values: the first different values; sequences of numbers as lists, moments in seconds.
         length: least number of elements of a sequence; None for anything else.
-        limits: least and greatest value of each element, where the object tells them.
+        limits: least and greatest value of each element, where the object gives them.
         count: in how many values it was there.
     """
 
@@ -79,8 +79,8 @@ class WatchedCallable:
         is_managed: whether its class is a context manager, which opens and closes a connection.
         is_of_class: whether it is a method of its class, and not of its objects.
         only_computes: whether its text shows that it changes nothing.
-        signature: its arguments as a vocabulary writes them; empty if nothing tells them.
-        is_documented: whether only a docstring tells the signature.
+        signature: its arguments as a vocabulary writes them; empty if they are unknown.
+        is_documented: whether only a docstring gives the signature.
         annotations: types of the arguments as written, in their order.
         returns: type of the result as written.
         problem: why its calls cannot be intercepted; empty if they can.
@@ -89,9 +89,9 @@ class WatchedCallable:
         leads_to_names: whether it uses a name of a middleware.
         sites: ``file:line`` to the number of calls there.
         arguments: values by argument.
-        positional: values of arguments whose names nothing tells.
+        positional: values of arguments whose names are unknown.
         result: what it answered.
-        told_by: path of what tells its commands apart; empty if nothing does.
+        discriminator: path of the value that distinguishes its commands; empty if there is none.
         commands: these commands by their texts.
         other_commands: calls that have no such path, as one that writes a list of names has none.
     """
@@ -119,7 +119,7 @@ class WatchedCallable:
     arguments: dict[str, Values] = field(default_factory=dict)
     positional: Values = field(default_factory=Values)
     result: Values = field(default_factory=Values)
-    told_by: str = ""
+    discriminator: str = ""
     commands: dict[str, Command] = field(default_factory=dict)
     other_commands: int = 0
 

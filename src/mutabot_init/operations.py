@@ -1,6 +1,6 @@
 """Turns observed calls into proposed operations, with the commands that a call can express.
 
-A text, or a node, register or name, tells such commands apart: patterns, and what stands beside them.
+A text, or a node, register or name, distinguishes such commands: patterns, and the values beside them.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ _MADE = frozenset(
 )
 #: types of numbers; of those that are not finite no values are kept
 _NUMBERS = frozenset({"int", "float", "bool"})
-#: what tells where something is that a motion of this kind moves, and what kinds of readings tell that
+#: readings of where something is that a motion of this kind moves, and their kinds
 _MOVED = {"translation": "position", "rotation": "orientation"}
 _TOLD = {"position": "position", "orientation": "orientation", "angle": "orientation"}
 
@@ -65,7 +65,7 @@ class Proposal:
         patterns: notations of the text commands.
         current, opposite: targets of other operations, or None.
         reads_by_name: whether the text only says what to read.
-        is_plain: whether it is proposed although nothing tells what it means.
+        is_plain: whether it is proposed although its meaning is unknown.
         is_taken: whether it is proposed.
     """
 
@@ -109,7 +109,7 @@ class Proposal:
         if self.call.is_set:  # without a line that holds, an entry means what is read
             is_sure = any(guess.is_sure for guess in self.arguments.values())
             return is_sure or any(guess.table for _, guess in self.patterns)
-        if self.call.told_by and self.message == self.call.told_by and self.reads_by_name:
+        if self.call.discriminator and self.message == self.call.discriminator and self.reads_by_name:
             return any(guess.table for _, guess in self.patterns)  # else nothing can be misread
         sure = any(guess.is_sure for guess in [*self.arguments.values(), *self.result.values()])
         is_moved = not VERBS.keys().isdisjoint(words_of(self.call.name))
@@ -141,9 +141,9 @@ def _proposal(call: WatchedCallable, groups: Sequence[Sequence[Any]]) -> Proposa
                     proposal.arguments.update(_argument(name, part, call))
     _share_units(proposal.arguments)
     by_name = proposal.message is None or proposal.reads_by_name
-    if by_name and tells_commands(call) and (call.told_by != "self" or not proposal.arguments):
+    if by_name and has_discriminator(call) and (call.discriminator != "self" or not proposal.arguments):
         proposal.arguments = {}
-        proposal.message, proposal.reads_by_name = call.told_by, is_read(call)
+        proposal.message, proposal.reads_by_name = call.discriminator, is_read(call)
         proposal.patterns = commands_of(call, groups)
     elif proposal.message is not None:
         texts = [value for part in call.arguments[proposal.message].parts.values() for value in part.values]
@@ -238,8 +238,8 @@ def _argument(name: str, part: WatchedPart, call: WatchedCallable) -> Iterator[t
         return  # an object of which no part is known
     if not is_whole:
         mode = ("to",) if not {"by", "relative"} & set(setting.words) else ()
-        is_told = noun_of(setting.words) in SUBJECTS  # a velocity has parts that are velocities
-        words = (*setting.words, *(() if is_told else (*words_of(name), *mode)))
+        is_subject = noun_of(setting.words) in SUBJECTS  # a velocity has parts that are velocities
+        words = (*setting.words, *(() if is_subject else (*words_of(name), *mode)))
         doc = f"{part.doc}\n{setting.doc}"
         setting = replace(setting, words=words, doc=doc, annotation="", names=frozenset({"x", "y"}))
     if call.is_set and not CHANGES & {*setting.words, *words_of(own)}:  # what is assigned is where to go
@@ -256,7 +256,7 @@ def _result(call: WatchedCallable, groups: Sequence[Sequence[Any]]) -> dict[str,
     sequences = [part for part in parts if part.length is not None]
     for part in parts:
         if part.path and not part.name and part.length is not None and len(sequences) > 1:
-            continue  # one of several sequences: nothing tells which one it is
+            continue  # one of several sequences: which one is unknown
         if part.values:
             found.update(_reading(call, part, groups))
     return {path: guess for path, guess in found.items() if guess.table}
@@ -409,17 +409,17 @@ def _notation(text: str) -> str:
     return _NUMBER.sub(lambda _: f"{{value{next(fields)}:g}}", literal)
 
 
-def tells_commands(call: WatchedCallable) -> bool:
+def has_discriminator(call: WatchedCallable) -> bool:
     """Return whether there are commands, and their texts look like names.
 
-    What tells an object apart whose method is called is an address (``ns=2;s=Gate``), not a description
+    An object whose method is called is distinguished by an address (``ns=2;s=Gate``), not a description
     (``Bus, channel 0``).
     """
     if not call.commands:
         return False
     are_addresses = call.is_set or all("=" in text or not re.search(r"\s", text) for text in call.commands)
     is_one = len(call.commands) == 1 and "=" not in next(iter(call.commands))
-    return call.told_by != "self" or (are_addresses and not is_one)
+    return call.discriminator != "self" or (are_addresses and not is_one)
 
 
 def is_read(call: WatchedCallable) -> bool:

@@ -25,12 +25,12 @@ from .layout import (
 from .messages import MessageEntry, entries
 from .observations import ANY, WatchedCallable
 from .observe import LIMIT, merged, watch
-from .operations import Proposal, commands_of, proposals, tells_commands
+from .operations import Proposal, commands_of, has_discriminator, proposals
 from .proposers import brought_proposers
 from .text import counted, probe_text, questions_in, value_text, vocabulary_text
 
 CONFIGURATION, VOCABULARY = "mutabot.toml", "robot.toml"
-#: what a test file tells that imports one that is no Python
+#: what is said of a test file that imports one that is no Python
 _MISTAKE = re.compile(r": (?:Syntax|Indentation|Tab)Error: ")
 #: vocabularies of environments that are reached through the wrappers of another one
 _BEHIND = {"metaworld": "gymnasium"}
@@ -117,10 +117,12 @@ class _Findings:
         beside: lines of the configuration that packages beside this one propose.
     """
 
-    def __init__(self, root: Path, given: Sequence[Path], limit: float, tell: Callable[[str], None]) -> None:
+    def __init__(
+        self, root: Path, given: Sequence[Path], limit: float, notify: Callable[[str], None]
+    ) -> None:
         self.layout = look(root, given)
         refuse_mistakes(self.layout)
-        tell("running the tests once, to see what the program calls")
+        notify("running the tests once, to see what the program calls")
         self.run = watch(self.layout, limit)
         mistake = next((problem for problem in self.run.problems if _MISTAKE.search(problem)), None)
         if mistake is not None and not self.run.outcomes:
@@ -212,7 +214,7 @@ class _Findings:
             call
             for call in calls
             if not any(vocabulary.describes(call) for vocabulary in self.known)
-            or _nodes_tell(call)
+            or _has_named_nodes(call)
             or (_has_limits(call) and not any(vocabulary.knows_arguments(call) for vocabulary in self.known))
         ]
 
@@ -244,27 +246,27 @@ def propose(
     program: Sequence[Path] = (),
     *,
     limit: float = LIMIT,
-    tell: Callable[[str], None] = lambda text: None,
+    notify: Callable[[str], None] = lambda text: None,
 ) -> list[str]:
     """Write ``mutabot.toml`` and ``robot.toml``; return lines on what was found and what to do next.
 
     ``program`` are files or folders of the robot program, relative to the working folder or to ``root``;
     without any they are guessed. The tests are run once, for ``limit`` seconds at most, to see what the
-    program calls; ``tell`` is told before. No existing file is touched.
+    program calls; ``notify`` is called before. No existing file is touched.
 
     Raises UsageError if there is a configuration already, no program, or a file that is no Python.
     """
     given = root.resolve()
     root = project_above(given) if given.is_dir() else given
     if root != given:
-        tell(f"project: {root}")
+        notify(f"project: {root}")
     refuse_existing(root)
-    found = _Findings(root, program, limit, tell)
+    found = _Findings(root, program, limit, notify)
     text = found.text()
     if found.needs_vocabulary:
         _write(root / VOCABULARY, text)
     _write(root / CONFIGURATION, _configuration(found))
-    return _told(found, questions_in(text) if found.needs_vocabulary else 0)
+    return _summary(found, questions_in(text) if found.needs_vocabulary else 0)
 
 
 def without_duplicates(calls: Sequence[WatchedCallable]) -> list[WatchedCallable]:
@@ -282,8 +284,8 @@ def _holder(call: WatchedCallable) -> str:
     return call.target.removesuffix(call.name)
 
 
-def _nodes_tell(call: WatchedCallable) -> bool:
-    return tells_commands(call) and any(guess.table for _, guess in commands_of(call))
+def _has_named_nodes(call: WatchedCallable) -> bool:
+    return has_discriminator(call) and any(guess.table for _, guess in commands_of(call))
 
 
 def _has_limits(call: WatchedCallable) -> bool:
@@ -344,7 +346,7 @@ def _configuration(found: _Findings) -> str:
     return "\n".join([*lines, "rounds = 1", "seed = 1", *found.beside]) + "\n"
 
 
-def _told(found: _Findings, questions: int) -> list[str]:
+def _summary(found: _Findings, questions: int) -> list[str]:
     run = found.run
     how = " (guessed; to choose other files: mutabot init FILE…)" if found.layout.guessed else ""
     counts = ", ".join(f"{count} {outcome}" for outcome, count in run.outcomes.items())

@@ -150,9 +150,7 @@ def _subject(proposal: Proposal) -> Iterator[str]:
         yield f"call = {value_text(call.target)}{why}"
     if call.signature and (is_any or call.is_documented):
         yield f"signature = {value_text(call.signature)}"
-    elif (
-        not call.signature and call.arguments and not call.positional.times
-    ):  # of a mock, which tells no order
+    elif not call.signature and call.arguments and not call.positional.times:  # of a mock, which has no order
         yield f'signature = "({", ".join(f"{name}=…" for name in call.arguments)})"'
 
 
@@ -167,10 +165,10 @@ def counted(count: int, noun: str) -> str:
 
 def _arguments(proposal: Proposal) -> Iterator[str]:
     call = proposal.call
-    if proposal.message is not None and proposal.message == call.told_by:
+    if proposal.message is not None and proposal.message == call.discriminator:
         if call.other_commands:
             others = counted(call.other_commands, "more call")
-            yield f"# {others} without one name in {call.told_by}, as of a list: mutated as a whole"
+            yield f"# {others} without one name in {call.discriminator}, as of a list: mutated as a whole"
         return  # each command says what is beside it
     for name, values in call.arguments.items():
         for part in values.parts.values() if name != proposal.message else ():
@@ -178,7 +176,7 @@ def _arguments(proposal: Proposal) -> Iterator[str]:
     if call.positional.times:
         parts = sorted(call.positional.parts.values(), key=lambda part: part.path)
         shown = ", ".join(short(part.values[0]) if part.values else part.type for part in parts)
-        yield f'# signature = "(…)"  # nothing tells its arguments\' names; seen: ({shown})'
+        yield f'# signature = "(…)"  # unknown are its arguments\' names; seen: ({shown})'
 
 
 def _lines(table: str, part: WatchedPart, guesses: dict[str, Guess]) -> Iterator[str]:

@@ -30,7 +30,7 @@ def applied(text: str, edits: Iterable[Edit]) -> str:
 
 
 def digest(content: bytes) -> str:
-    """What tells whether a file is as it was."""
+    """What shows whether a file is as it was."""
     return sha256(content).hexdigest()
 
 
@@ -42,7 +42,7 @@ class ActiveEdits:
         file: path relative to the project's root, with ``/``.
         digest: of the file that they belong to.
         edits: what is different.
-        reached: told when the program carries out what is different there.
+        reached: called when the program carries out what is different there.
     """
 
     file: str

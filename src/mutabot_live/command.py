@@ -1,6 +1,6 @@
 """``mutabot live``: runs a campaign with a live page.
 
-What it tells goes to the terminal and to browsers, which can stop it.
+Its messages go to the terminal and to browsers, which can stop it.
 """
 
 from __future__ import annotations
@@ -34,17 +34,17 @@ class Live:
     Args:
         request: what the campaign is asked.
         port: of this machine; 0 for any that is free.
-        tell: told on the way what the user should know.
+        notify: called with each message for the user.
 
     Raises UsageError if the port cannot be had.
     """
 
-    def __init__(self, request: Request, port: int, tell: Callable[[str], None]) -> None:
-        self._request, self._tell = request, tell
+    def __init__(self, request: Request, port: int, notify: Callable[[str], None]) -> None:
+        self._request, self._notify = request, notify
         self._feed = LiveFeed()
-        self._told = _FeedProgress(self._feed)
-        pages = Pages(request.journal_path, request.root.resolve().name, lambda: self._told.steps)
-        self._told.pages = pages
+        self._progress = _FeedProgress(self._feed)
+        pages = Pages(request.journal_path, request.root.resolve().name, lambda: self._progress.steps)
+        self._progress.pages = pages
         commands = {"stop": _stop}
         self._server = Server(pages, self._feed, commands, port)
 
@@ -54,14 +54,14 @@ class Live:
         return self._server.address
 
     def __enter__(self) -> Self:
-        self._told.tell()
+        self._progress.publish()
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         try:
-            if self._told.ended == "complete":
+            if self._progress.ended == "complete":
                 self._stay()
             else:
                 self._wait(time.monotonic() + _FAREWELL, 0.0)
@@ -73,18 +73,18 @@ class Live:
 
     def run(self, progress: Progress) -> Path:
         """Run the campaign to its end; return the path of its journal."""
-        self._told.show_on(progress)
+        self._progress.show_on(progress)
         try:
-            path = CampaignRun.to_end(self._request, self._told)
+            path = CampaignRun.to_end(self._request, self._progress)
         except BaseException as error:
-            self._told.end("interrupted" if isinstance(error, KeyboardInterrupt) else str(error))
+            self._progress.end("interrupted" if isinstance(error, KeyboardInterrupt) else str(error))
             raise
-        self._told.end("complete")
+        self._progress.end("complete")
         return path
 
     def _stay(self) -> None:
         if self._feed.is_listened_to(0.0):
-            self._tell("the page stays as long as a browser shows it; Ctrl-C ends it")
+            self._notify("the page stays as long as a browser shows it; Ctrl-C ends it")
         self._wait(None, _AGAIN)
 
     def _wait(self, until: float | None, seconds: float) -> None:
@@ -132,7 +132,7 @@ class _FeedProgress:
         self._stage, self._line = text, ""
         self._done, self._total = 0, total
         self.steps += 1
-        self.tell()
+        self.publish()
 
     def advance(self, line: str | None = None) -> None:
         """Count one more step."""
@@ -141,7 +141,7 @@ class _FeedProgress:
         self._line = LiveReport.legible(line or "")
         self._done += 1
         self.steps += 1
-        self.tell()
+        self.publish()
 
     @property
     def left(self) -> float | None:
@@ -159,9 +159,9 @@ class _FeedProgress:
         self.ended = LiveReport.legible(how)
         self.steps += 1
         self.pages.look_at_once()
-        self.tell()
+        self.publish()
 
-    def tell(self) -> None:
+    def publish(self) -> None:
         """Send the current state to the feed."""
         with self._lock:
             left = self.left
@@ -192,6 +192,6 @@ def live(
     json: bool = False,
 ) -> None:
     """Run the campaign and show its report in a browser while it fills, with a button to stop."""
-    with Live(request, port or 0, lambda text: context.tell([f"mutabot: {text}"])) as served:
-        context.tell([f"mutabot: live at {served.address}"])
+    with Live(request, port or 0, lambda text: context.notify([f"mutabot: {text}"])) as served:
+        context.notify([f"mutabot: live at {served.address}"])
         context.run_to_end(request, served.run, min_score, json=json)

@@ -3,7 +3,7 @@
 A page of another site cannot read anything here: it does not know the token, its name in ``Host`` is not
 this machine's (which also stops names that are made to lead here), and its ``Origin`` is not ours.
 
-Browsers are told what happens: the last state, and notes. Nobody has a queue. Who asks gets what is new since
+Browsers get the last state, and notes. There is no queue for each: a browser that asks gets what is new since
 he last asked, and a state only once it is the last: a browser that is slow misses states in between, and
 holds up nobody.
 """

@@ -33,7 +33,7 @@ from .viewers import check, module, viewers_of
 #: tests that are named where several fit
 _LISTED = 5
 _WHAT_TO_DO = (
-    "`mutabot run --fresh` records it if `evidence` is not 0 and a simulator tells where things are, see "
+    "`mutabot run --fresh` records it if `evidence` is not 0 and a simulator reports where things are, see "
     "docs/motion.md"
 )
 
@@ -103,7 +103,7 @@ def missing_in(view: MotionView) -> list[str]:
     elif view.mutant is None:
         found.append(f"nothing that is recorded of {which} differs: only the original is shown")
     if not view.original.recording.tracks:
-        found.append("no simulator tells where things are: only calls are shown, see docs/motion.md")
+        found.append("no simulator reports where things are: only calls are shown, see docs/motion.md")
     return found
 
 
@@ -185,7 +185,7 @@ def motion(
     view = choose(context, results, result, wanted, test)
     if viewers:
         lines = chain(missing_in(view), (viewer(view) for viewer in viewers))
-        context.tell(f"mutabot: {line}" for line in lines)
+        context.notify(f"mutabot: {line}" for line in lines)
     if video is not None:
         request = context.request_again(results, jobs)
         with context.progress() as progress:
@@ -193,7 +193,7 @@ def motion(
         if video.suffix.lower() == ".mp4":
             context.keep_film(results, result.mutant.id, video, view.round, view.test)
             remarks.append("`mutabot report --html` shows it in the mutant's page")
-        context.tell(f"mutabot: {line}" for line in remarks)
+        context.notify(f"mutabot: {line}" for line in remarks)
 
 
 def _film(

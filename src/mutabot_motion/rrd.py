@@ -1,7 +1,7 @@
 """Writes recordings for Rerun's viewer. Needs rerun-sdk: ``mutabot[rerun]``.
 
 Writing sends nothing anywhere. The viewer would send its maker how it is used; the one that is opened here is
-told not to, by Rerun's own command, in a folder of its own: what the user has set for himself stays.
+disabled by Rerun's own command, in a folder of its own: what the user has set for himself stays.
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ from mutabot.api.reports import RecordedPaths
 Coordinates = tuple[float, float, float]
 #: name, centre, size (m) and colour of a box that never moves, see docs/motion.md
 DrawnBlock = tuple[str, Coordinates, Coordinates, tuple[float, ...] | None]
-#: of both sides: red, green and blue that people with any kind of sight tell apart
+#: of both sides: red, green and blue distinguishable with any kind of colour vision
 COLOURS = {"original": (86, 180, 233), "mutant": (230, 159, 0)}
 #: of blocks without a wish
 BLOCK = (150, 156, 164)

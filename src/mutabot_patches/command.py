@@ -54,7 +54,7 @@ def patches(
             f"{file or 'no patch'}  {commit.commit[:10]} {commit.subject}{f': {why}' if why else ''}"
         )
     written = sum(bool(state["file"]) for state in states.values())
-    context.tell([f"{written} of {len(found)} fixes can be taken back: mutabot run --family {FAMILY}"])
+    context.notify([f"{written} of {len(found)} fixes can be taken back: mutabot run --family {FAMILY}"])
 
 
 def _write(root: Path, to: str, commit: Reverted) -> dict[str, str | None]:

@@ -92,7 +92,7 @@ class PatchFaults(FaultProvider):
         """Return the only operator, which is used for every patch."""
         return [ApplyPatch()]
 
-    def texts(self, project: Project, first: int, tell: Callable[[str], None]) -> Sequence[ProgramText]:
+    def texts(self, project: Project, first: int, notify: Callable[[str], None]) -> Sequence[ProgramText]:
         """Return the places where changed functions begin, to find out which tests call them."""
         if not set(project.families) <= _BESIDE:
             return ()

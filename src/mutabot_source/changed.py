@@ -44,7 +44,7 @@ def changing(root: Path, text: ProgramText, original: Original) -> Iterator[Plan
 def _tests_before_readers(original: Original, file: str) -> list[str] | None:
     """Return, of each round in which a file is read, the test before the first that reads it.
 
-    None if it may be read before any test: what is read while tests are collected is told by the first.
+    None if it may be read before any test: what is read while tests are collected counts for the first.
     """
     found: list[str] = []
     for round, tests in enumerate(original.tests):

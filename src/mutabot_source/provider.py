@@ -38,7 +38,7 @@ class SourceFaults(FaultProvider):
 
         return load_all()
 
-    def texts(self, project: Project, first: int, tell: Callable[[str], None]) -> Sequence[ProgramText]:
+    def texts(self, project: Project, first: int, notify: Callable[[str], None]) -> Sequence[ProgramText]:
         """Return the program text with the places that the requested families change."""
         from .texts import find_texts
 
@@ -46,12 +46,12 @@ class SourceFaults(FaultProvider):
         texts: list[ProgramText] = []
         for file in project.program_files():
             if not project.is_python(file):
-                tell(f"{_NO_MUTANTS.format(file)}: {_NO_PYTHON}")
+                notify(f"{_NO_MUTANTS.format(file)}: {_NO_PYTHON}")
                 continue
             try:
                 (text,) = find_texts(project.root, [file], wanted, first=first)
             except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
-                tell(f"{_NO_MUTANTS.format(file)}: it cannot be read: {str(error).splitlines()[0]}")
+                notify(f"{_NO_MUTANTS.format(file)}: it cannot be read: {str(error).splitlines()[0]}")
                 continue
             first += len(text.places)
             texts.append(text)

@@ -24,7 +24,7 @@ class Proof:
     Attributes:
         request: for the rounds of the campaign.
         project: into whose tests checks are put.
-        progress: is told.
+        progress: shows what is going on.
         needs_all: whether all tests are run, as those with checks need what others leave behind.
         failed: checks that failed, with the reason.
         kills: of each check that was run on the survivors: the mutants and rounds that it killed.

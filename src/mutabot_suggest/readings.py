@@ -309,7 +309,7 @@ def _recording_lines(
 
 
 def _holds_expression(check: ReusableCheck) -> str:
-    """Return the expression that tells whether a check of another test holds."""
+    """Return the expression for whether a check of another test holds."""
     statement = check.statement
     if check.near is not None and check.lacks_tolerance:
         statement = rename(statement, check.near.tolerance, f"_mutabot_tolerance_of({check.near.key!r})")
@@ -355,7 +355,7 @@ def reading_of(measured: Measured, place: PlaceInTest, text: str) -> ReadExpress
     return found if step is None else replace(found, tolerance=max(found.tolerance, _STEPS * step))
 
 
-#: decimals of a step at most: finer ones cannot be told from no steps at all
+#: decimals of a step at most: finer ones look like no steps at all
 _DECIMALS = 4
 
 

@@ -27,7 +27,7 @@ NOT_REACHED = "no test reaches it: add a test that does"
 _NEAR, _TURNED = 0.03, 15.0
 #: how the reason begins for a survivor that the suite allows
 _SO_LITTLE = "at most"
-#: how the reason tells that only the way differs
+#: the reason where only the way differs
 _END_ALLOWED = "at the end within your tolerance of"
 #: what a thing moves that a robot holds
 _IN_GRIP = {"slip", "drag"}
@@ -100,9 +100,9 @@ def _of_recordings(survivor: MutantResult, measured: Measured, suite: SuiteCheck
         far, allowed = _amount(max(ends, way), unit), _amount(limit, unit)
         if way <= limit and turned < _TURNED:
             return f"{_SO_LITTLE} {far}, within your tolerance of {allowed}"
-        why = "no bound on the way tells it from the original"
+        why = "no bound on the way distinguishes it from the original"
         if turned >= _TURNED:
-            why = "no bound on the way tells it from the original, which turns as well"
+            why = "no bound on the way distinguishes it from the original, which turns as well"
         elif unit == "m" and way < _NEAR:
             why = "on the way it is too near to the original for a bound"
         return f"{found.story}: {_END_ALLOWED} {allowed}; {why}"
@@ -114,7 +114,7 @@ def _of_recordings(survivor: MutantResult, measured: Measured, suite: SuiteCheck
     limit = _tolerance(measured, suite, _LENGTHS)
     if moved and max(moved) <= limit:
         return f"{found.story}: within your tolerance of {_amount(limit, 'm')}"
-    return f"{found.story}: nothing that its tests can read tells it from the original"
+    return f"{found.story}: nothing that its tests can read distinguishes it from the original"
 
 
 def _tolerance(measured: Measured, suite: SuiteChecks, names: set[str]) -> float:

@@ -41,8 +41,8 @@ def note(
         names: what is at hand in the test, by name.
         readings: expressions of the program text, each with what evaluates it.
         classes: readings of objects, ``module:Class.name``: taken of each object at hand.
-        checks: checks of other tests, by a key each, with what tells whether they hold: it raises
-            AssertionError or returns a false value if they do not.
+        checks: checks of other tests, by a key each, with the function that checks whether they hold: it
+            raises AssertionError or returns a false value if they do not.
     """
     found: dict[str, Any] = dict(_compared.get(_test(), {}))
     for text, read in readings:

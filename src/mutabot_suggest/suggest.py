@@ -64,7 +64,7 @@ def suggest(
     Args:
         request: as the campaign's was.
         chosen: the survivors that are to be killed.
-        progress: is told.
+        progress: shows what is going on.
         seeds: how many fresh seeds are run for the bands, and as many others for the proof.
 
     Raises NothingToSuggestError if there is nothing to kill or to look at, and what a campaign raises.

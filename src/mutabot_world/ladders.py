@@ -23,7 +23,7 @@ class WorldEnd(StrEnum):
 
     NOTICED = "noticed"
     UNSEEN = "suffered unseen"
-    #: all tests pass, and nothing tells how the world ended
+    #: all tests pass, and it is unknown how the world ended
     PASSED = "passed"
     LIVED = "lived with"
     #: it disturbed nothing, or nobody knows
@@ -64,7 +64,7 @@ def judge(outcome: Any, tolerances: Tolerances) -> JudgedOutcome:
     if outcome.indistinguishable or (outcome.distance is not None and outcome.distance <= 1.0):
         return JudgedOutcome(WorldEnd.LIVED, story)
     if outcome.distance is None:
-        return JudgedOutcome(WorldEnd.PASSED, next(iter(outcome.gaps), "no probe tells how the world ended"))
+        return JudgedOutcome(WorldEnd.PASSED, next(iter(outcome.gaps), "no probe shows how the world ended"))
     return JudgedOutcome(WorldEnd.UNSEEN, story or next(iter(outcome.divergence), ""))
 
 

@@ -31,7 +31,7 @@ _LEGEND = (
     (WorldEnd.UNSEEN, "all tests pass, and the world ends otherwise"),
     (WorldEnd.LIVED, "all tests pass, and the world ends as it should"),
     (WorldEnd.NOTICED, "a test fails in every round"),
-    (WorldEnd.PASSED, "all tests pass, and nothing tells how the world ended"),
+    (WorldEnd.PASSED, "all tests pass, and it is unknown how the world ended"),
     (WorldEnd.UNKNOWN, "it disturbed nothing, or was not judged"),
 )
 

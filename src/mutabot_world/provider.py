@@ -51,12 +51,12 @@ class WorldFaults(FaultProvider):
         """Return the only operator, which is used for every parameter."""
         return [Disturb()]
 
-    def texts(self, project: Project, first: int, tell: Callable[[str], None]) -> Sequence[ProgramText]:
+    def texts(self, project: Project, first: int, notify: Callable[[str], None]) -> Sequence[ProgramText]:
         """Return nothing, but say how to see how disturbances end. Raises UsageError for wrong parameters."""
         if parameters_of(project.tables.get("world") or WorldTable(), project.root):
-            tell("`mutabot world` shows which disturbances the tests notice, and which are suffered unseen")
+            notify("`mutabot world` shows which disturbances the tests notice, and which are suffered unseen")
         elif {*project.families} == {FAMILY}:
-            tell(
+            notify(
                 f"the table `world` has no parameter; {NO_PARAMETER}"
             )  # others may have faults of this family
         return ()

@@ -20,7 +20,7 @@ import wrapt
 from .change import NotInWorldError, NumberChange
 from .patching import mark_raised, rebind
 
-#: the arguments of functions, in their order; those of all others are told by name alone
+#: the arguments of functions, in their order; those of all others are known by name alone
 _ORDER = {
     "changeDynamics": ("bodyUniqueId", "linkIndex", "mass", "lateralFriction"),
     "resetBasePositionAndOrientation": ("bodyUniqueId", "posObj", "ornObj"),

@@ -94,7 +94,7 @@ def pytest_collection_finish(session: pytest.Session) -> None:
 def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
     """Limit each test's simulated time, and free memory at the same moments in each run.
 
-    Nodes and futures that are freed are told of: if that came at any moment, equal runs would differ.
+    The release of nodes and futures is observable: if that came at any moment, equal runs would differ.
     """
     SCHEDULER.limit = SCHEDULER.now + LIMIT * SECOND
     SCHEDULER.schedule.begin(f"{SETTINGS.seed_of(item)} {item.nodeid}")

@@ -73,7 +73,7 @@ def test_the_survivor_farthest_from_the_original_is_told() -> None:
         (Outcome("m", 0, Verdict.ERROR, message="NaN"), "error: NaN"),
         (Outcome("m", 0, Verdict.NO_EFFECT), "it changed no value"),
         (Outcome("m", 0, Verdict.SURVIVED, distance=0.4), "every probe ended within its tolerance"),
-        (Outcome("m", 0, Verdict.SURVIVED), "nothing tells how the world ended"),
+        (Outcome("m", 0, Verdict.SURVIVED), "it is unknown how the world ended"),
     ],
 )
 def test_every_other_end_has_its_line(end: Outcome, line: str) -> None:

@@ -41,10 +41,10 @@ class Campaign:
 
     Attributes:
         request: what is asked.
-        baseline: what is known of the original. It grows by what later runs of the original tell, and by
+        baseline: what is known of the original. It grows by what later runs of the original show, and by
             its own methods alone.
         executor: runs tasks.
-        progress: is told what is going on.
+        progress: shows what is going on.
         evidence: what is recorded; None if nothing is.
         proven: ways of running that controls have proven: an engine and ``Control.way``.
         is_short: whether mutants are run without tests that do not reach them, see ``campaign.confirmation``.

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 #: recordings of the original that are held to compare with
 _HELD = 64
-#: problems that are told
+#: problems that are reported
 _SHOWN = 3
 
 

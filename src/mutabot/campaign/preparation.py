@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from mutabot.campaign.reuse.original import OriginalRuns
     from mutabot.execution.task import Executor, Result
 
-#: remarks that are told where there are no mutants
+#: remarks that are reported where there are no mutants
 _REMARKS = 8
 
 

@@ -37,7 +37,7 @@ class ProjectListing:
         folders: every folder likewise.
         tracked: the files and links that are there of those that git tracks, also hidden ones and those of
             submodules. Empty without a repository.
-        unignored: Python files that git neither tracks nor is told to ignore.
+        unignored: Python files that git neither tracks nor ignores.
         named: files that the configuration consists of or names, and those by which pytest is configured.
         programs: folders that the configuration names as program, oracle or tests.
         above: absolute paths of files above the project by which pytest is configured; in a repository those
@@ -55,7 +55,7 @@ class ProjectListing:
 
     @classmethod
     def of(cls, root: Path, configuration: Configuration | None = None) -> Self:
-        """List the files of the project in this folder. Raises UsageError where git cannot tell."""
+        """List the files of the project in this folder. Raises UsageError where git cannot list them."""
         try:
             repository = repository_of(root)
             known = tracked(root) if repository is not None else []

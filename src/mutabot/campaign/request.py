@@ -80,10 +80,10 @@ class ExecutorChoice(ABC):
         return request
 
     @abstractmethod
-    def open(self, request: Request, tell: Callable[[str], None]) -> AbstractContextManager[Executor]:
+    def open(self, request: Request, notify: Callable[[str], None]) -> AbstractContextManager[Executor]:
         """Open the executor. Raises UsageError if it is not available.
 
-        ``tell``: told what the user should know about where and how tasks run.
+        ``notify``: called with messages for the user about where and how tasks run.
         """
 
     @classmethod
@@ -203,16 +203,16 @@ class Request:
         """Return the project's files, for executors that copy some elsewhere. Raises UsageError."""
         return ProjectListing.of(self.root, self.configuration)
 
-    def on_this_machine(self, tell: Callable[[str], None]) -> AbstractContextManager[Workers]:
+    def on_this_machine(self, notify: Callable[[str], None]) -> AbstractContextManager[Workers]:
         """Open an executor on this machine that runs ``jobs`` tasks at a time; leaving it ends all.
 
-        ``tell``: told what the user should know about how tasks run.
+        ``notify``: called with messages for the user about how tasks run.
 
         Raises JournalError where mutabot's folder in the project cannot be written to.
         """
         from mutabot.execution.workers import Workers  # noqa: PLC0415  # a request alone needs none
 
-        return Workers(self.root, self.arguments, self.jobs, tell)
+        return Workers(self.root, self.arguments, self.jobs, notify)
 
     def changed(
         self,
@@ -290,7 +290,7 @@ class Progress(Protocol):
         return
 
     def note(self, text: str) -> None:
-        """Tell the user something."""
+        """Show a message to the user."""
         return
 
 

@@ -159,7 +159,7 @@ def _refutable(campaign: Campaign, journal: Journal) -> Iterator[None]:
 
 
 def _note_lacking(request: Request, original: OriginalRuns, progress: Progress) -> None:
-    """Tell the user which needed files will be missing where tests run, before anything is sent there."""
+    """Note which needed files will be missing where tests run, before anything is sent there."""
     preview = request.executor.preview(request) if request.executor is not None else None
     lacking = preview.lacking(original.opened) if preview is not None else None
     if lacking is not None:
@@ -181,7 +181,7 @@ def _end(journal: Journal, part: Plan, rounds: int) -> str:
 
 
 def _note_others(journal: Journal, progress: Progress) -> None:
-    """Tell the user what other processes did to the journal during the campaign."""
+    """Note what other processes did to the journal during the campaign."""
     if journal.lost:
         times = f", {len(journal.lost)} times" if len(journal.lost) > 1 else ""
         progress.note(

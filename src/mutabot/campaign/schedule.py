@@ -158,7 +158,7 @@ def in_order(
 ) -> list[MutantRun]:
     """Return all runs that are not done, the most informative first, one round after the other.
 
-    Among those that are expected to tell alike much, the order depends on the seed and the mutants' ids
+    Among those that are expected to be as informative, the order depends on the seed and the mutants' ids
     alone. ``before``: what outcomes were that do not hold any more.
     """
     firsts: dict[tuple[str, object], str] = {}

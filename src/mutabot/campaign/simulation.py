@@ -141,7 +141,7 @@ def try_original(request: Request, take: Callable[[Request], tuple[Campaign, lis
 def chosen(real: Campaign, results: list[Result], tried: Tried) -> tuple[Campaign, list[Result]]:
     """Return the campaign over the simulation if the original ends there as over the real middleware.
 
-    What is chosen is told, and stands in the journal.
+    What is chosen is reported, and stands in the journal.
     """
     there, simulation = tried.campaign, tried.simulation
     why = tried.why if there is None else _difference(real, results, tried)

@@ -26,7 +26,7 @@ _WILD = re.compile(r"[*?]")
 def refuse_typos(request: Request) -> None:
     """Raise SelectionError for words that cannot match any mutant of this project.
 
-    Where mutants may stand elsewhere than in the program, only the plan can tell.
+    Where mutants may stand elsewhere than in the program, only the plan decides.
     """
     if not all(provider.in_program for provider in selected_providers(request.project)):
         return

@@ -76,7 +76,7 @@ class Run:
         problem: why nothing is known of the mutant, or None: it was not there, or reports cannot be trusted.
         left_out: tests that it was to leave out, unless the original has run them for it.
         gone: tests that are not collected since it changed something.
-        has_acted: whether it changed anything, as far as the session tells at its end.
+        has_acted: whether it changed anything, as far as the session reports at its end.
     """
 
     mutant: Mutant
@@ -260,7 +260,7 @@ def _executed(run: Run, decided: TestEnd | None, baseline: Baseline, *, is_of_su
         return None
     reaching = set(baseline.tests_reaching(run.round, run.mutant))
     asked = [n for n, end in enumerate(run.ends) if end is decided or end.hits or end.test in reaching]
-    # what these tell is what none before them has told
+    # these report only what none before them has reported
     whole = max((n for n in asked if run.ends[n].hits or run.ends[n].outcome == "failed"), default=-1)
     ends = [*run.ends[: whole + 1], *(run.ends[n] for n in asked if n > whole)]
     original = baseline.executed[run.round].by(run.ends[n].test for n in asked)

@@ -51,7 +51,7 @@ def accept(context: CommandContext, mutant: _Mutants = None, why: _Why = "", jso
         entries = [(result.mutant.id, line_at(lines, result.mutant)) for result in chosen]
         add_acceptances(root, entries, why.strip(), datetime.date.today())
     if is_written(path):
-        context.tell(
+        context.notify(
             [f"{FILE} is written; a campaign is running: `mutabot accept` applies it when that has ended"]
         )
         return
@@ -64,7 +64,7 @@ def accept(context: CommandContext, mutant: _Mutants = None, why: _Why = "", jso
     for section in shown:
         print_section(make_console(), section)
     if chosen:
-        context.tell([f"\naccepted {numbered([result.mutant.number for result in chosen])}; commit {FILE}"])
+        context.notify([f"\naccepted {numbered([result.mutant.number for result in chosen])}; commit {FILE}"])
 
 
 def _named(results: Results, names: Sequence[str]) -> Iterator[MutantResult]:

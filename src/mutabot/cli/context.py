@@ -124,7 +124,7 @@ class CommandContext:
         """Print a heading with lines below it, of many the first ``at_most``."""
         print_section(make_console(), Section(title, lines=lines), at_most)
 
-    def tell(self, lines: Iterable[str]) -> None:
+    def notify(self, lines: Iterable[str]) -> None:
         """Print lines on standard error, so that they do not mix with results."""
         for line in lines:
             typer.echo(line, err=True)
@@ -196,7 +196,7 @@ class CommandContext:
 
     def exit_as(self, decision: Decision) -> NoReturn:
         """Print the reason of a decision, and exit with its code. Raises typer.Exit."""
-        self.tell(decision.lines)
+        self.notify(decision.lines)
         raise typer.Exit(decision.exit_code)
 
 

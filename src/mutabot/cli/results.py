@@ -98,7 +98,7 @@ def report(
     if html is not None:
         _write_pages(context, html, campaign, stored.meta.get("root"))
     if not campaign.is_complete:
-        context.tell([f"mutabot: the campaign is not complete ({campaign.state}): {campaign.known}"])
+        context.notify([f"mutabot: the campaign is not complete ({campaign.state}): {campaign.known}"])
 
 
 def _wanted(names: Sequence[str], files: Sequence[Path]) -> Iterator[tuple[Format, Path]]:
@@ -136,6 +136,6 @@ def _write_pages(context: CommandContext, folder: Path, campaign: Results, root:
         films = kept_films(context.journal, campaign.meta)
         contents = Contents(campaign, name, evidence, Cleaner(root), suggestions, films)
         written = write_folder(folder, contents)
-    context.tell([f"mutabot: open {written.page} in a browser ({written.size / 1e6:.1f} MB in its folder)"])
+    context.notify([f"mutabot: open {written.page} in a browser ({written.size / 1e6:.1f} MB in its folder)"])
     if written.without:
-        context.tell([f"mutabot: {written.without} recordings had no room; their pages say so"])
+        context.notify([f"mutabot: {written.without} recordings had no room; their pages say so"])

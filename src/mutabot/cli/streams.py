@@ -17,7 +17,7 @@ class _Stream:
 
     Args:
         stream: the stream.
-        on_failure: is told of it; what it raises ends the command.
+        on_failure: called with it; what it raises ends the command.
 
     Attributes:
         fault: why something could not be written; None if all could.

@@ -245,7 +245,7 @@ def load_configuration(
     ``families``: those that are asked for instead of those that it names. ``overrides``: keys that the
     command line sets, as ``KEY=VALUE``.
 
-    Raises ConfigurationError or UnknownNameError: the first mistake, with a message that tells about all.
+    Raises ConfigurationError or UnknownNameError: the first mistake, with a message that names all.
     """
     place = _find(folder)
     found = _checked(place, folder, families, ())

@@ -164,8 +164,8 @@ _LAST = re.compile(r"""(?:\]|\"""|''')[ \t]*(?:\#.*)?$""")
 def key_lines(text: str) -> dict[KeyPath, int]:
     """Return the 1-based line of every key, table header and list item of a valid TOML text.
 
-    The standard library's reader does not tell, so it reads statement by statement. An item of a list has a
-    line of its own if each item before it, and it itself, stands on one line.
+    The standard library's reader does not say where, so it reads statement by statement. An item of a list
+    has a line of its own if each item before it, and it itself, stands on one line.
     """
     lines: dict[KeyPath, int] = {}
     tables: dict[KeyPath, int] = {}  # arrays of tables: how many elements so far

@@ -59,7 +59,7 @@ _LENGTHS = {"too_short": ("at least", "min_length"), "too_long": ("at most", "ma
 class DocumentPlace:
     """A place in a document under inspection; ``place / "key"`` is one inside it.
 
-    All places of a document collect their mistakes in one list, so that all can be told at once.
+    All places of a document collect their mistakes in one list, so that all can be reported at once.
     """
 
     document: Document

@@ -33,7 +33,7 @@ class _Source:
 class Feed:
     """Records tool and objects at a fixed rate of simulated time while a test is recorded.
 
-    Outside a campaign ``tick`` does nothing, and costs next to nothing. What is told is only read: it must
+    Outside a campaign ``tick`` does nothing, and costs next to nothing. What is passed is only read: it must
     change nothing in the simulation and draw no random number.
 
     Args:

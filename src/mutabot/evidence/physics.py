@@ -22,7 +22,7 @@ from mutabot.evidence.recording import TrackKind
 #: what is measured
 RELEASE, IMPACT, SLIP, DRAG = "release height", "impact speed", "slip", "drag"
 COLLISION, SPEED, DURATION, MARGIN = "collision speed", "greatest speed", "duration", "least margin"
-#: how the names of values end that tell how near something is to a limit
+#: endings of the names of values for the distance to a limit
 _MARGIN = "margin"
 #: m: a thing that is let go lower than this is set down, and hits nothing
 SET_DOWN = 0.005

@@ -40,7 +40,7 @@ class PictureWriter(Protocol):
 _MOST_MOMENTS = 4000
 _MOST_EVENTS = 2000
 _NAN = float("nan")
-#: s: tells times of the wall clock from simulated ones
+#: s: distinguishes times of the wall clock from simulated ones
 _WALL = 1.0
 
 
@@ -49,9 +49,9 @@ class WorldRecorder:
 
     Attributes:
         recording: it, so far.
-        end: the last moment that a feed told of, s.
+        end: the last moment that a feed reported, s.
         coarseness: how many times its interval a feed is to wait between two moments.
-        clock: what tells the simulated time, s; None as long as no feed or simulator has told any.
+        clock: returns the simulated time, s; None as long as no feed or simulator has reported any.
         is_simulated: whether its times are simulated.
         at_end: what is to be done once more when the test is over, while its world is still there.
         film: takes pictures down; None if the test is not filmed.
@@ -75,8 +75,8 @@ class WorldRecorder:
     def now(self) -> float:
         """The current time, to be converted by ``seconds`` when the test is over.
 
-        Nobody knows before whether anything will tell the simulated time. Until something does, it is that of
-        the wall clock, below zero so that it is known for what it is.
+        It is unknown before whether anything will report the simulated time. Until something does, it is that
+        of the wall clock, below zero so that it is known for what it is.
         """
         time = self._clock_time()
         return self.at_wall(monotonic()) if time is None else time

@@ -37,7 +37,7 @@ from mutabot.model.world_difference import Apart, Diverged, Measurement
 _MOST_PARTS, _MOST_CONTACTS, _MOST = 3, 2, 8
 #: deg by which a thing must be turned on its way
 _LEAST_TURN = 5.0
-#: things of which it is told how far they left their paths
+#: things of which stories say how far they left their paths
 _MOST_PATHS = 2
 #: s by which a test must end earlier, and by which a thing must be let go at another time
 _EARLY, _OTHER_TIME = 1.0, 0.5
@@ -207,8 +207,10 @@ class _ComparedRuns:
             return self._not_landed(thing, usual, contacts)
         impact = self._impact(thing)
         if before is None:
-            is_told = usual.holds(thing) and after.value > SET_DOWN
-            return f"{self._verb(thing, after)} {_height(after)} (original: never){impact}" if is_told else ""
+            is_dropped = usual.holds(thing) and after.value > SET_DOWN
+            return (
+                f"{self._verb(thing, after)} {_height(after)} (original: never){impact}" if is_dropped else ""
+            )
         is_other = before.other != after.other
         if not is_other and not any(
             (measurement.name, measurement.thing) == (RELEASE, thing) for measurement in measured

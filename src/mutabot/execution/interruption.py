@@ -75,7 +75,7 @@ def interrupt(number: int = signal.SIGINT, frame: FrameType | None = None) -> No
 def interruptions_kept() -> Iterator[None]:
     """Delay Ctrl-C inside the context until the campaign waits, or until the end of the block.
 
-    Does nothing in other threads than the main one, which Python tells nothing of signals, and where
+    Does nothing in other threads than the main one, in which Python handles no signals, and where
     somebody else handles them already. Where Ctrl-C is ignored it stays so.
     """
     global _guard  # noqa: PLW0603  # a process has one handler of each signal

@@ -36,7 +36,7 @@ class Observed(Generic[T]):
         seen: what the observer of each process returned, that of the tests' process first.
         outcomes: number of tests by outcome: ``passed``, ``failed``, ``skipped``.
         problems: the first failures, each with its test, in pytest's words.
-        trouble: why less is known than a whole run tells; empty if nothing is missing.
+        trouble: why less is known than after a whole run; empty if nothing is missing.
         tests: pytest's arguments that named the tests.
     """
 

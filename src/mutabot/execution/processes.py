@@ -1,7 +1,7 @@
 """Start processes that run jobs: fresh ones, and copies of a fork server that has collected the tests.
 
-A process has a folder, a command line, an environment and an end, and it tells events. As many open files as
-a campaign needs may be open at a time, or it is refused before anything runs.
+A process has a folder, a command line, an environment and an end, and it reports events. As many open files
+as a campaign needs may be open at a time, or it is refused before anything runs.
 """
 
 from __future__ import annotations
@@ -200,7 +200,7 @@ def kill_group(pid: int) -> None:
 class EventStream:
     """The events of a test process, and those of its forks once they have ended.
 
-    What a fork has told counts as a whole or not at all: where something is missing, or is none of ours, its
+    The report of a fork counts as a whole or not at all: where something is missing, or is none of ours, its
     mutants have not been run.
 
     Args:
@@ -251,7 +251,7 @@ class EventStream:
         reader = EventReader(str(file), self._home.key)
         events = reader.read(is_last=True)
         below = Children(str(folder), self._home.key)
-        if ended.died is not None and (folder / FOLDER).is_dir():  # else it has told of them itself
+        if ended.died is not None and (folder / FOLDER).is_dir():  # else it has reported them itself
             below.read()
         if reader.damage is not None or below.doubt is not None:
             return []
@@ -309,7 +309,7 @@ class ForkServerProcess:
         folder: where its home is made.
 
     Attributes:
-        events: what it tells.
+        events: what it reports.
         process: the server.
         startup: seconds it took to start.
     """
@@ -398,7 +398,7 @@ class ForkServerProcess:
         self._jobs.close()
         self._listen_until(lambda: False, _ANSWER if self.serving is not None else 0.0)
         self.process.end()
-        left = self.process.left or []  # it is told in the home
+        left = self.process.left or []  # it is reported in the home
         self.process.release()
         self.events.close()
         self._home.remove()

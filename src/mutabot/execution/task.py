@@ -131,7 +131,7 @@ class Result:
         called_at_import: the calls of operations before any test.
         seen: what a recording saw of the program text.
         not_instrumented: files whose mutants cannot run, with the reason.
-        known_later: operations by sites at which only some tests tell that they stand there.
+        known_later: operations by sites at which only some tests show that they stand there.
         asked: which calls of the program were asked about, by each of its processes.
         in_mutated_call: whether it was in the midst of a mutated call when it was last heard of.
         held: tokens that it and its forks held when it was last heard of.
@@ -236,7 +236,7 @@ class Result:
 def how_ended(code: int) -> str:
     """Return how a process ended without a report, by its exit code."""
     if code == UNWRITTEN:
-        return "the tests' process could not write what it had to tell: a full disk, or RLIMIT_FSIZE?"
+        return "the tests' process could not write its events: a full disk, or RLIMIT_FSIZE?"
     return f"killed by signal {-code}" if code < 0 else f"the process ended with exit code {code}"
 
 
@@ -268,7 +268,7 @@ class Executor(Protocol):
     def rest(self, is_awaited: Callable[[], bool], seconds: float) -> Iterator[Result | tuple[Task, Event]]:
         """After an interruption of ``events``, yield what fork parents report while they end their forks.
 
-        It ends once they have told of all forks and nothing ``is_awaited`` any more, or when that takes much
+        It ends once they have reported all forks and nothing ``is_awaited`` any more, or when that takes much
         longer than these ``seconds``. There is nothing where forks cannot be heard of before their parents
         end.
         """

@@ -120,7 +120,8 @@ class Workers:
         root: the project's root; workers start there.
         arguments: pytest arguments of the project.
         jobs: how many run side by side.
-        tell: told once why tasks do not begin as copies of a fork server, and what tests leave running.
+        notify: called once with why tasks do not begin as copies of a fork server, and with what tests leave
+            running.
 
     Use as a context manager: leaving it ends whatever still runs and removes temporary files.
 
@@ -138,7 +139,7 @@ class Workers:
         root: Path,
         arguments: Iterable[str],
         jobs: int,
-        tell: Callable[[str], None] = lambda text: None,
+        notify: Callable[[str], None] = lambda text: None,
     ) -> None:
         self._root = root
         self._arguments = tuple(arguments)
@@ -146,7 +147,7 @@ class Workers:
         self._selector = selectors.DefaultSelector()
         self._workers: list[_Worker] = []
         self._servers: list[ForkServerProcess] = []
-        self._tell, self._has_told_left = tell, False
+        self._notify, self._has_reported_left = notify, False
         self._may_share = True
         self.pool = TokenPool(self._jobs)
         self.look: Callable[[], None] | None = None
@@ -169,7 +170,7 @@ class Workers:
         self.pool.close()
         remove_folder(self._folder)
         if self._folder.exists():
-            self._tell(f"{self._folder} cannot be removed, due to files of a test; no outcome is affected")
+            self._notify(f"{self._folder} cannot be removed, due to files of a test; no outcome is affected")
 
     @staticmethod
     def versions() -> dict[str, str]:
@@ -203,14 +204,14 @@ class Workers:
         for worker in self._workers:
             worker.home.stop_forks()
         until = time.monotonic() + _SLOWER * seconds + _PATIENCE
-        has_told = False
+        has_notified = False
         while time.monotonic() < until and self._workers:
             if not is_awaited() and not any(worker.home.has_forks for worker in self._workers):
                 return
-            if not has_told:
-                has_told = True
+            if not has_notified:
+                has_notified = True
                 about = f", in about {seconds:.0f} s" if seconds >= 1.0 else ""
-                self._tell(
+                self._notify(
                     "interrupted: what forks have found counts once the original has passed their tests"
                     f"{about}; Ctrl-C again ends at once"
                 )
@@ -222,10 +223,10 @@ class Workers:
 
     def _note(self, left: list[str] | None) -> None:
         """Report, once, what a process left running."""
-        if left and not self._has_told_left:
-            self._has_told_left = True
+        if left and not self._has_reported_left:
+            self._has_reported_left = True
             more = f" and {len(left) - 1} more" if len(left) > 1 else ""
-            self._tell(f"tests leave processes running, which are ended with them: {left[0]}{more}")
+            self._notify(f"tests leave processes running, which are ended with them: {left[0]}{more}")
 
     def _has_place(self, task: Task) -> bool:
         if self._workers and (task.alone or any(worker.task.alone for worker in self._workers)):
@@ -283,7 +284,7 @@ class Workers:
         if reason is None:
             return server
         self._may_share = False
-        self._tell(f"each run starts anew, imports and collection included: {reason}")
+        self._notify(f"each run starts anew, imports and collection included: {reason}")
         self._end_server(server)
         return None
 
@@ -299,7 +300,9 @@ class Workers:
         """Wait at most ``most`` seconds for events; ``next_task`` has no place yet."""
         timeout = min((seconds for seconds in (self._patience(), most) if seconds is not None), default=None)
         is_for_token = next_task is not None and next_task.is_fork_parent and len(self._workers) < self._jobs
-        is_for_token = is_for_token and not self._spared  # whom tokens are spared for tells when it ends
+        is_for_token = (
+            is_for_token and not self._spared
+        )  # the task for which tokens are spared says when it ends
         if is_for_token:
             self._selector.register(self.pool.reading, selectors.EVENT_READ, None)
         if self.look is not None:
@@ -328,7 +331,7 @@ class Workers:
     def _patience(self) -> float | None:
         """Return the seconds until the next check that no event triggers, at most; None if there is none."""
         if any(worker.has_ended for worker in self._workers):
-            return 0.0  # a fork server may have told so while it was asked for something else
+            return 0.0  # a fork server may have said so while it was asked for something else
         until = min((worker.deadline.until for worker in self._workers), default=None)
         return None if until is None else min(max(0.0, until - time.monotonic()), LONGEST)
 

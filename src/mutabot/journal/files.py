@@ -149,7 +149,7 @@ def at_work(home: Path) -> Iterator[None]:
 def refuse_tracked(journal: Path) -> None:
     """Raise JournalError if git tracks a journal, a file beside it that belongs to it, or a link on the way.
 
-    Also if git cannot tell: then nobody knows where the journal comes from.
+    Also if git cannot answer: then it is unknown where the journal comes from.
     """
     here = Path(os.path.abspath(journal))  # noqa: PTH100  # links stay links
     links = (folder for folder in (here, *here.parents) if folder.is_symlink())

@@ -187,7 +187,7 @@ class Journal(JournalReader):
     def finish(self, reason: str) -> None:
         """Note that the campaign has ended: ``complete``, ``interrupted`` or why it stopped.
 
-        If it has not even begun, the journal stays that of the one before, and tells about the attempt.
+        If it has not even begun, the journal stays that of the one before, and mentions the attempt.
         """
         with self._transaction(whole=True):
             pass  # what is not as it was written is written again

@@ -161,7 +161,7 @@ class OriginalRun:
     Attributes:
         task: what was run, as a digest.
         exit_code, wall: as in ``Result``.
-        events: what its process told: the lines of a file of events, compressed.
+        events: what its process reported: the lines of a file of events, compressed.
     """
 
     task: str
@@ -463,7 +463,7 @@ class Repeats:
     survivors: Repeated = Repeated()
 
 
-#: the types of facts that are told as they are
+#: the types of facts that are shown as they are
 PLAIN: Mapping[str, Any] = {
     "mutabot": str,
     "python": str,

@@ -1,6 +1,6 @@
 """The contract of a language's front end.
 
-A site is a call at its exact place. A front end tells where the running call stands, and, without running
+A site is a call at its exact place. A front end finds where the running call stands, and, without running
 anything, what is written there.
 
 Python's is here; a package brings others under ``languages`` of its ``Extension``. An interpreter in Python

@@ -61,7 +61,7 @@ def highlighting_of(file: str) -> tuple[str, str]:
 
 
 def unit_parser(file: str) -> Callable[[bytes], Mapping[str, TextUnit]] | None:
-    """Return what tells the units of a file, as ``FrontEnd`` says; None for Python, and if nothing does."""
+    """Return the function that finds the units of a file, see ``FrontEnd``; None for Python or if none."""
     return getattr(_by_language().get(language_of(file) or ""), "units", None)
 
 

@@ -1,9 +1,9 @@
 """How a mutant becomes active in the processes of the tests, and where these first differ from the original.
 
 A fork parent runs the original and forks a process for each mutant where that first differs: at a *key*.
-Keys are tuples of plain values, since other machines are told them as well. Who reaches one, tells it: a call
-of an operation, a place of the program text, a moment of simulated time, the start of a test. To everybody
-else they are opaque.
+Keys are tuples of plain values, since they are sent to other machines as well. The code that reaches a key
+reports it: a call of an operation, a place of the program text, a moment of simulated time, the start of a
+test. To all other code they are opaque.
 """
 
 from __future__ import annotations

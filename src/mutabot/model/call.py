@@ -44,8 +44,8 @@ def _unavailable(why: str) -> Callable[..., Any]:
     return raises
 
 
-_NO_READING = _unavailable("no reading tells where the robot is now")
-_NO_CLOCK = _unavailable("nothing tells the time of the simulation")
+_NO_READING = _unavailable("no reading gives the robot's present position")
+_NO_CLOCK = _unavailable("the time of the simulation is unknown")
 _NO_WAIT = _unavailable("nothing lets the program's time pass")
 _NO_PREVIOUS = _unavailable("the arguments of the call before this one are not known")
 NO_DEFER = _unavailable("nothing here can make a call later")
@@ -122,8 +122,8 @@ class Call:
         values: value of each written quantity by name, in the quantity's unit. A quantity that is absent
             in this call (an omitted part, None) is missing here.
         reversed: whether the opposite of the operation or pattern is to be done.
-        current: tells where a written quantity is now, in that quantity's unit; raises LookupError when
-            the vocabulary names no such reading, and Unchanged if that has told nothing yet.
+        current: returns where a written quantity is now, in that quantity's unit; raises LookupError when
+            the vocabulary names no such reading, and Unchanged if that has returned nothing yet.
         idle: what the operation answers while the robot does nothing; None unless the operator has declared
             that it asks (``Need.IDLE``).
         payload: what the adapter needs to perform the call; operators never look inside.

@@ -1,6 +1,7 @@
 """Read values of the user's program as plain data, without running any of its code.
 
-What is looked at is told by its class alone: the plain ones of Python and of its standard library, arrays and
+What is looked at is recognized by its class alone: the plain ones of Python and of its standard library,
+    arrays and
 numbers of numpy, and subclasses of these by what they are made of. What else an object may be, such as a
 quantity with a unit, a proxy or a mock, is not looked into: to ask it may do anything.
 """

@@ -1,6 +1,6 @@
 """Deviation: how far a mutant is from the original, in units of the original's own spread.
 
-The one number by which survivors are ranked, and the test is chosen that reports tell about. The spread of a
+The one number by which survivors are ranked, and the test is chosen that reports describe. The spread of a
 quantity is what it differs by in runs of the original with different seeds; where that is less than the
 tolerance of its unit, the tolerance takes its place. Hence one unit means: no more than the original does by
 itself.

@@ -140,13 +140,13 @@ VARIABLE = "MUTABOT_PROCESSES"
 #: file in it with what wakes a process: see ``runtime.processes.startup.sitecustomize``
 WAKE = "wake"
 #: file in it with the number of the running test in eight bytes, 0 before any; the next eight are not 0
-#: once a process below the tests could not write what it had to tell
+#: once a process below the tests could not write its events
 NOW = "now"
 #: file in it with the tests' node ids, one a line as JSON, in the order of their numbers from 1
 TESTS = "tests"
 #: how the files of events end, one for each process, and the name of the test process's
 SUFFIX, SESSION = ".jsonl", "session"
-#: exit code of a test process, or of a fork of it, that could not write what it had to tell
+#: exit code of a test process, or of a fork of it, that could not write its events
 UNWRITTEN = 117
 
 

@@ -84,7 +84,7 @@ class TestEnd(Event):
         recording: what the world did, as ``evidence.recording.to_text`` writes it; None if that was not asked
             for.
         executed: units of the project's files that were executed until the test ended, but for those that
-            tests before it have told of; of a mutant that this test neither reached nor failed, those of the
+            tests before it have reported; of a mutant that this test neither reached nor failed, those of the
             test alone. None if that is not known.
     """
 
@@ -201,7 +201,7 @@ class Acted(Event):
 
     Attributes:
         test: the test; empty for a mutant of the program text before any test began.
-        in_call: whether a mutated call begins, or has ended, which tells whether a process died in it; None
+        in_call: whether a mutated call begins, or has ended, which shows whether a process died in it; None
             where the mutant changed something for the first time in this test.
     """
 
@@ -495,7 +495,7 @@ class Did(Event):
         test: the test that runs.
         hits, acted, away, example, failure: as in ``TestEnd``.
         refused: how the robot refused a mutated call; None if it did not.
-        is_final: whether this refusal decides about a test that fails, since it was told as data.
+        is_final: whether this refusal decides about a test that fails, since it came as data.
     """
 
     test: str

@@ -36,7 +36,7 @@ class ChildRecord:
         raised: what ended it otherwise.
         is_in_call: whether a mutated call has begun in it and not ended.
         acted: tests in which the mutant did something in it, in their order.
-        called, noted, did, places, used, exceeded, guarded: what it told during the running test.
+        called, noted, did, places, used, exceeded, guarded: what it reported during the running test.
     """
 
     began: events.Began
@@ -124,8 +124,8 @@ class Children:
         key: of the seals.
 
     Attributes:
-        records: what each of them told, by file.
-        doubt: why what they told cannot be relied on, or None.
+        records: what each of them reported, by file.
+        doubt: why their reports cannot be relied on, or None.
         number: that of the running test, as the test process knows it; None elsewhere, and before any test.
     """
 
@@ -186,7 +186,7 @@ class Children:
             now = b""
         is_number = self.number is None or now[:8] == self.number.to_bytes(8, sys.byteorder)
         if any(now[8:]):
-            self._note("one of them could not write what it had to tell: a full disk, or RLIMIT_FSIZE?")
+            self._note("one of them could not write its events: a full disk, or RLIMIT_FSIZE?")
         elif len(now) < 16 or not is_number:  # they have read another number, or died of reading
             self._note("the number of the running test was deleted or changed")
 

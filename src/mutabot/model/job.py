@@ -223,7 +223,7 @@ class Idle:
         answers: the different answers, as data that ``answer.restore`` understands.
         of_test: number of the answer that was the first in a test, by ``key``; tests that are missing here
             get the first of all.
-        varying: keys of the tests in which later answers were others: there the answer tells something
+        varying: keys of the tests in which later answers were others: there the answer carries information
             about the world, which stands still while the robot does nothing.
     """
 

@@ -68,7 +68,7 @@ class Form(StrEnum):
 WRITTEN = {Form.PUBLISH: "message", Form.CALL: "request", Form.GOAL: "goal"}
 #: forms that entries of a vocabulary speak of; all others go with them
 MAIN = frozenset({*WRITTEN, Form.RECEIVE, Form.PARAMETER, Form.TICK, Form.SLEEP, Form.TRANSFORM})
-#: forms for whose answer the program waits, or which it is told later
+#: forms for whose answer the program waits, or which it gets later
 ANSWERED = frozenset({Form.CALL, Form.GOAL, Form.RESULT, Form.TRANSFORM})
 #: forms that set something up, and the arguments that all middlewares give them: ``name`` is the name as the
 #: program gives it, ``depth`` the length of the queue, ``period`` is in seconds; qualities are those of ROS 2
@@ -240,7 +240,7 @@ class Operation:
         arguments: quantities it writes.
         result: quantities it reads.
         command: whether calling it makes the robot do something, so that leaving the call out matters.
-        current: operation that tells where the robot is now; None if by-to cannot be computed.
+        current: operation that reads where the robot is now; None if by-to cannot be computed.
         opposite: callable that does the opposite, with the same arguments; None if there is none.
         refusals: exceptions (``module:Name``) by which the robot refuses a command.
         message: path to what says which command a call is, from an argument or ``self``; or None.
@@ -248,7 +248,7 @@ class Operation:
         idle: what it returns while the robot does nothing, as data (see ``answer``); None if the vocabulary
             does not say.
         source: where the vocabulary says so (``robot.toml:12 · robot:Arm.move_by``).
-        signature: what its arguments are, for a callable that does not tell; see ``model.signature``.
+        signature: what its arguments are, for a callable without a signature; see ``model.signature``.
         overrides: whether methods of the program's own subclasses that override it belong to it.
         kind: what kind of target it has, which says how it is found at run time: the name of a file in
             ``runtime.targets``; None for a Python callable.

@@ -26,8 +26,8 @@ def same_end(first: Outcome, second: Outcome) -> bool:
 
 def outcome_text(outcome: Outcome) -> str:
     """Return how a mutant ended: ``killed by check in tests/test_box.py::test_arrives: assert 1 == 2``."""
-    is_told = bool((outcome.message or "").strip())
-    return f"{describe_end(outcome)}: {first_line(outcome.message)}" if is_told else describe_end(outcome)
+    has_message = bool((outcome.message or "").strip())
+    return f"{describe_end(outcome)}: {first_line(outcome.message)}" if has_message else describe_end(outcome)
 
 
 def first_line(text: str | None) -> str:

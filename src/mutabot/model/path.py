@@ -110,8 +110,8 @@ class Path:
     def fixed_part(self, value: Any) -> str:
         """Return the step whose part cannot be replaced, as ``.imag of complex``; empty if there is none.
 
-        The objects on the way are told by their classes: what one with code of its own does shows when it is
-        changed. Raises PathError if a step does not fit.
+        The objects on the way are described by their classes: what one with code of its own does shows when
+        it is changed. Raises PathError if a step does not fit.
         """
         for step in self.steps:
             if _is_fixed(value, step):

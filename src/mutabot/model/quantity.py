@@ -4,7 +4,7 @@ Orientations may be attributes of an object, as the ``x``, ``y``, ``z`` and ``w`
 are. A stamp of ROS 2 has ``sec`` and ``nanosec``, one of ROS 1 ``secs`` and ``nsecs``. Seconds since 1970
 lose some hundred nanoseconds as one number, so a stamp is written anew only where its value changes.
 
-Two values are the same if the robot, or the program that reads them, cannot tell them apart. Plan, engines
+Two values are the same if the robot, or the program that reads them, cannot distinguish them. Plan, engines
 and operators of all families ask here, so that none plants a fault that another leaves out.
 """
 
@@ -56,7 +56,7 @@ def with_seconds(stamp: Any, seconds: float) -> Any:
 
 
 _NAMES = re.compile(r"[._]")
-#: digits that tell any two numbers apart
+#: digits that distinguish any two numbers
 _MOST_DIGITS = 17
 #: A value a quantity can have, in the quantity's own unit.
 Value = Any
@@ -160,7 +160,7 @@ def measures_of(kind: Kind) -> tuple[Dimension, ...]:
 
 #: kinds whose values are numbers on a scale, with a unit
 MEASURED = frozenset(DIMENSIONS.keys() - {Kind.OPENING} | WHOLE | PLAIN)
-#: the reading that tells where a written kind is now
+#: the reading of where a written kind is now
 READING_OF: dict[Kind, Kind] = {Kind.TRANSLATION: Kind.POSITION, Kind.ROTATION: Kind.ORIENTATION}
 
 
@@ -432,7 +432,7 @@ def distinct_texts(
 def is_reading_of(reading: Quantity, written: Quantity) -> bool:
     """Return whether a reading gives the start of a commanded motion: same axis and compatible frame.
 
-    The target that was sent last tells it as well.
+    The target that was sent last gives it as well.
     """
     frames = {reading.frame, written.frame} - {None}
     if reading.axis != written.axis or len(frames) > 1:
@@ -586,7 +586,7 @@ def _is_full_turn(quantity: Quantity, first: float, second: float) -> bool:
 def _turn_of_target(quantity: Quantity) -> float | None:
     """Return a full turn if the robot treats targets that lie a full turn apart as the same.
 
-    A program that reads an angle may well tell 180 from −180 degrees. A joint tells them apart as well, and
+    A program that reads an angle may well distinguish 180 from −180 degrees. So does a joint, and
     so does whatever has a range of more than one turn: it winds.
     """
     if quantity.kind is not Kind.ROTATION or quantity.mode is not Mode.TO or quantity.by_number:

@@ -12,7 +12,7 @@ from functools import lru_cache
 from inspect import Parameter, Signature
 from typing import Any
 
-#: how a callable is taken that tells nothing
+#: the signature of a callable that has none
 ANYTHING = Signature(
     [Parameter("args", Parameter.VAR_POSITIONAL), Parameter("kwargs", Parameter.VAR_KEYWORD)]
 )

@@ -2,7 +2,7 @@
 
 The runtime records which units are executed, by the lines of their ``def``; the controller compares what the
 units say. A unit says its syntax tree, without positions, comments and layout. Languages other than Python
-tell their units themselves.
+define their units themselves.
 """
 
 from __future__ import annotations
@@ -139,7 +139,7 @@ class _Units(NamedTuple):
     """The units of a file, with their lines and digests.
 
     Attributes:
-        lines: their lines, by name, as executed units are told.
+        lines: their lines, by name, as executed units are reported.
         digests: of their content, by name.
         is_quiet: whether nothing happens at the module level but that names are given to what is plain.
     """

@@ -105,7 +105,7 @@ class Rule(ABC):
 class Need(Enum):
     """Requirements of an operator. If one is not met, the plan leaves its mutants out, with the reason."""
 
-    #: where a written quantity is now (``call.current``): the vocabulary names a reading that tells
+    #: where a written quantity is now (``call.current``): the vocabulary names a reading that gives
     PLACE = auto()
     #: a negative value among the recorded ones, without which nobody knows whether there is a direction
     SIGN = auto()

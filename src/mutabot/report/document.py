@@ -16,7 +16,7 @@ from mutabot.journal import records
 from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity, Span
 from mutabot.model.world_difference import Apart, Measurement
 from mutabot.report.mutant_data import SPAN
-from mutabot.report.texts import effect_text, excerpts, next_step, state_of, telling
+from mutabot.report.texts import effect_text, excerpts, most_informative, next_step, state_of
 from mutabot.results.encoder import Encoder
 from mutabot.results.results import MutantResult, Results
 from mutabot.results.score import Group, RoundScores, Score
@@ -96,7 +96,7 @@ def shown_data(
         source: the text of a file, or None if it is not known.
         suggestion: what was suggested for it; None if nothing was looked for.
     """
-    round, diverged = telling(result) or (None, None)
+    round, diverged = most_informative(result) or (None, None)
     outcome = result.rounds[round] if round is not None else None
     return {
         **data_of(result),

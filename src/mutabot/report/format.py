@@ -74,7 +74,7 @@ def utf16(text: str) -> int:
 def place_of(span: Span, source: str | None, length: Callable[[str], int] = len) -> FilePlace:
     """Return the position of a span in its source; ``length`` is the count of characters within a line.
 
-    Other tools know no place without a line: what does not stand in the text is told at the first one.
+    Other tools know no place without a line: what does not stand in the text is reported at the first one.
     """
     lines = source.split("\n") if source is not None else []
     if not 1 <= span.line <= span.end_line <= len(lines):

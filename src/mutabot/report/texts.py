@@ -1,6 +1,6 @@
 """Texts for all formats: legible texts, the state of a mutant over its rounds, and excerpts.
 
-``portable`` makes a whole campaign fit to leave the machine, so that none of its texts tells of that;
+``portable`` makes a whole campaign fit to leave the machine, so that none of its texts mentions that;
 ``escaped`` makes a text fit for Markdown. Other formats only have to escape what is special in them.
 """
 
@@ -81,7 +81,7 @@ def escaped(text: str) -> str:
 
 T = TypeVar("T")
 
-#: facts of a campaign that tell nothing of the machine and its folders
+#: facts of a campaign that reveal nothing of the machine and its folders
 _META = (
     "mutabot", "python", "versions", "seed", "rounds", "engine", "families", "order", "every_test", "started",
     "seconds",
@@ -167,7 +167,7 @@ def reason_of(result: MutantResult) -> str:
     lines = [rounds_text(result), *filter(None, [acceptance_text(result)])]
     status = result.status
     if result.lets_through:
-        lines.append(told_text(result))
+        lines.append(finding_text(result))
     given: set[str] = set()
     for outcome in result.outcomes:
         text = outcome.message or ""
@@ -180,7 +180,9 @@ def reason_of(result: MutantResult) -> str:
 def survivor_text(result: MutantResult) -> str:
     """Describe a survivor: what it does, in which rounds it survived, its effect, and what to do."""
     what = f"{result.mutant.description}{also_text(result.mutant.site)}"
-    return ". ".join(filter(None, [f"{what}: {rounds_text(result)}", told_text(result), next_step(result)]))
+    return ". ".join(
+        filter(None, [f"{what}: {rounds_text(result)}", finding_text(result), next_step(result)])
+    )
 
 
 def next_step(result: MutantResult, suggestion: Suggestion | None = None) -> str:
@@ -228,7 +230,7 @@ def places_text(site: Site, place: Callable[[Span], str]) -> str:
     return ",\n".join(map(place, site.spans))
 
 
-def told_text(result: MutantResult) -> str:
+def finding_text(result: MutantResult) -> str:
     """Return the line about a mutant, without what its description says, with the test and the round."""
     what = result.mutant.description
     why = result.why.removeprefix(f"{what}; ")
@@ -236,7 +238,7 @@ def told_text(result: MutantResult) -> str:
     phrases = (f" {change[2]} → {change[1]}", f" {change[1]} instead of {change[2]}") if change else ()
     if change is not None and any(what.endswith(text) for text in phrases):
         why = why.removeprefix(change[0])
-    number, diverged = telling(result) or (0, None)
+    number, diverged = most_informative(result) or (0, None)
     if diverged is not None and diverged.story and diverged.story in why:
         place = place_text(result, number, diverged)
         why += f" (in {place})" if place else ""
@@ -245,14 +247,14 @@ def told_text(result: MutantResult) -> str:
 
 def effect_text(result: MutantResult) -> str:
     """Return the line about a mutant with the test in which it happened, and how many rounds killed it."""
-    why, rate = told_text(result), result.kill_rate
+    why, rate = finding_text(result), result.kill_rate
     if result.lets_through and rate.killed:
         where = "" if result.survived else f" in {rate.valid - rate.killed} of {rate.valid} rounds"
         why += f"{where}; killed in {rate.killed} of {rate.valid} rounds"
     return why
 
 
-def telling(result: MutantResult) -> tuple[int, Diverged | None] | None:
+def most_informative(result: MutantResult) -> tuple[int, Diverged | None] | None:
     """Return the most informative round of a mutant, 0-based, and the test with the greatest effect.
 
     Of a survivor that is the round that let it through farthest from the original, which ``result.why`` is

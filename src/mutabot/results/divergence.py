@@ -10,7 +10,7 @@ from mutabot.model.outcome_text import first_line
 from mutabot.model.quantity import distinct_texts, value_text
 
 #: what is said of the world where nothing was compared
-UNKNOWN_END = "nothing tells how the world ended (the vocabulary names no probe)"
+UNKNOWN_END = "it is unknown how the world ended (the vocabulary names no probe)"
 
 
 def quantity_of(mutant: Mutant, vocabulary: Vocabulary | None) -> Quantity | None:
@@ -42,7 +42,7 @@ def explain(mutant: Mutant, outcomes: Sequence[Outcome], vocabulary: Vocabulary 
 def change_text(mutant: Mutant, outcome: Outcome, quantity: Quantity | None = None) -> str | None:
     """Return what the mutant changed when it first acted: ``read -0.0014 m instead of 0.0014 m``.
 
-    That is in the test whose story is told, if there is one.
+    That is in the test that has the story, if there is one.
     """
     reported = outcome.shown_difference.example if outcome.shown_difference is not None else None
     example = reported if reported is not None else outcome.example

@@ -13,7 +13,7 @@ from mutabot.errors import UsageError
 from mutabot.frozen import frozen
 from mutabot.journal.files import clear
 
-#: what tells campaigns of the same journal apart
+#: facts that distinguish campaigns of the same journal
 _STARTED = "started"
 _LIST = "films.json"
 

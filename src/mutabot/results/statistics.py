@@ -94,7 +94,7 @@ def crossed(table: Sequence[Sequence[float | None]]) -> Interval | None:
         table: one row per mutant with one cell per round: 1 for killed, 0 for not killed, None for not valid.
 
     Returns:
-        The interval, or None with fewer than two rounds or two mutants: then nothing tells how they differ.
+        The interval, or None with fewer than two rounds or two mutants: then it is unknown how they differ.
     """
     cells = _Cells.of(table)
     if cells is None:
@@ -113,7 +113,7 @@ def sampled(table: Sequence[Sequence[float | None]], population: int) -> Interva
 
     with n of N mutants drawn, the score linearised where cells are missing, and Student's t with n − 1
     degrees of freedom (Cochran, "Sampling Techniques", 1977: chapter 2 for the finite population, chapter 6
-    for the ratio, since only the run tells which of the drawn mutants are valid). It is never narrower than
+    for the ratio, since only the run shows which of the drawn mutants are valid). It is never narrower than
     if each valid mutant had been decided by one throw: a sample in which all mutants are nearly alike has
     often missed the few that are not. When n = N the sample is all there is, and the interval is the score
     alone.

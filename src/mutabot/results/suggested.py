@@ -29,7 +29,7 @@ class Suggestion:
     reason: str = ""
 
 
-#: what tells campaigns of the same journal apart
+#: facts that distinguish campaigns of the same journal
 _STARTED = "started"
 
 

@@ -41,7 +41,7 @@ class FaultContext(Protocol):
         """
 
     def acted(self) -> None:
-        """Tell the campaign that the fault has changed something in the running test."""
+        """Report that the fault has changed something in the running test."""
 
     def change_file(self, path: str, content: bytes) -> None:
         """Give a file of the project another content, for this process and all below it.
@@ -67,13 +67,13 @@ class ActiveFault(ABC):
 
     Class attributes:
         is_checked: whether an exception that the program or a test meets is an error of the mutant if it
-            comes from the fault's own package. The core's own tell such errors themselves.
+            comes from the fault's own package. The core's own report such errors themselves.
         is_of_text: whether it is a change of the program's files. A test that the robot's refusal ends has
             then not judged it, unless the robot refuses the call in the original as well.
 
     Attributes:
         mutant: the mutant.
-        data: what its provider has told it, as ``mutabot.model.activation.Activation.data`` has it.
+        data: what its provider has sent it, as ``mutabot.model.activation.Activation.data`` has it.
         context: the process.
         keys: where it first differs from the original.
         meant: the exceptions that it has raised for the program on purpose.

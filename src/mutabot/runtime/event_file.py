@@ -34,7 +34,8 @@ def _die() -> None:
 class EventFile:
     """The event file of this process.
 
-    Every event is written whole and at once, so that a process that dies loses only what it had not told yet.
+    Every event is written whole and at once, so that a process that dies loses only what it had not reported
+    yet.
 
     Args:
         folder: where the file is.
@@ -42,7 +43,7 @@ class EventFile:
         key: of the seals.
         fail: called if something could not be written; by default it ends the process, of which nobody could
             know anything any more.
-        bell: descriptor of the pipe by which the controller is told that there is something to read. It is
+        bell: descriptor of the pipe by which the controller learns that there is something to read. It is
             replaced by the lowest one that is free: tests may expect theirs to follow one upon another.
     """
 
@@ -86,12 +87,12 @@ class EventFile:
     def continue_separately(self) -> None:
         """Write into a separate file from now on, in a process that was just forked.
 
-        Its name tells the ``ForkEnded.fork`` of its parent, which has counted it in ``forks``.
+        Its name is the ``ForkEnded.fork`` of its parent, which has counted it in ``forks``.
         """
         nowhere = os.open(os.devnull, os.O_WRONLY | os.O_CLOEXEC)
         os.dup2(nowhere, self._file, inheritable=False)
         os.close(nowhere)
-        self._bell = None  # what a fork tells is read once its parent tells that it has ended
+        self._bell = None  # what a fork reports is read once its parent reports its end
         self.name = f"{self.name}.{self.forks}"
         self._last = self.forks = 0
 
@@ -117,7 +118,7 @@ class EventFile:
         except BlockingIOError:
             pass  # it will be heard
         except BrokenPipeError:
-            os._exit(70)  # there is nobody to tell anything
+            os._exit(70)  # there is no reader left
 
     def _open(self) -> None:
         path = os.path.join(self._folder, self.name + SUFFIX)

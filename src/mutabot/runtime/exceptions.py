@@ -9,7 +9,7 @@ from mutabot.errors import MutabotError, error_text, text_of
 from mutabot.extensions import brought
 from mutabot.model.path import class_name
 
-#: classes that are told by their names, since their modules may not be loaded, with what they hold
+#: classes that are identified by their names, since their modules may not be loaded, with what they hold
 _WRAPPED, _SEVERAL = "doctest:UnexpectedException", "_pytest.doctest:MultipleDoctestFailures"
 
 

@@ -3,7 +3,7 @@
 Files are compiled with one more statement at the beginning of each function, which sets a byte. That takes a
 tenth of the time that a trace function takes (14 ns a call instead of 165), and works alike in all versions
 of Python. What a test executes may leave something behind, in ways that no text shows: it counts for that
-test and for all tests after it, so each test tells only what none before it has told. See
+test and for all tests after it, so each test reports only what none before it has reported. See
 ``model.source_units``.
 """
 

@@ -1,4 +1,4 @@
-"""Run the fault of this process: make it when what it awaits exists, and tell its errors from others.
+"""Run the fault of this process: make it when what it awaits exists, and distinguish its errors from others.
 
 Whatever the code of a fault raises is an error of its mutant: no test has noticed anything then.
 """
@@ -197,7 +197,7 @@ class FaultRunner:
 
 
 def _is_own(frame: FrameType, module: str, robots: Collection[str], locator: Locator) -> bool | None:
-    """Return whether a frame is of the fault's code or package; None for frames that do not tell."""
+    """Return whether a frame is of the fault's code or package; None for frames that do not show it."""
     name = str(frame.f_globals.get("__name__", ""))
     if name in robots:
         return False

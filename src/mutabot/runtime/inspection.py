@@ -48,23 +48,23 @@ class Inspection:
 
     def target_is_wrong(self, target: str, finding: Finding) -> None:
         """Report a target of the vocabulary that was found and does not fit."""
-        self.tell(self._source_of(target), finding)
+        self.report(self._source_of(target), finding)
 
     def path_is_wrong(self, operation: Operation, key: str, error: PathError) -> None:
         """Report a path that does not fit the arguments or the result of a call."""
         is_remark = isinstance(error, StrangeValueError)
         finding = Finding(key, str(error), error.step, error.known, is_remark=is_remark)
 
-        def tell() -> None:
+        def report_path() -> None:
             if key.partition(".")[2] not in self._fit.get(operation.target, ()):
-                self.tell(operation.source, finding)
+                self.report(operation.source, finding)
 
         if operation.message is not None or not key.startswith("result."):
-            tell()
+            report_path()
         elif self.is_asked:  # one result may lack what others have
-            self._unfit.setdefault((operation.source, key), tell)
+            self._unfit.setdefault((operation.source, key), report_path)
 
-    def tell(self, source: str, finding: Finding) -> None:
+    def report(self, source: str, finding: Finding) -> None:
         """Report a finding about an entry of the vocabulary, unless one was reported before."""
         if (source, finding.key) in self._reported:
             return
@@ -76,20 +76,20 @@ class Inspection:
         """Report what of an operation does not fit its target."""
         for targets in kinds:
             for finding in targets.check(operation):
-                self.tell(operation.source, finding)
+                self.report(operation.source, finding)
 
     def inspect(self, kinds: Kinds) -> None:
         """Check every target of the vocabulary that no test has reached."""
         for targets in kinds:
             for target, finding in targets.seek():
-                self.tell(self._source_of(target), finding)
+                self.report(self._source_of(target), finding)
         for operation in self._vocabulary.operations:
             self.check_target(operation, kinds)
             for targets in kinds:
                 for finding in targets.unheard(operation) if isinstance(targets, Messages) else ():
-                    self.tell(operation.source, finding)
-        for tell in self._unfit.values():
-            tell()
+                    self.report(operation.source, finding)
+        for report_path in self._unfit.values():
+            report_path()
         self._check_idle()
         self._check_exceptions()
 
@@ -101,7 +101,7 @@ class Inspection:
                 found = self._look_up(operation.source, "idle", call) if call is not None else None
                 if found is not None and not callable(found):
                     text = f"{call} is {type(found).__name__}, not a function"
-                    self.tell(operation.source, Finding("idle", text))
+                    self.report(operation.source, Finding("idle", text))
 
     def _check_exceptions(self) -> None:
         """Check that each refusal names an exception; a misspelt one would turn refusals into kills."""
@@ -115,7 +115,7 @@ class Inspection:
         for source, key, name in named:
             found = self._look_up(source, f"{key} {name}", name)
             if found is not None and not (isinstance(found, type) and issubclass(found, BaseException)):
-                self.tell(source, Finding(f"{key} {name}", f"{name} is not an exception class"))
+                self.report(source, Finding(f"{key} {name}", f"{name} is not an exception class"))
 
     def _look_up(self, source: str, key: str, target: str) -> Any:
         """Return the object at ``module:qualified.name``; None, with a problem reported, if there is none."""
@@ -124,10 +124,10 @@ class Inspection:
             owner, name, _ = resolve(importlib.import_module(module), qualname)
             return getattr(owner, name)
         except NotFoundError as error:
-            self.tell(source, Finding(key, str(error), error.name, error.known))
+            self.report(source, Finding(key, str(error), error.name, error.known))
         except Exception as error:  # the user's module may fail in any way; say which and how
             if module not in self.elsewhere:
-                self.tell(source, not_imported(module, error, key))
+                self.report(source, not_imported(module, error, key))
         return None
 
     def _source_of(self, target: str) -> str:

@@ -62,7 +62,7 @@ class Observer(ABC):
     Attributes:
         libraries: top-level names of client libraries of middlewares, with ``*`` for any text; what is done
             through them comes to ``used``, under its name.
-        is_test: tells of an absolute path whether it is on the tests' side (True) or the program's (False);
+        is_test: returns of an absolute path whether it is on the tests' side (True) or the program's (False);
             None for files of neither.
     """
 
@@ -108,7 +108,7 @@ class Observer(ABC):
             written: the message that is sent, if any.
             is_callback: whether it came to a callback, rather than to a call that waited for it.
 
-        Returns what is told the answer, or the message that came; None if it is not asked for.
+        Returns a function to call with the answer, or with the message that came; None if it is not wanted.
         """
 
     @abstractmethod

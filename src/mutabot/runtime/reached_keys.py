@@ -1,7 +1,8 @@
 """Track which keys the running test reaches: simulated time, calls, and their counts.
 
 Only keys that somebody awaits are looked for: the mutants of a fork parent, or the fault of this process. To
-both they are told in the same way, so that a fault begins in a fork where it does in a process of its own.
+both they are reported in the same way, so that a fault begins in a fork where it does in a process of its
+own.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ class ReachedKeys:
         self._counts: Counter[Key] = Counter()
         self._has_ticked = False
         self.asks_calls = False
-        self._passed = float("-inf")  # the last moment that was told in this test
+        self._passed = float("-inf")  # the last moment that was reported in this test
 
     def watch(self, keys: Iterable[Key]) -> None:
         """Watch for these keys from now on."""

@@ -69,7 +69,7 @@ class Session:
         recording: what the world does while the test runs.
         test: node id of the running test.
         noted: in the baseline, calls of the running test that the robot refused, or that returned its memory.
-        on_noted: told of each of them; None if nobody asks.
+        on_noted: called with each of them; None if not wanted.
         fault: the fault of this process; idle in the original's.
         files: what keeps the files of this process apart; None in processes below the tests.
         fork_parent: forks for each mutant, while this process runs the original; else None.
@@ -106,7 +106,7 @@ class Session:
         targets = frozenset(operation.target for operation in job.vocabulary.operations)
         self.guards = CallGuards.load(job.guards, self.untracked, lambda: self.meter, targets)
         self._lately: dict[str, Mapping[str, Value]] = {}
-        self._telling: list[Adapter] = []
+        self._asked: list[Adapter] = []
         self._asking: list[tuple[str, str | None, Idle]] = []
         self._time = ProgramTime(job.vocabulary, lambda: self.meter, self.instances)
         self._main_thread = threading.main_thread().ident
@@ -186,9 +186,9 @@ class Session:
         operations = self.job.vocabulary.operations
         asked = {name for operation in operations for name in operation.currents}
         refusals = (refusal for operation in operations for refusal in operation.all_refused)
-        self._telling = [adapter for adapter in self._adapters if adapter.operation.target in asked]
+        self._asked = [adapter for adapter in self._adapters if adapter.operation.target in asked]
         if any(refused.topic is not None for refused in refusals) or any(
-            adapter.operation.named is not None for adapter in self._telling
+            adapter.operation.named is not None for adapter in self._asked
         ):
             self._heeded().on_heard = self._on_message
 
@@ -203,7 +203,7 @@ class Session:
         if self.mutant is not None:
             self.mutant.heard(name, message)
         self.dispatcher.refused.heard(name, message)
-        for adapter in self._telling:
+        for adapter in self._asked:
             adapter.observe_message(name, message)
 
     def _handler(self, operation: Operation) -> Handler:
@@ -302,7 +302,7 @@ class Session:
     def start_test(self, test: str, fixtures: Callable[[], Iterable[Any]] | None = None) -> None:
         """Begin a test, before its fixtures.
 
-        ``fixtures`` tells what objects they hold; None in a process below the tests.
+        ``fixtures`` returns the objects that they hold; None in a process below the tests.
         """
         if self.meter is not None and not self.test:  # the first test
             for call in self.recorder.trace:
@@ -440,7 +440,7 @@ class Session:
             self.inspect_targets()
             if self.call_targets.noted is not None:
                 for operation, finding in self.call_targets.noted.findings(self.job.vocabulary.operations):
-                    self.inspection.tell(operation.source, finding)
+                    self.inspection.report(operation.source, finding)
 
     def intercepted_calls(self) -> CallsAsked:
         """Return which calls were intercepted until now, and which replacements were called."""
@@ -508,4 +508,4 @@ class Session:
 
     def _clock_is_wrong(self, key: str, text: str) -> None:
         clock = self.job.vocabulary.clock
-        self.inspection.tell(clock.source if clock is not None else "", Finding(key, text))
+        self.inspection.report(clock.source if clock is not None else "", Finding(key, text))

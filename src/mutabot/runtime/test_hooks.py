@@ -297,7 +297,7 @@ class TestHooks:
         activity, meter = session.activity, session.meter
         wall, cpu = monotonic() - self._started[0], self._ran() - self._started[1]
         assert meter is not None
-        # of a test that a mutant neither reached nor failed, it is told what was executed in that test alone
+        # of a test that a mutant neither reached nor failed, what was executed in that test alone is reported
         is_mutant = session.job.mutant is not None or self.fork is not None
         is_alone = is_mutant and not activity.hits and self._outcome != FAILED
         is_compared = session.job.record

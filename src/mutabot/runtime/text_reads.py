@@ -49,16 +49,16 @@ class TextReads:
 
     Args:
         root: absolute path of the project.
-        tell: told each file that is read, relative to the project, and whether that is program text that is
-            read as text. Of Python files, no imports are told.
+        on_read: called with each file that is read, relative to the project, and whether that is program text
+            that is read as text. Imports of Python files are not reported.
     """
 
-    def __init__(self, root: str, tell: Callable[[str, bool], None]) -> None:
-        self._root, self._tell = os.path.join(os.path.realpath(root), ""), tell
+    def __init__(self, root: str, on_read: Callable[[str, bool], None]) -> None:
+        self._root, self._on_read = os.path.join(os.path.realpath(root), ""), on_read
 
     def install(self) -> None:
         """Report from now on."""
-        _tell_of_lines()
+        _audit_line_reads()
         listen(("open", _LINES), self._on_audit_event)
         listen(STARTS, self._on_start)
 
@@ -87,13 +87,13 @@ class TextReads:
             return
         if not name.endswith(".py"):
             parser = unit_parser(name)
-            # the package that runs such files tells by itself which of their units are executed
+            # the package that runs such files reports by itself which of their units are executed
             if parser is None or not _reader(frame, _FOR_OTHERS).startswith(_package_of(parser)):
-                self._tell(name, False)
+                self._on_read(name, False)
         elif not _reader(frame, _FOR_OTHERS).startswith(_IMPORTING):
             package = _reader(frame, _TEXT_FOR_OTHERS).partition(".")[0]
             # packages beside the core run programs, with the mutant in them
-            self._tell(name, package not in _HARMLESS and package not in packages())
+            self._on_read(name, package not in _HARMLESS and package not in packages())
 
     def _on_start(self, event: str, arguments: tuple[Any, ...]) -> None:
         """Report program files that the command line of another program names, as it may read them.
@@ -113,7 +113,7 @@ class TextReads:
         for path in _python_files(os.fsdecode(folder), words[1:] if len(lines) > 1 else words):
             name = self.name(path)
             if name is not None:
-                self._tell(name, True)
+                self._on_read(name, True)
 
 
 def _python_files(folder: str, words: Iterable[str]) -> Iterator[str]:
@@ -124,10 +124,10 @@ def _python_files(folder: str, words: Iterable[str]) -> Iterator[str]:
                 yield path
 
 
-def _tell_of_lines() -> None:
+def _audit_line_reads() -> None:
     """Raise an audit event where lines of a file are taken: from the cache that takes no opening."""
     take = linecache.getlines
-    if hasattr(take, "tells_mutabot"):
+    if hasattr(take, "audits_for_mutabot"):
         return
 
     @wraps(take)
@@ -135,7 +135,7 @@ def _tell_of_lines() -> None:
         sys.audit(_LINES, filename)
         return take(filename, module_globals)
 
-    getlines.tells_mutabot = True  # type: ignore[attr-defined]  # a mark on it: others may wrap it as well
+    getlines.audits_for_mutabot = True  # type: ignore[attr-defined]  # a mark on it: others may wrap it as well
     linecache.getlines = getlines
 
 

@@ -179,7 +179,7 @@ def _above(bracket: Bracket, sizes: Sequence[float], outcomes: Mapping[float, Ou
         return NextLarger.LARGEST
     if bracket.refused is not None:
         return NextLarger.REFUSED
-    # the next one tells: what changes nothing there is beyond what the robot takes
+    # the next one decides: what changes nothing there is beyond what the robot takes
     ends = {outcomes[size].verdict for size in above if size in outcomes}
     return NextLarger.NO_EFFECT if above[0] in outcomes and ends <= _NOTHING_THERE else NextLarger.OPEN
 

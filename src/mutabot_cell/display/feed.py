@@ -21,7 +21,7 @@ from .skeleton import skeleton_of
 #: of a film: from where robot, conveyor and table are seen, pixels, pictures per simulated second
 _VIEW = View(azimuth=90.0, elevation=-33.0, distance=2.05, look_at=(0.0, 0.1, 0.96))
 _HEIGHT, _WIDTH, _RATE = 450, 600, 12.5
-#: s: rather is the feed called before it has something to tell than too late
+#: s: the feed is called rather too early, when nothing is new, than too late
 _EARLY = 1e-5
 
 

@@ -1,6 +1,6 @@
 """Conveyor tracking: tool poses in a frame that moves with a belt.
 
-The field's names: the belt's *encoder* tells its position, the controller estimates from it where the belt
+The field's names: the belt's *encoder* gives its position, the controller estimates from it where the belt
 will be a tick later, *synchronises* the tool with it under the tool's limits, and superimposes the program's
 straight moves.
 """

@@ -49,8 +49,8 @@ _NO_ROBOTS = frozenset(
         "tf_transformations", "toppra", "transformations", "transforms3d", "trimesh",
     }
 )  # fmt: skip
-#: names of arguments that tell which command a call is
-_TELLING = frozenset(
+#: names of arguments that distinguish commands
+_DISTINGUISHING = frozenset(
     {
         "node", "node_id", "nodeid", "name", "address", "register", "tag", "channel", "signal", "topic",
         "variable",
@@ -69,7 +69,7 @@ class _Seen:
 
     callee: Callee
     call: WatchedCallable
-    #: how many calls are told apart by which path, and their commands
+    #: how many calls each path distinguishes, and their commands
     counts: Counter[str] = field(default_factory=Counter)
     commands: dict[str, dict[str, Command]] = field(default_factory=dict)
     has_no_commands: bool = False
@@ -211,7 +211,7 @@ class Watch(Observer):
             if _is_no_robot(top) or any(fnmatchcase(top, name) for name in self.libraries):
                 return None
             call = described(callee, of_tests=key[1], own=self.is_test(callee.file) is False)
-            call.sites = known.call.sites if known is not None else {}  # a mock told no more than them
+            call.sites = known.call.sites if known is not None else {}  # a mock has no others
             known = self._seen[key] = _Seen(callee, call)
         return known
 
@@ -346,12 +346,12 @@ def _command(seen: _Seen, instance: Any, values: Mapping[str, Any]) -> Command |
     seen.counts[by] += 1
     commands = seen.commands.setdefault(by, {})
     if len(text) > _LONGEST or len(commands) > _MOST_COMMANDS:
-        seen.has_no_commands, call.told_by, call.commands = True, "", {}
+        seen.has_no_commands, call.discriminator, call.commands = True, "", {}
         return None
     # a list of several names, where most calls have one, does not hide what these write
     most = max(seen.counts, key=seen.counts.__getitem__)
     is_clear = 2 * seen.counts[most] > seen.counts.total()
-    call.told_by, call.commands = (most, seen.commands[most]) if most and is_clear else ("", {})
+    call.discriminator, call.commands = (most, seen.commands[most]) if most and is_clear else ("", {})
     call.other_commands = seen.counts.total() - seen.counts[most]
     if not by:
         return None
@@ -361,7 +361,7 @@ def _command(seen: _Seen, instance: Any, values: Mapping[str, Any]) -> Command |
     return command
 
 
-#: what tells a command apart: its path and text, and the values beside it by their paths
+#: what distinguishes a command: its path and text, and the values beside it by their paths
 _CallFacts = tuple[str, str, Mapping[str, Any]]
 
 
@@ -375,7 +375,7 @@ def _identify_command(call: WatchedCallable, instance: Any, values: Mapping[str,
         if is_item:
             return (name, str(value), beside) if _is_address(value) else ("", "", {})
         is_plain = isinstance(value, str | int) and not isinstance(value, bool)
-        if _tells(name.lower()) and (is_plain or _has_distinct_name(value)):
+        if _distinguishes(name.lower()) and (is_plain or _has_distinct_name(value)):
             return name, str(value), beside
         pair = _pair(name, value)
         if pair is not None:
@@ -384,8 +384,8 @@ def _identify_command(call: WatchedCallable, instance: Any, values: Mapping[str,
     return ("self", str(instance), values) if _has_distinct_name(instance) else ("", "", {})
 
 
-def _tells(name: str) -> bool:
-    return name in _TELLING or name.endswith(("address", "register", "topic"))
+def _distinguishes(name: str) -> bool:
+    return name in _DISTINGUISHING or name.endswith(("address", "register", "topic"))
 
 
 def _is_address(key: Any) -> bool:

@@ -68,9 +68,9 @@ class ProgramUnit:
         source: its text.
         tree: what stands in it.
         names: its own variables.
-        watched: nodes by their starts of whose execution somebody is told.
+        watched: nodes, by their starts, whose execution is reported.
         assigned: of a mutant, the variables that the original gives a value somewhere.
-        began: told where a routine begins that is called.
+        began: called with the place at which a called routine begins.
     """
 
     path: str

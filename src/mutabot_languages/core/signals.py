@@ -3,7 +3,7 @@
 tool = [0, 0, 0.1, 0, 0, 0]        # the cell's tool point on the program's flange: m and degrees (x, y, z)
 
 [out.grip]                         # names as the program has them: grip, "$OUT[9]", "standard_digital_out[0]"
-gripper = [0, 1]                   # what the gripper is told for 0 and for 1
+gripper = [0, 1]                   # the gripper's command for 0 and for 1
 
 [in.part]
 light_barrier = "infeed"

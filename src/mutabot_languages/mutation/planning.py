@@ -35,7 +35,7 @@ class PlannedText:
 
 
 def read_program(
-    root: Path, files: list[str], tell: Callable[[str], None] = lambda text: None
+    root: Path, files: list[str], notify: Callable[[str], None] = lambda text: None
 ) -> list[ProgramFile]:
     """Read those of these files that are of our languages; what cannot be read is said."""
     found: list[ProgramFile] = []
@@ -47,7 +47,7 @@ def read_program(
         text, encoding = decode(content)
         parsed = language.read(file, text)
         for diagnostic in parsed.diagnostics:
-            tell(diagnostic.text)
+            notify(diagnostic.text)
         found.append(ProgramFile(file, language, content, encoding, text, parsed))
     for program in found:
         alike = (other for other in found if other.language is program.language)

@@ -53,9 +53,9 @@ class LanguageFaults(FaultProvider):
         """False: a point that is shifted far may be out of reach where a nearer one does harm unseen."""
         return False
 
-    def texts(self, project: Project, first: int, tell: Callable[[str], None]) -> Sequence[ProgramText]:
+    def texts(self, project: Project, first: int, notify: Callable[[str], None]) -> Sequence[ProgramText]:
         """No Python text is looked at; what cannot be read of the program is said here."""
-        read_program(project.root, project.program_files(), tell)
+        read_program(project.root, project.program_files(), notify)
         return ()
 
     def plan(self, project: Project, original: Original) -> Planned:

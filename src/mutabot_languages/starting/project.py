@@ -61,7 +61,7 @@ def project(root: Path, files: Sequence[Path]) -> tuple[dict[str, str], list[str
         found = tried(loaded, cell_map, missing)
         stem = re.sub(r"\W", "_", main.stem.lower())
         made[f"tests/test_{stem}.py"] = _test_text(given, found)
-        lines += _told(found, main.name)
+        lines += _summary(found, main.name)
     left = [file.relative_to(root).as_posix() for file in files if file not in belonging]
     if left:
         more = f" and {len(left) - _MOST_LEFT} more" if len(left) > _MOST_LEFT else ""
@@ -140,7 +140,7 @@ def _test_text(files: Iterable[str], found: ProgramTrial) -> str:
     return texts.TEST.format(**given, constants=constants, how=how, checks=checks, name="ends_as_it_did")
 
 
-def _told(found: ProgramTrial, name: str) -> list[str]:
+def _summary(found: ProgramTrial, name: str) -> list[str]:
     if found.problem:
         why = found.problem.partition(": ")[2] or found.problem  # without the name of the exception
         lacking = "say in cell_map.toml, in the test or in the program what is lacking (docs/languages.md)"

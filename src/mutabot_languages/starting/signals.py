@@ -33,13 +33,13 @@ class NamedSignal:
     Attributes:
         name: as cell maps have it.
         is_output: whether the program sets it.
-        told: what its name says: of a numbered signal, the name that the program gives it.
+        meaning: the name from which its use is guessed; a numbered signal has that of the program.
         value: what the program waits for, of an input.
     """
 
     name: str
     is_output: bool
-    told: str
+    meaning: str
     value: bool = True
 
 
@@ -49,7 +49,7 @@ def signals_of(files: Sequence[ParsedFile], language: str) -> list[NamedSignal]:
     found: dict[tuple[bool, str], NamedSignal] = {}
     for signal in reader([node for file in files for node in file.tree.walk()]):
         known = found.get((signal.is_output, signal.name.lower()))
-        if known is None or (known.told == known.name != signal.told):
+        if known is None or (known.meaning == known.name != signal.meaning):
             found[signal.is_output, signal.name.lower()] = signal
     return [replace(found[key], name=_written(found[key].name, files)) for key in sorted(found, reverse=True)]
 
@@ -62,18 +62,18 @@ def _written(name: str, files: Sequence[ParsedFile]) -> str:
 
 
 def cell_map_text(name: str, signals: list[NamedSignal]) -> str:
-    """The cell map of a program. What nothing tells of is asked for."""
+    """The cell map of a program. It asks the user for what is unknown."""
     outputs = [named_signal for named_signal in signals if named_signal.is_output]
     lines = [_HEAD.format(name=name)]
     for signal in signals:
         key = f"[{'out' if signal.is_output else 'in'}.{json.dumps(signal.name)}]"
         if not signal.is_output:
-            is_held = bool(_HOLDING.search(signal.told)) and signal.value
-            says = "holding = true" if is_held else f"constant = {str(signal.value).lower()}"
-            lines.append(f"{key}\n{says}{'' if is_held else '  # what is it in the cell?'}\n")
-        elif _GRIPPER.search(signal.told) or len(outputs) == 1:
-            says = "[1, 0]" if _OPENING.search(signal.told) else "[0, 1]"
-            lines.append(f"{key}\ngripper = {says}  # what the gripper is told for 0 and for 1\n")
+            is_held = bool(_HOLDING.search(signal.meaning)) and signal.value
+            value = "holding = true" if is_held else f"constant = {str(signal.value).lower()}"
+            lines.append(f"{key}\n{value}{'' if is_held else '  # what is it in the cell?'}\n")
+        elif _GRIPPER.search(signal.meaning) or len(outputs) == 1:
+            value = "[1, 0]" if _OPENING.search(signal.meaning) else "[0, 1]"
+            lines.append(f"{key}\ngripper = {value}  # the gripper's command for 0 and for 1\n")
         else:
             lines.append(f"# {key}  # what is it in the cell?\n")
     return "\n".join(lines)

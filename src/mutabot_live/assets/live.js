@@ -18,9 +18,9 @@
   const line = h("p", { class: "live-line" });
   const stop = h("button", { type: "button", id: "live-stop", onclick: ask }, "Stop …");
   const notes = h("ul", { class: "plain small" });
-  const told = h("details", { class: "live-notes", hidden: true }, h("summary", null, "Notes"), notes);
+  const notesBox = h("details", { class: "live-notes", hidden: true }, h("summary", null, "Notes"), notes);
   const box = h("section", { class: "live", id: "live", "aria-label": "The campaign under way" },
-    h("div", { class: "live-how" }, text, line), h("div", { class: "live-tools" }, stop), bar, told);
+    h("div", { class: "live-how" }, text, line), h("div", { class: "live-tools" }, stop), bar, notesBox);
   document.querySelector(".top").after(box);
 
   const source = new EventSource("events");
@@ -35,8 +35,8 @@
   });
   source.addEventListener("note", (event) => {
     notes.append(h("li", null, JSON.parse(event.data)));
-    told.hidden = false;
-    told.querySelector("summary").textContent = `Notes: ${notes.children.length}`;
+    notesBox.hidden = false;
+    notesBox.querySelector("summary").textContent = `Notes: ${notes.children.length}`;
   });
   source.addEventListener("open", () => { isAway = false; draw(); });
   source.addEventListener("error", () => {

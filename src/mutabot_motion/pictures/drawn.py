@@ -20,7 +20,7 @@ _WIDTH, _HEIGHT = 600, 600
 _EDGE, _LABEL = 16, 20
 _GROUND, _BLOCK, _OUTLINE, _TEXT = "#f7f8fa", "#dfe3e8", "#aab2bc", "#343a42"
 _ARM = "#c8d0d9"
-#: of things that move, told apart by people with any kind of sight
+#: of things that move, distinguishable with any kind of colour vision
 _COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8a6d00", "#5a5a5a")
 #: corners of the views: which axis goes to the right, and which goes up
 _VIEWS = (("from above", 0, 1), ("from the side", 0, 2))

@@ -62,7 +62,7 @@ def _drawn(view: MotionView, why: str) -> tuple[SidePictures, SidePictures]:
     mutant = view.mutant if view.mutant is not None or view.story else original
     if original is None or mutant is None or not (original.recording.tracks and mutant.recording.tracks):
         raise UsageError(
-            f"there is nothing to make a video of: {why}; and no simulator tells where things are "
+            f"there is nothing to make a video of: {why}; and no simulator reports where things are "
             "(mutabot.api.processes.Feed, see docs/motion.md)"
         )
     return DrawnPictures(original, [mutant]), DrawnPictures(mutant, [original])

@@ -1,6 +1,6 @@
 """SVR: another variable of the same type.
 
-Which variables there are, and of what type, only the baseline can tell; so this operator is asked once more
+Which variables there are, and of what type, is known from the baseline; so this operator is asked once more
 after it, with what was seen (``with_variables``).
 """
 

@@ -54,7 +54,7 @@ class SimulatedThread:
         self.number = number
         self.greenlet = run
         self.process = process
-        self.waits = 0  # how often it has waited: tells an outdated deadline
+        self.waits = 0  # how often it has waited, by which an outdated deadline is recognized
         self.is_parked = False
         self.was_woken = False
         self.is_over = False
@@ -130,7 +130,7 @@ class Scheduler:
         try:
             if task.pending is None:
                 function()
-        except BaseException as error:  # nobody above it could tell of it
+        except BaseException as error:  # no caller could report it
             self.interrupt(self.main, error)
         finally:
             task.is_over = True

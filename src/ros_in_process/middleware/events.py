@@ -19,12 +19,12 @@ class Status:
         self.has_changed = False
         self._handles: list[EventHandle] = []
 
-    def tell(self, handle: EventHandle) -> None:
+    def subscribe(self, handle: EventHandle) -> None:
         """Notify a handle from now on if something has happened."""
         self._handles.append(handle)
         handle.is_ready = self.has_changed
 
-    def forget(self, handle: EventHandle) -> None:
+    def unsubscribe(self, handle: EventHandle) -> None:
         self._handles.remove(handle)
 
     def count(self, **changes: Any) -> None:
@@ -62,10 +62,10 @@ class EventHandle(Waitable):
             raise TypeError(f"__init__(): incompatible constructor arguments: no {event!r} of a {end.role}")
         self.is_ready = False
         self._status: Status = end.statuses[event]
-        self._status.tell(self)
+        self._status.subscribe(self)
 
     def _release(self) -> None:
-        self._status.forget(self)
+        self._status.unsubscribe(self)
 
     def take_event(self) -> Any:
         return self._status.take()

@@ -129,7 +129,7 @@ class _GatheredEntities:
     Attributes:
         guards, waitables: of these, rclpy's own objects.
         is_plain: whether the executor has one thread, and waitables of rclpy alone. Its own guard condition,
-            which it triggers after each callback, then tells it nothing new. Waitables of others may count
+            which it triggers after each callback, then means nothing new. Waitables of others may count
             on being looked at once more.
     """
 

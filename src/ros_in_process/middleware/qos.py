@@ -78,15 +78,15 @@ class rmw_qos_profile_t:  # noqa: N801  (the name that rclpy uses)
             0 if time == RMW_DURATION_INFINITE else time
             for time in (self.lifespan, self.deadline, self.lease)
         ]
-        return self._told(self.depth, self.history, self.liveliness, times)
+        return self._as_dict(self.depth, self.history, self.liveliness, times)
 
     def as_discovered(self) -> dict[str, Any]:
         """Return the profile as others discover it: without depth and history, with defaults resolved."""
-        return self._told(
+        return self._as_dict(
             0, UNKNOWN, self.liveliness or AUTOMATIC, [self.lifespan, self.deadline, self.lease]
         )
 
-    def _told(self, depth: int, history: int, liveliness: int, times: list[int]) -> dict[str, Any]:
+    def _as_dict(self, depth: int, history: int, liveliness: int, times: list[int]) -> dict[str, Any]:
         lifespan, deadline, lease = map(_duration, times)
         return {
             "depth": depth,

@@ -81,7 +81,7 @@ class _ServiceEndpoint(Endpoint):
             return None, None
         message, info = self.queue.popleft()
         self.is_ready = bool(self.queue)
-        self._tell(event, info.request_id, message)
+        self._publish_event(event, info.request_id, message)
         return converted(message, kind), info
 
     def configure_introspection(self, clock: RosClock, profile: rmw_qos_profile_t, state: Any) -> None:
@@ -94,7 +94,7 @@ class _ServiceEndpoint(Endpoint):
             self._events.destroy_when_not_in_use()
             self._events = None
 
-    def _tell(self, event: int, request: rmw_request_id_t, message: Any) -> None:
+    def _publish_event(self, event: int, request: rmw_request_id_t, message: Any) -> None:
         if self._events is None or self._event_clock is None:
             return
         event_message = self.kind.Event()
@@ -146,7 +146,7 @@ class Client(_ServiceEndpoint):
         self._sent += 1
         self._open.add(self._sent)
         identity = rmw_request_id_t(self._sent, self)
-        self._tell(REQUEST_SENT, identity, copy)
+        self._publish_event(REQUEST_SENT, identity, copy)
         for service in list(self.matched):
             service.receive(copy, identity, REQUEST_RECEIVED)
         return self._sent
@@ -182,7 +182,7 @@ class Service(_ServiceEndpoint):
     def service_send_response(self, response: Any, identity: rmw_request_id_t) -> None:
         SCHEDULER.may_switch()
         copy = converted(response, self.kind.Response)
-        self._tell(RESPONSE_SENT, identity, copy)
+        self._publish_event(RESPONSE_SENT, identity, copy)
         if not identity.writer.is_destroyed:
             identity.writer.accept(copy, identity)
 

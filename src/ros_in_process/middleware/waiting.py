@@ -96,7 +96,7 @@ class WaitSet(Destroyable):
     ) -> None:
         """Wait until something is ready, or until the end; with ``polls``, only look.
 
-        ``known``: a guard condition that tells nothing new now: alone it is no reason to end the wait.
+        ``known``: a guard condition that means nothing new now: alone it is no reason to end the wait.
         """
         if polls or end is None:  # rclpy's executors have a timer among the members for any other time
             self._require_members()

@@ -72,10 +72,10 @@ class ChildProcess:
         return self._process is not None and self._process.returncode is None
 
     def terminate(self) -> None:
-        self._started().tell(15)
+        self._started().send_signal(15)
 
     def kill(self) -> None:
-        self._started().tell(9)
+        self._started().send_signal(9)
 
     def close(self) -> None:
         """Do nothing: no resource is held."""

@@ -180,7 +180,7 @@ class Process:
         for task in self._waiting:
             SCHEDULER.wake(task)
         if self.parent is not None:
-            self.parent.tell(signal.SIGCHLD)
+            self.parent.send_signal(signal.SIGCHLD)
         SCHEDULER.drop_process(self)
 
     def wait(self, timeout: float | None = None) -> bool:
@@ -197,7 +197,7 @@ class Process:
 
     # --- signals ---
 
-    def tell(self, signum: int) -> None:
+    def send_signal(self, signum: int) -> None:
         """Send a signal."""
         if self.returncode is not None:
             return
@@ -205,8 +205,8 @@ class Process:
         if signum in {signal.SIGSTOP, signal.SIGCONT, signal.SIGTSTP}:
             raise NeedsRealRos("a process is stopped and continued by signals")
         handler = self.handlers.get(signum, signal.SIG_DFL)
-        is_told = signals.handles(self, signum)
-        if is_told:
+        has_handler = signals.handles(self, signum)
+        if has_handler:
             signals.shut_down(self)
         if handler is signal.SIG_IGN or signum == 0:
             return
@@ -214,7 +214,7 @@ class Process:
             SCHEDULER.run_in(self.main_task, lambda: handler(signum, None))
         elif signum == signal.SIGINT and self.main_task is not None:
             SCHEDULER.interrupt(self.main_task, KeyboardInterrupt())
-        elif not is_told and signum != signal.SIGCHLD:
+        elif not has_handler and signum != signal.SIGCHLD:
             self.kill(signum)
 
 

@@ -179,7 +179,7 @@ class Popen:
         return tuple(None if pipe is None else pipe.read() for pipe in (self.stdout, self.stderr))  # type: ignore[return-value]
 
     def send_signal(self, signum: int) -> None:
-        self.process.tell(signum)
+        self.process.send_signal(signum)
 
     def terminate(self) -> None:
         self.send_signal(real_signal.SIGTERM)

@@ -16,7 +16,7 @@ from ros_in_process.machine.imports import refuse
 _LAUNCHERS = ("launch", "launch_ros", "launch_testing", "launch_testing_ros", "launch_pytest")
 #: programs that start nodes which are not Python's, or not seen here
 _STARTERS = {"ros2", "roslaunch", "gz", "gazebo", "ign", "gzserver", "rviz2"}
-#: events by which Python tells that a process is started, and which of their arguments is the command
+#: audit events of Python for the start of a process, and which of their arguments is the command
 _EVENTS = {"subprocess.Popen": 1, "os.system": 0, "os.posix_spawn": 1, "os.exec": 1}
 #: after these, a shell begins another command
 _OPERATORS = {";", "&", "&&", "|", "||", "(", "exec", "time", "env"}

@@ -24,7 +24,7 @@ def _kill(pid: int, signum: int) -> None:
     elif process.returncode is not None:
         raise ProcessLookupError(3, "No such process")
     else:
-        process.tell(signum)
+        process.send_signal(signum)
         SCHEDULER.pause()
 
 

@@ -74,7 +74,7 @@ def test_a_move_by_an_amount_counts_by_where_it_leads() -> None:
 def test_a_move_whose_end_nothing_tells_does_not_pass() -> None:
     by = Operation("robot:Arm.move_by", arguments=(quantity("dx", "x", mode=Mode.BY),))
     found = why(TableGuard({"box": [{"x": [0.2, 0.8]}]}), {"dx": 0.1}, by)
-    assert found == "where dx leads to is not known: no reading tells where the robot is now"
+    assert found == "where dx leads to is not known: no reading gives the robot's present position"
 
 
 def test_limits_are_in_their_own_unit() -> None:

@@ -430,7 +430,7 @@ def test_a_folder_of_a_project_finds_the_project_above(tmp_path: Path) -> None:
     below = write(tmp_path, files) / "notes" / "old"
     below.mkdir(parents=True)
     told: list[str] = []
-    propose(below, tell=told.append)
+    propose(below, notify=told.append)
     assert told[0] == f"project: {tmp_path}"
     assert (tmp_path / "mutabot.toml").exists()
     assert project_of(below) == Path("..", "..")

@@ -116,7 +116,7 @@ def test_more_names_than_a_list_of_commands_has_are_given_up() -> None:
     seen = _Seen(any_method("send"), WatchedCallable("*:*.send"))
     for number in range(30):
         _command(seen, None, {"channel": number, "value": 1})
-    assert seen.call.told_by == ""
+    assert seen.call.discriminator == ""
     assert not seen.call.commands
 
 

@@ -126,7 +126,7 @@ def test_a_failed_check_of_the_end_is_no_reason_where_only_the_way_differs(
         f"what would notice it, the original itself breaks with another seed: {monitor.statement}"
         if is_of_the_way
         else "box left its path by up to 0.2 m: at the end within your tolerance of 20 mm; "
-        "no bound on the way tells it from the original"
+        "no bound on the way distinguishes it from the original"
     )
 
 
@@ -141,12 +141,14 @@ def test_a_small_detour_is_told_with_the_tolerance_at_the_end(suite: SuiteChecks
 def test_what_turns_as_the_original_turns_is_told_so(suite: SuiteChecks) -> None:
     turned = Apart("box turned", "deg", 1.0, 78.0, 2.0, 0.1, 78.0, 0.5)
     told = in_test("test_it", "box was turned by up to 78 deg on its way", apart(0.001, 0.015), turned)
-    assert reason(suite, told).endswith("no bound on the way tells it from the original, which turns as well")
+    assert reason(suite, told).endswith(
+        "no bound on the way distinguishes it from the original, which turns as well"
+    )
 
 
 def test_a_large_detour_without_a_bound_is_not_said_to_be_small(suite: SuiteChecks) -> None:
     told = in_test("test_it", "box left its path by up to 0.2 m", apart(0.001, 0.2))
-    assert reason(suite, told).endswith("no bound on the way tells it from the original")
+    assert reason(suite, told).endswith("no bound on the way distinguishes it from the original")
 
 
 def test_where_only_times_differ_the_reason_is_a_deadline(suite: SuiteChecks) -> None:

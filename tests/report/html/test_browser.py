@@ -115,7 +115,7 @@ def test_the_list_is_searched_filtered_and_sorted_and_the_address_remembers(visi
     assert rows.count() == len(samples.MUTANTS)
     visit.page.get_by_label("Search").fill("tracker noise")
     assert rows.count() == 1
-    assert "1 mutant of 5" in visit.page.locator(".told").inner_text()
+    assert "1 mutant of 5" in visit.page.locator(".result-count").inner_text()
     visit.page.get_by_label("Search").fill("")
     visit.page.get_by_role("button", name="survived").click()
     assert rows.count() == 2

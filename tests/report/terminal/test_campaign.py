@@ -26,7 +26,7 @@ from mutabot.report.terminal.console import (
     terminal_text,
 )
 from mutabot.report.terminal.mutant import print_mutant
-from mutabot.report.texts import told_text
+from mutabot.report.texts import finding_text
 from mutabot.results.results import MutantResult, Results, read_results
 from results import samples
 
@@ -200,8 +200,8 @@ def test_that_no_probe_tells_how_the_world_ended_is_said_once(tmp_path: Path) ->
     ends = [Outcome(item.id, 0, Verdict.SURVIVED) for item in (samples.REVERSE, samples.SKIP)]
     with Journal.open(samples.write_journal(tmp_path / "journal.sqlite", outcomes=ends)) as journal:
         text = report(read_results(journal))
-    assert text.count("nothing tells how the world ended") == 1
-    assert "\n  Where no effect is listed, nothing tells how the world ended" in text
+    assert text.count("it is unknown how the world ended") == 1
+    assert "\n  Where no effect is listed, it is unknown how the world ended" in text
     with Journal.open(samples.write_journal(tmp_path / "one.sqlite", outcomes=ends[:1])) as journal:
         assert "Where no effect is listed" not in report(read_results(journal))
 
@@ -402,7 +402,7 @@ def test_an_effect_does_not_repeat_the_values_that_the_description_has(
         mutant=replace(first.mutant, description=description),
         why="sent -0.2 m instead of 0.2 m; box fell",
     )
-    assert told_text(told) == effect
+    assert finding_text(told) == effect
 
 
 def test_show_tells_where_a_mutant_stayed_away_and_why(results: Results) -> None:

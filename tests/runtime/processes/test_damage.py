@@ -268,7 +268,7 @@ def test_a_process_that_cannot_write_is_an_error_of_its_mutant_and_touches_no_ot
     assert found["full"].keys() == found["harmless"].keys()
     assert found["harmless"][harmful].verdict is Verdict.KILLED
     assert found["full"][harmful].verdict is Verdict.ERROR
-    assert "could not write what it had to tell" in str(found["full"][harmful].message)
+    assert "could not write its events" in str(found["full"][harmful].message)
     assert {mutant: each.verdict for mutant, each in found["full"].items() if mutant != harmful} == {
         mutant: each.verdict for mutant, each in found["harmless"].items() if mutant != harmful
     }

@@ -1,6 +1,6 @@
 """The baseline: the suite on the unmutated program, twice per round, recorded.
 
-It tells which tests reach which site with which values, how long they take, and whether they can be relied
+It holds which tests reach which site with which values, how long they take, and whether they can be relied
 on. What differs between the two runs of a round is flaky, and is set aside before any mutant runs. What calls
 of one place returned says what a mutant that leaves them out answers.
 """
@@ -40,7 +40,7 @@ class PlantedFaults:
         left_out_beforehand: those left out for another reason than that they would change nothing in the
             calls of the baseline.
         texts: program text with the alternatives that can run.
-        providers: who told of a place, for all places but those of calls.
+        providers: the provider of each place, except for places of calls.
     """
 
     by_id: dict[str, PlannedMutant] = field(default_factory=dict)
@@ -355,7 +355,7 @@ def cost(end: TestEnd) -> tuple[float, int]:
 
 def observation(end: TestEnd, places: Mapping[int, Place]) -> Observation:
     """Return what is compared of a test: its calls, and the probes at its end."""
-    # a campaign holds many traces: the calls of a site share what tells it
+    # a campaign holds many traces: the calls of a site share the objects that identify it
     known = {}
     for index in {call[0] for call in end.trace}:
         place = places[index]

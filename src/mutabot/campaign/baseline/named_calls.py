@@ -1,7 +1,7 @@
 """Find calls of operations in program text that no test runs, by their names.
 
-Only the text tells what is called there. A call counts as one of an operation if its last name is the
-operation's, unless the text says that it is something else: a function or method of the program, what was
+What is called there is known from the text alone. A call counts as one of an operation if its last name is
+the operation's, unless the text says that it is something else: a function or method of the program, what was
 imported from elsewhere, a built-in. Where what it is called on comes from elsewhere, or the command depends
 on what is computed, the call is doubtful: it is reported, and gets no mutants.
 """

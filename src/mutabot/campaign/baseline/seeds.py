@@ -1,7 +1,7 @@
 """Further runs of the original with other seeds, to know its own spread even if mutants run with few seeds.
 
 Its runs with seeds of rounds in which no mutant runs judge nothing. They show by how much things differ
-without any fault, so that reports tell of mutants by what is the same with all seeds.
+without any fault, so that reports describe mutants by what is the same with all seeds.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from mutabot.campaign.campaign import Campaign
     from mutabot.model import Mutant
 
-#: seeds with which the original is run at least, where a simulator tells where things are
+#: seeds with which the original is run at least, where a simulator reports where things are
 _SEEDS = 3
 
 

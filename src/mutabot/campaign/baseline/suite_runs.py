@@ -266,7 +266,7 @@ def _fails_if_instrumented(suite: _Suite, recording: Instrumentation) -> bool:
 
 
 def _note_operators(request: Request, progress: Progress) -> None:
-    for family in dict.fromkeys(rule.family for rule in load_all()):  # a broken plug-in is told now
+    for family in dict.fromkeys(rule.family for rule in load_all()):  # a broken plug-in is reported now
         if family not in (*request.families, *OF_CALLS):
             progress.note(f"operators of family {family!r} are not asked for: add --family {family}")
 
@@ -320,7 +320,7 @@ def _read(suite: _Suite, texts: Mapping[str, tuple[ProgramText, ...]]) -> Baseli
 
 
 def _note_read_texts(baseline: Baseline, request: Request, progress: Progress) -> None:
-    """Tell which files of the program tests read as text, and what comes of that."""
+    """Note which files of the program tests read as text, and what comes of that."""
     files = program_files(request.root, request.configuration.program)
     read = [file for file in files if baseline.is_read(file)]
     reasons = ["its mutants change the file as well, each for itself"] if baseline.texts else []

@@ -1,6 +1,6 @@
 """Find the parts of the program that no test reaches: files, functions, and calls of operations.
 
-Files and functions are those that no process has executed, as far as all processes could tell. A call of an
+Files and functions are those that no process has executed, as far as all processes report. A call of an
 operation's name was reached if it is a site, or if something else was seen to stand there.
 """
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 #: a call in a file, by where it ends: a chain over several lines begins elsewhere for the interpreter
 _End = tuple[str, int, int]
-#: what a process that cannot be seen is told by
+#: what identifies a process that cannot be seen
 UNSEEN = "processes"
 _DOUBT = "a process that cannot be seen may reach it"
 _OTHER_TEXT = "the code that runs is not compiled from this file's text"

@@ -65,7 +65,7 @@ def note_fit(
 ) -> None:
     """Note probes that some tests cannot read, a clock that never ticks, and values out of range.
 
-    ``shared`` tells of sites that are one for several calls.
+    ``shared``: of sites that are one for several calls.
     """
     ends = _with_calls(baseline)
     for probe in vocabulary.probes:

@@ -130,7 +130,7 @@ def controls_of(baseline: Baseline, mutants: Iterable[Mutant], *, forked: bool =
     come after. What is forked before any test has an identity of its own, which runs the whole suite; the
     other pair is then forked as late as possible, when there is most that a fork could share.
     """
-    apart: dict[Place, bool] = {}  # of several mutants at a place, the first tells how its controls act
+    apart: dict[Place, bool] = {}  # of several mutants at a place, the first decides how its controls act
     for mutant in mutants:
         if not forked or not baseline.is_apart(mutant):
             apart.setdefault(Place.of(mutant), baseline.is_apart(mutant))
@@ -238,7 +238,7 @@ class ForkTrust:
         which = "that and later tests" if is_of_test else "any test"
         self._campaign.progress.note(
             f"the {control.name} control of {control.subject} ended wrongly in a fork{where} "
-            f"({wrong}): what forks tell of {which} does not count; their mutants run in processes of their "
+            f"({wrong}): results of forks from {which} do not count; their mutants run in processes of their "
             "own"
         )
 

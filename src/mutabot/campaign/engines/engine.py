@@ -4,8 +4,8 @@
 mutant in a process of its own. With ``auto``, ``replay`` judges what ``fork`` cannot.
 
 A test that passed in the baseline and failed in a fork parent may be flaky, or something that a fork left
-behind made it fail. One more run without forks tells: a test that fails again is flaky and judges nothing. Of
-one that passes, that cannot be told apart, so its kills are repeated.
+behind made it fail. One more run without forks decides: a test that fails again is flaky and judges nothing.
+Of one that passes, the two cannot be distinguished, so its kills are repeated.
 """
 
 from __future__ import annotations
@@ -183,7 +183,7 @@ def try_controls(campaign: Campaign, mutants: Sequence[Mutant]) -> tuple[int, Un
 
 
 def _report_replayed(campaign: Campaign, left: Unhandled) -> None:
-    """Tell the user which mutants run in processes of their own, and why."""
+    """Note which mutants run in processes of their own, and why."""
     tests: dict[str, list[str]] = {}
     for test, reason in left.reasons.items():
         tests.setdefault(reason, []).append(test)

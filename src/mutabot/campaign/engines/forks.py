@@ -141,7 +141,7 @@ class _RunInForks(Run):
         held: how its own tests ended and what is compared of them.
         weight: how much that is, in short tests.
         packed: the same of those before: all that were forked in a test wait for their parent to end it.
-        forked: number of the test in which it was forked, as far as it has told; -1: before any.
+        forked: number of the test in which it was forked, as far as it has reported; -1: before any.
         is_decided: whether one of them has decided about the mutant.
     """
 

@@ -10,7 +10,7 @@ operator leaves to chance what happens.
 
 A kill that does not come out again becomes ``unstable``, and all other kills of its test are in doubt as
 well. Kills in doubt are repeated cheapest first, within a small share of the campaign's time, and a larger
-one as soon as one does not come out again. How many were left is told.
+one as soon as one does not come out again. How many were left is reported.
 """
 
 from __future__ import annotations

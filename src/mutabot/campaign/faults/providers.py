@@ -168,8 +168,8 @@ def _answers(original: Original, place: Place, *, of_any: bool) -> RecordedAnswe
         for other, answers in original.answers.items()
         if (other.operation, other.pattern) == (place.operation, place.pattern) and answers.first
     ]
-    is_told = others and (of_any or all(other.is_nothing for other in others))
-    return others[0] if is_told else own
+    is_known = others and (of_any or all(other.is_nothing for other in others))
+    return others[0] if is_known else own
 
 
 def _subjects(
@@ -249,7 +249,7 @@ def _predict(rule: Operator, subject: Subject, hits: list[Hit]) -> tuple[_Predic
             middleware = rule.middleware(subject, Random(1))
         try:
             passage = _rehearsal(rule, subject, hit, middleware)
-        except LookupError:  # it asks where the robot is, which only the run can tell
+        except LookupError:  # it asks where the robot is, which only the run shows
             return (before, None), None
         if passage.acted:
             return (before, _changed(subject, passage)), None
@@ -268,7 +268,7 @@ def _why_unmet(
         case Need.ERROR if not _has_raised(original, place):
             return "no call raises in the baseline"
         case Need.PLACE if not _has_reading(subject, vocabulary):
-            return f"{subject.current or 'no reading'} does not tell where it is"
+            return f"{subject.current or 'no reading'} does not give its position"
         case Need.CLOCK if vocabulary.clock is None:
             return "the vocabulary names no clock"
         case Need.WAIT if vocabulary.wait is None and subject.operation.named is None:
@@ -391,12 +391,12 @@ def selected_providers(project: Project) -> list[FaultProvider]:
     return [provider for provider in known if provider.is_asked_for(project)]
 
 
-def texts_of(project: Project, tell: Callable[[str], None]) -> dict[str, tuple[ProgramText, ...]]:
+def texts_of(project: Project, notify: Callable[[str], None]) -> dict[str, tuple[ProgramText, ...]]:
     """Return the program text that the baseline has to instrument, by the names of its providers."""
     found: dict[str, tuple[ProgramText, ...]] = {}
     first = 1
     for provider in selected_providers(project):
-        texts = tuple(provider.texts(project, first, tell))
+        texts = tuple(provider.texts(project, first, notify))
         if texts:
             found[provider.name] = texts
         first += sum(len(text.places) for text in texts)

@@ -49,7 +49,7 @@ class PastDependencies:
     Attributes:
         common, place, own: as in its key.
         tree: the program files of then.
-        found_in: those in which it was found; the executed units are told by their lines.
+        found_in: those in which it was found; the executed units are identified by their lines.
         executed: what of them was executed; None if that is not known.
         notes: digests of notes that were read.
     """
@@ -337,7 +337,7 @@ class OutcomeWriter:
     Args:
         dependencies: None where files change meanwhile: then nobody knows, and nothing is to be reused.
         mutants: those of the plan.
-        tell: told of each outcome, first of those that are in the journal already.
+        on_outcome: called with each outcome, first with those that the journal holds already.
 
     Attributes:
         journal: where they go.
@@ -348,9 +348,9 @@ class OutcomeWriter:
         journal: Journal,
         dependencies: Dependencies | None = None,
         mutants: Iterable[Mutant] = (),
-        tell: Callable[[MutantEnd], None] = lambda end: None,
+        on_outcome: Callable[[MutantEnd], None] = lambda end: None,
     ) -> None:
-        self.journal, self._dependencies, self._tell = journal, dependencies, tell
+        self.journal, self._dependencies, self._on_outcome = journal, dependencies, on_outcome
         self._mutants = {mutant.id: mutant for mutant in mutants}
         accepting: Accepted = journal.meta().get(ACCEPTED) or Accepted()
         self._acceptances = accepting.mutants
@@ -366,7 +366,7 @@ class OutcomeWriter:
     def _report_units(self, outcome: Outcome, *, is_reused: bool = False) -> None:
         mutant = self._mutants.get(outcome.mutant)
         if mutant is not None:
-            self._tell(MutantEnd(mutant, outcome, self._acceptances.get(mutant.id), is_reused))
+            self._on_outcome(MutantEnd(mutant, outcome, self._acceptances.get(mutant.id), is_reused))
 
     def _key_of(self, outcome: Outcome, dependencies: Dependencies) -> str:
         executed = dependencies.stored(outcome.executed)

@@ -1,6 +1,6 @@
 """Reuse of an earlier campaign's runs of the original.
 
-A run is kept as the events that its process told, so a baseline is taken from it as from a process. It
+A run is kept as the events that its process sent, so a baseline is taken from it as from a process. It
 depends on its job and on all that any outcome depends on. As every mutant is compared with it, it also
 depends on what outcomes leave to the user: environment variables, and the machine, by whose speed the limits
 of time are set.
@@ -48,7 +48,7 @@ class OriginalRuns:
     Args:
         request: the campaign.
         kept: what an earlier one left; None for nothing.
-        progress: told from when the runs are that are reused.
+        progress: gets a note of how old the reused runs are.
 
     Attributes:
         installed: see ``keys.installed``, as it is before the baseline.

@@ -1,7 +1,7 @@
 """The content of installed packages whose code takes part in a run.
 
-A version tells what an installed package holds, unless somebody works on it: one that is installed editable,
-or brings parts of mutabot, counts by the content of its files, of whatever kind they are.
+A version identifies the content of an installed package, unless somebody works on it: one that is
+installed editable, or brings parts of mutabot, counts by the content of its files, of whatever kind they are.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from .snapshot import Snapshot, _digest_of
 
 #: folders in which packages of many lie side by side
 _SHARED = {"site-packages", "dist-packages"}
-#: what a distribution tells of itself: its version is known without
+#: metadata of a distribution: its version is known without it
 _OF_INSTALLERS = (".dist-info", ".egg-info", "__pycache__")
 
 
@@ -61,7 +61,7 @@ def _of_module(name: str) -> Iterator[Path]:
     found = [*(spec.submodule_search_locations or ()), *([spec.origin] if spec.has_location else [])]
     for place in map(Path, filter(None, found)):
         top = place if place.is_dir() or spec.submodule_search_locations is None else place.parent
-        # helpers may be modules beside it; among the packages of others its distribution tells which
+        # helpers may be modules beside it; among the packages of others its distribution lists them
         yield top if top.parent.name in _SHARED else top.parent
 
 

@@ -1,8 +1,8 @@
 """Snapshots of the project's files that outcomes depend on, with digests of their content.
 
-All that tests could import or read, as far as anybody can tell. Of texts and logs, which people and tools
+All that tests could import or read, as far as that can be known. Of texts and logs, which people and tools
 leave everywhere, only those that something has to do with: which files are opened while the baseline runs, by
-whatever process, the kernel tells.
+by whatever process, is known from the kernel.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ def role_of(file: str, request: Request) -> str:
 
 
 def is_source(file: str, request: Request) -> bool:
-    """Return whether a file counts by its units: Python, or program text whose language tells them."""
+    """Return whether a file counts by its units: Python, or program text whose language defines them."""
     return file.endswith(".py") or (unit_parser(file) is not None and role_of(file, request) == "program")
 
 
@@ -257,8 +257,8 @@ class OpenedFiles:
         folders: the folders in it to look at, relative to it.
 
     Attributes:
-        opened: the files, relative to the root, once the watch is over; None where the kernel could not tell
-            about all of them.
+        opened: the files, relative to the root, once the watch is over; None where the kernel could not
+            report them about all of them.
     """
 
     def __init__(self, root: Path, folders: Iterable[str]) -> None:

@@ -113,7 +113,7 @@ def _cost(mutant: Mutant, baseline: Baseline) -> float:
 # One journal of all
 
 
-#: differences that are told; the rest is counted
+#: differences that are named; the rest is counted
 _SHOWN = 5
 #: how a campaign ends that lacks something
 _INCOMPLETE = "not all shards are there"

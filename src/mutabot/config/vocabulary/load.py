@@ -33,7 +33,7 @@ def load_vocabulary(names: Sequence[str], root: Path, families: Iterable[str] = 
     those that are asked for, may do without any.
 
     Raises ConfigurationError, VocabularyError or UnknownNameError: the first mistake, with a message that
-    tells about all of them.
+    names all of them.
     """
     merged = _Merged(need_vocabulary(families))
     documents = [_find(name, root) for name in dict.fromkeys(names)]
@@ -179,7 +179,7 @@ def check_operations(entries: Iterable[Read], read: Mapping[str, Read]) -> None:
                 else:
                     (place / key).unknown("operation", name, read)
         if not operation.currents and any(argument.relative for argument in _all_arguments(operation)):
-            place.error("relative = true needs current: what tells where the robot is")
+            place.error("relative = true needs current: the operation that reads where the robot is")
 
 
 def _check_current(operation: Operation, name: str, reading: Operation) -> None:

@@ -250,7 +250,7 @@ def _check_signature(place: DocumentPlace, operation: Operation) -> None:
         if operation.kind == "methods" and operation.described:
             names = ", ".join(operation.described)
             at.error(
-                "is needed where only the method is named: what it is called with tells no names; "
+                "is needed where only the method is named: its arguments have no names; "
                 f'write signature = "({names}, …)", all in their order'
             )
         return

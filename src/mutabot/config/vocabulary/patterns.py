@@ -1,6 +1,6 @@
 """Read descriptions of calls that stand for several commands: texts, ``when``, and modes by an argument.
 
-Entries of ``patterns`` tell text commands apart.
+Entries of ``patterns`` distinguish text commands.
 
 ``when = { argument = "type", value = "gripper" }``: one callable that does everything, such as
 ``client.write(node, value)``, is several operations in the words of a test engineer. Each has an entry of its

@@ -213,7 +213,7 @@ def note_faults(
 ) -> bool:
     """Note the rules that a quantity breaks, the first of each key; if its kind is wrong, only that.
 
-    ``is_vector`` tells whether it is a slice that stays one quantity. Returns whether there are any.
+    ``is_vector``: whether it is a slice that stays one quantity. Returns whether there are any.
     """
     noted: set[str] = set()
     rules = _of_kind(table, is_written, sides)

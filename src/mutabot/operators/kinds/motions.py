@@ -111,7 +111,7 @@ class Reverse(ValueOperator):
 class ByTo(ValueOperator):
     """A relative amount is taken for an absolute target, or the reverse.
 
-    Where: written translations and rotations whose operation has a current that tells them.
+    Where: written translations and rotations whose operation has a current that reads them.
 
     Published: 5. translate forward by δ → translate forward *to* δ; 6. translate backwards by δ →
     translate backwards *to* δ

@@ -1,7 +1,7 @@
 """Workflow commands of GitHub Actions: each survivor is an annotation beside the line in a pull request.
 
 A step shows at most ten warnings and ten notices: the survivors that matter most come first, and what is left
-is told in a last notice.
+is in a last notice.
 """
 
 from __future__ import annotations

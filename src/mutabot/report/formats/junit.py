@@ -12,6 +12,7 @@ from mutabot.report.texts import (
     ACCEPTED,
     NOT_RUN,
     acceptance_text,
+    finding_text,
     next_step,
     one_line,
     places_text,
@@ -19,7 +20,6 @@ from mutabot.report.texts import (
     rounds_text,
     short_reason,
     state_of,
-    told_text,
 )
 
 if TYPE_CHECKING:
@@ -105,7 +105,7 @@ def _case(suite: Xml.Element, result: MutantResult, material: Material) -> None:
         return
     reason = f": {short_reason(result)}" if state != NOT_RUN else ""
     ended = acceptance_text(result) or f"{rounds_text(result)}{reason}"
-    why = told_text(result) if element == "failure" else ended
+    why = finding_text(result) if element == "failure" else ended
     child = Xml.SubElement(case, element, {"message": one_line(f"{mutant.description}: {why}")})
     if element != "skipped":
         child.set("type", state.replace(" ", "-"))

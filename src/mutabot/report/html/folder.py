@@ -30,10 +30,10 @@ from mutabot.report.texts import (
     acceptance_text,
     effect_text,
     mapped,
+    most_informative,
     next_step,
     place_text,
     state_of,
-    telling,
 )
 from mutabot.results.divergence import weight_of
 from mutabot.results.films import KeptFilm
@@ -395,7 +395,7 @@ def mutant_page(
         suggestion: what was suggested for it; None if nothing was looked for.
         film: what the page says of its film; None if there is none.
     """
-    number, diverged = telling(result) or (0, None)
+    number, diverged = most_informative(result) or (0, None)
     place = place_text(result, number, diverged) if diverged is not None and diverged.example else ""
     check = (
         data_of.facts(suggestion, "code test notes") if suggestion is not None and suggestion.code else None
@@ -403,7 +403,7 @@ def mutant_page(
     return {
         **without_empty(data_of(result)),
         "change": result.change,
-        "told": place,
+        "effect_place": place,
         "suggestion": check,
         "next": next_step(result, suggestion),
         "film": film,

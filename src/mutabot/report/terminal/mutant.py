@@ -13,7 +13,14 @@ from rich.text import Text
 from mutabot.errors import plural
 from mutabot.model.outcome_text import describe_end, numbers_text
 from mutabot.report.sections import Section, between
-from mutabot.report.texts import acceptance_text, effect_text, excerpts, next_step, places_text, telling
+from mutabot.report.texts import (
+    acceptance_text,
+    effect_text,
+    excerpts,
+    most_informative,
+    next_step,
+    places_text,
+)
 
 from .console import Breakable, below, heading, letters, make_table, mark_of, print_section, terminal_text
 
@@ -117,7 +124,7 @@ def _rounds(result: MutantResult, *, everything: bool) -> Section:
     groups: dict[Any, list[int]] = {}
     for number, outcome in enumerate(result.rounds):
         groups.setdefault(outcome and (describe_end(outcome), outcome.place), []).append(number)
-    most = telling(result)
+    most = most_informative(result)
     lines = [letters(result.rounds).plain] if len(result.rounds) > 1 else []
     for numbers in groups.values():
         outcome = result.rounds[most[0] if most is not None and most[0] in numbers else numbers[0]]
@@ -156,7 +163,7 @@ def _details(outcome: Outcome) -> Iterator[str]:
 
 def _happened(result: MutantResult) -> Iterator[Section]:
     """Yield what the robot did in the most informative round and test; nothing without recordings."""
-    number, diverged = telling(result) or (0, None)
+    number, diverged = most_informative(result) or (0, None)
     if diverged is None:
         return
     title = f"What the robot did (round {number + 1}, {diverged.test})"
@@ -175,7 +182,7 @@ def _sentences(diverged: Diverged) -> Iterator[str]:
 
 def _checks(result: MutantResult, *, everything: bool) -> Iterator[Section]:
     """The checks that let a survivor through in the most telling round and test, nearest to fail first."""
-    number, diverged = telling(result) or (0, None)
+    number, diverged = most_informative(result) or (0, None)
     outcome = result.rounds[number]
     if outcome is None or not result.is_survivor:
         return

@@ -29,7 +29,7 @@ _TELLING = 0.1
 #: once, as those of tests with many mutants do, say nothing about the rest while there is none
 _STALE, _RECENT = 0.25, 5.0
 _NOT_COVERED = "not covered"
-#: states that are told at once
+#: states that are shown at once
 _SHOWN = ("survived", _NOT_COVERED)
 
 
@@ -113,7 +113,7 @@ class Tally:
             self._counts[before] -= 1
         self._states[key] = state
         self._counts[state] += 1
-        # of a place that no test reaches, the mutants are told together
+        # of a place that no test reaches, the mutants are listed together
         shown = end.mutant.site.id if state == _NOT_COVERED else end.mutant.id
         is_new = state in _SHOWN and shown not in self._shown
         if end.mutant.has_sizes or not (is_new or before in _SHOWN):

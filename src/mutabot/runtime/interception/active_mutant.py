@@ -51,7 +51,7 @@ class RefusedCalls:
     as well shows nothing but what the original shows.
 
     Attributes:
-        on_refused: told of each one in the baseline; None in all other runs.
+        on_refused: called for each refusal in the baseline; None in all other runs.
         changed: files of the program that are others in this process: sites are known by their names there.
     """
 
@@ -190,9 +190,9 @@ class MutatedSite:
         mutant: the mutant.
         operation: the operation it acts on.
         refusals: names of exceptions that are refusals.
-        on_act: told when it changes something for the first time in a test.
-        on_call: told when a mutated call begins (True) and when it has returned or raised (False).
-        time: tells simulated seconds since the test's first tick; None without a clock.
+        on_act: called when it changes something for the first time in a test.
+        on_call: called when a mutated call begins (True) and when it has returned or raised (False).
+        time: returns simulated seconds since the test's first tick; None without a clock.
         activity: what it did in the running test.
         rule: its operator.
         watched: how the robot says that it refuses the last mutated call of the running test.
@@ -210,7 +210,7 @@ class MutatedSite:
 
     def __post_init__(self) -> None:
         self.activity, self.early = Activity(), Activity()
-        self._told_by: tuple[Refused, ...] = ()
+        self._refusals: tuple[Refused, ...] = ()
         self._commands, self._reported, self._is_passed = 0, 0, False
         self._forget()
 
@@ -340,7 +340,7 @@ class MutatedSite:
     def heard(self, name: str, message: Any) -> None:
         """Check whether a message says that the robot refuses a command."""
         if not any(
-            refusal.topic is not None and fnmatchcase(name, refusal.topic) for refusal in self._told_by
+            refusal.topic is not None and fnmatchcase(name, refusal.topic) for refusal in self._refusals
         ):
             return
         self._reported += 1
@@ -352,7 +352,7 @@ class MutatedSite:
     def passed_by(self, call: Call) -> None:
         """Note another call; if it is the same command, refusals from now on belong to it.
 
-        Unless the mutated call was several commands, and the robot has told of some: it will tell of the
+        Unless the mutated call was several commands, and the robot has reported some: it will report the
         others first.
         """
         if self.watched and call.operation.target == self.operation.target:
@@ -362,7 +362,7 @@ class MutatedSite:
 
     def count(self, call: Call) -> None:
         """Count one more command that the mutated call gives to the robot."""
-        self._told_by = possible_refusals(call)
+        self._refusals = possible_refusals(call)
         self._commands += 1
 
     def refused_as(self, text: str | None) -> None:
@@ -384,7 +384,7 @@ class MutatedSite:
     def _idle_answer(self, idle: Idle, adapter: Adapter, call: Call) -> Reply:
         """Return the command's answer if the robot does nothing, as recorded in the baseline.
 
-        Where that changed from call to call it tells something about the world, which stands still now: so
+        Where that changed from call to call it is information about the world, which stands still now: so
         the robot's last answer in this test goes first, if it has given one.
         """
         if idle.is_varying(*self._test):

@@ -53,7 +53,7 @@ class Invocation:
         wrapped: the original callable, bound.
         instance: the object it is bound to, or None.
         args, kwargs: as the program gave them.
-        where: what the frames do not tell of it.
+        where: what the frames do not show of it.
         caller: makes calls of callables as the program does.
         signature: by which the arguments are read.
         values: the arguments by parameter, with known defaults; None if they do not fit the signature.
@@ -180,11 +180,11 @@ class Adapter:
 
     Attributes:
         operation: the operation.
-        readings: the operations that tell where the robot is, by name.
-        on_problem: told about each path or argument that does not fit: (key, error).
+        readings: the operations that read where the robot is, by name.
+        on_problem: called with (key, error) for each path or argument that does not fit.
         lately: values that last came by under the names of a middleware, by target; adapters share it.
         handles: classes that are part of the robot API: their objects are never copied.
-        now, wait: tell the program's time, s, and let so much of it pass.
+        now, wait: return the program's time, s, and let so much of it pass.
         handler: what stands around the operation.
         remembers: the commands, by the texts of their patterns, whose last answers somebody may ask for.
         commands: how often the robot was made to do this, if it does anything.
@@ -440,7 +440,7 @@ class Adapter:
         own = pattern.current if pattern is not None else None
         reading = self.readings.get(own or self.operation.current or "")
         if reading is None:
-            raise LookupError(f"{self.operation.target} names no reading that tells where {quantity.name} is")
+            raise LookupError(f"{self.operation.target} names no reading of where {quantity.name} is")
         is_named = reading.named is not None
         value = None if is_named else await self._ask(reading, invocation)
         lately = self.lately.get(reading.target, {})

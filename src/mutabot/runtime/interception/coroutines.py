@@ -30,7 +30,7 @@ def runs_when_awaited(wrapped: Callable[..., Any]) -> bool:
 
 
 def named_as(wrapped: Callable[..., Any], waiting: Any) -> Any:
-    """Give a coroutine the name of what the callable returns: Python and tests tell of it by that."""
+    """Give a coroutine the name of what the callable returns: Python and tests refer to it by that."""
     function = unbound(wrapped)
     is_function = type(function) is FunctionType
     if is_mock(getattr(function, "mock", None) if is_function else function, ASYNC_MOCK):

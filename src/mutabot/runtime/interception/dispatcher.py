@@ -1,7 +1,7 @@
 """Pass calls of operations from the program to the robot and back.
 
-Every call of an operation goes it, mutated or not, plain or async. ``Dispatcher.handler`` tells the calls
-that count from all others; ``Dispatcher.dispatch`` has the phases of the way in their order. It is a
+Every call of an operation takes it, mutated or not, plain or async. ``Dispatcher.handler`` separates the
+calls that count from all others; ``Dispatcher.dispatch`` has the phases of the way in their order. It is a
 coroutine function, as an operator's middleware is, so that one text serves plain and async calls: of a plain
 one nothing ever suspends.
 """
@@ -94,17 +94,18 @@ class Dispatcher:
         recorder: traces the calls.
         instances: notes which objects are used.
         along: reads probes along the way.
-        on_error: told of each unmutated call that raised, after what it raised.
-        on_end: told of each call that is over, with what it read; None if nobody asks.
+        on_error: called for each unmutated call that raised, after it raised.
+        on_end: called for each call that is over, with what it read; None if not wanted.
         turn: asked before each call, in a process that does not see its tests begin; None in all others.
         meter: what the running test has used; None between tests: then nothing is noted.
-        on_reach: told of each call before it is made, by its key, and by its number among those of its site;
+        on_reach: called before each call is made, with its key, and by its number among those of its site;
             None if nobody asks.
         oracle_nodes: names of nodes whose calls are the oracle's, wherever they stand.
         mutant: the mutant of calls that is at work; None for the original, and for other mutants.
-        on_live: told in the baseline of each call that returned the robot's own memory; None in other runs.
+        on_live: called in the baseline for each call that returned the robot's own memory; None in other
+            runs.
         refused: the calls of the running test that the robot refuses in the original.
-        given: where functions of the robot were handed on, for calls that no frame tells of.
+        given: where functions of the robot were handed on, for calls that no frame shows.
         calls: how often each site has been called in the running test, by operation and pattern.
     """
 
@@ -165,7 +166,7 @@ class Dispatcher:
                 if acts_at_once:
                     caller = noting(caller)
                 invocation: Any = Invocation(wrapped, instance, args, kwargs, where, caller)
-                if is_async:  # only what is begun is told of, and by its name, if it is never awaited
+                if is_async:  # only what is begun is reported, and by its name, if it is never awaited
                     begin: Any = partial(self.dispatch, adapter, site, invocation, is_async, is_direct)
                     waiting: Any = _awaited(begin, invocation, acts_at_once)
                     return named_as(wrapped, called(waiting, _runs) if acts_at_once else waiting)
@@ -194,7 +195,7 @@ class Dispatcher:
             and any(fnmatchcase(node, pattern) for pattern in self.oracle_nodes)
         ):
             return site[0], Role.ORACLE
-        if site is None and code is None:  # in a thread, or in an operation: no frame tells it
+        if site is None and code is None:  # in a thread, or in an operation: no frame shows it
             site = where.handed or self._given(frame, adapter, in_operation)
         return site
 
@@ -350,7 +351,7 @@ _callers: ModuleCache[tuple[int, int, bool], tuple[Caller, dict[str, Any]]] = Mo
 def caller_of(frame: FrameType, is_async: bool) -> Caller:
     """Return the frame of a caller, with its current position.
 
-    Warnings with ``stacklevel=2``, ``sys._getframe(1)`` and ``inspect.stack()[1]`` tell by whom a function
+    Warnings with ``stacklevel=2``, ``sys._getframe(1)`` and ``inspect.stack()[1]`` show by whom a function
     was called. Between the program and an operation there are frames of ours; the last of them has the
     program's file, line, function and global names.
     """

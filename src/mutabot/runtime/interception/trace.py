@@ -44,14 +44,14 @@ class Recorder:
     """The sites of the session, and the trace of the running test.
 
     Attributes:
-        on_site: told about each site when it is first reached.
+        on_site: called with each site when it is first reached.
         answers: notes what commands answered, in the baseline; None in all other sessions.
         trace: hits of the running test: site index, written values, read values, note of the answer. Beyond
             the first ``TRACE_LIMIT`` hits, the first one of each site.
         truncated: whether hits were left out of the trace.
         sites: all sites reached so far, in the order of their indexes.
-        on_hit: told of each hit, as it is in the trace; None while nobody asks.
-        clock: tells the time, s; None where it is not noted.
+        on_hit: called with each hit, as it is in the trace; None while not wanted.
+        clock: returns the time, s; None where it is not noted.
         when: when each hit of the trace began and ended, s.
         began: when the call that is under way began, s.
     """
@@ -201,7 +201,7 @@ class Locator:
         program, oracle: files and folders, relative to the root.
 
     Attributes:
-        role: tells whose file it is; None for files of neither.
+        role: returns whose file it is; None for files of neither.
     """
 
     def __init__(self, root: str, program: tuple[str, ...], oracle: tuple[str, ...]) -> None:

@@ -59,7 +59,7 @@ class Child:
     Attributes:
         mutant: id of its mutant.
         is_control: whether that is a control, which goes on when the campaign is interrupted: what other
-            forks have told counts by it.
+            forks have reported counts by it.
         is_test_control: whether that is a control of the test alone.
         fork: its number among those that were forked here.
         pids: its process, and what keeps its namespace.
@@ -452,12 +452,15 @@ class ForkParent:
         _, status = os.waitpid(child.pids.fork, 0)
         namespaces.end_first(child.pids.first)
         code, slot = os.waitstatus_to_exitcode(status), self._slots.get(child.mutant, -1)
-        # at the end of the session the exit code is the suite's own; a control that told nothing is missed
-        is_told = code in (DECIDED, STOPPED) or child.is_test_control or (code >= 0 and self._finished[slot])
+        # at the end of the session the exit code is the suite's own; a control that reported nothing is
+        # missed
+        is_reported = (
+            code in (DECIDED, STOPPED) or child.is_test_control or (code >= 0 and self._finished[slot])
+        )
         died = None
-        if child.is_unwanted and not is_told:
+        if child.is_unwanted and not is_reported:
             self.event_file.send(Unforked(self._test, (child.mutant,), _INTERRUPTED))
-        elif not is_told or (child.overdue and not child.is_test_control):
+        elif not is_reported or (child.overdue and not child.is_test_control):
             test, deadline = self._name_of(self._tests[slot]), child.deadline
             died = ForkDied(
                 child.mutant, test, code, deadline.overdue(test) if child.overdue else None,

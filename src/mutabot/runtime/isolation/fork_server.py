@@ -27,7 +27,7 @@ from mutabot.shared_memory import SharedMemory
 
 _MESSAGE_BYTES = 1 << 12
 #: what a copy is to do: its folder with the job file in it, and the writing end of the pipe by which the
-#: controller is told that there are events
+#: controller learns that there are events
 ForkRequest = tuple[str, int]
 
 

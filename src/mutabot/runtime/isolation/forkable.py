@@ -81,7 +81,7 @@ _GRAPHICS = ("libEGL", "libGL.", "libGLX", "libOSMesa", "libvulkan")
 _SELF = "/proc/self"
 #: devices that keep nothing
 _NOBODYS = ("/dev/null", "/dev/urandom", "/dev/random", "/dev/zero")
-#: what tells of processes, and can be asked by any number of them
+#: interfaces about processes, which any number of them can ask
 _HARMLESS = ("/proc/", "anon_inode:[pidfd]", "pidfd:")
 #: what threads of LTTng, which comes with ROS 2, wait at
 _TRACER = "/dev/shm/lttng-ust-wait"
@@ -135,7 +135,7 @@ def _waits_in(thread: str, areas: list[tuple[int, int]]) -> bool:
     try:
         with real_open(f"{_SELF}/task/{thread}/syscall", encoding="ascii") as file:
             fields = file.read().split()
-    except OSError:  # it has just ended, or the kernel does not tell
+    except OSError:  # it has just ended, or the kernel gives no answer
         return False
     if len(fields) < 2 or not fields[1].startswith("0x"):
         return False

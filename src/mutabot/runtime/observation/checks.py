@@ -21,7 +21,7 @@ from mutabot.model.data import is_of_numpy
 from mutabot.model.outcome import Check
 from mutabot.runtime.program_text import loading
 
-#: checks of a test that are told; of others only how many there are
+#: checks of a test that are reported; of others only how many there are
 MOST = 40
 #: elements of containers beyond which they are not looked at
 _MOST_ITEMS = 1000

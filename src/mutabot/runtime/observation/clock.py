@@ -69,7 +69,7 @@ class Instances:
         module_name, _, qualname = name.partition(":")
 
         def imported(module: ModuleType) -> None:
-            with contextlib.suppress(NotFoundError, TypeError):  # the inspection of the vocabulary tells
+            with contextlib.suppress(NotFoundError, TypeError):  # the inspection of the vocabulary reports it
                 owner, last, _ = resolve(module, qualname)
                 found = getattr(owner, last)
                 if isinstance(found, type) and found not in self._classes:
@@ -85,8 +85,8 @@ class Instances:
     def start(self, fixtures: Callable[[], Iterable[Any]] | None = None) -> None:
         """Begin a new test, which has used no object yet.
 
-        ``fixtures`` tells what objects its fixtures hold. None in a process below the tests, which goes on
-        with what it has made.
+        ``fixtures`` returns the objects that its fixtures hold. None in a process below the tests, which goes
+        on with what it has made.
         """
         self._used.clear()
         self._fixtures = fixtures
@@ -212,8 +212,8 @@ class ClockReader:
     Args:
         clock: what the vocabulary says.
         meter: the meter of the running test; None between tests.
-        on_problem: told why a call gives no time: (key, text).
-        on_tick: told the simulated seconds of the running test after each call.
+        on_problem: called with (key, text) where a call gives no time.
+        on_tick: called with the simulated seconds of the running test after each call.
     """
 
     def __init__(
@@ -240,16 +240,16 @@ class ClockReader:
         elif type(result) is CoroutineType:  # nothing has happened yet
             return self._awaited(result, wrapped, instance, args, kwargs)
         else:
-            self._told(result, wrapped, instance, args, kwargs)
+            self._observe(result, wrapped, instance, args, kwargs)
         return result
 
     async def _awaited(self, result: Any, *call: Any) -> Any:
         __tracebackhide__ = True
         result = await result
-        self._told(result, *call)
+        self._observe(result, *call)
         return result
 
-    def _told(self, result: Any, *call: Any) -> None:
+    def _observe(self, result: Any, *call: Any) -> None:
         __tracebackhide__ = True
         meter = self._meter()
         if meter is None:

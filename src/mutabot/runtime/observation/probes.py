@@ -376,7 +376,7 @@ class TestRecording:
     """The recording of the running test, if recordings are asked for.
 
     Args:
-        clock: tells its simulated time, s, as long as no feed does.
+        clock: returns its simulated time, s, as long as no feed does.
         aside: what feeds read in this context is none of the program's calls.
         is_simulated: whether it is known that there is such a time.
     """

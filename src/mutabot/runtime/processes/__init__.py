@@ -1,7 +1,7 @@
 """Make processes below the tests part of a campaign, and collect their events.
 
 ``startup`` is what every Python process loads, ``member`` a process that turned out to be of interest, and
-``members`` the test process's side, which puts together what they tell.
+``members`` the test process's side, which puts together what they report.
 """
 
 import sys

@@ -26,7 +26,7 @@ from mutabot.model.event_file import ANYBODY, NOW, TESTS, VARIABLE, WAKE
 from mutabot.model.files import open_file, read_file
 from mutabot.runtime.paths import BEGAN
 
-#: told an event's name and its arguments
+#: called with an event's name and its arguments
 AuditHandler = Callable[[str, tuple[Any, ...]], None]
 #: lists: a listener may add another one, which hears the same event
 _listeners: dict[str, list[AuditHandler]] = {}
@@ -317,7 +317,7 @@ class ProcessWatch:
     """Watches, in the test process, the starts of processes by the tests.
 
     Args:
-        tell_unseen: told the command of each process that does not find its way to the campaign, and why.
+        on_unseen: called with the command of each process that cannot report to the campaign, and why.
 
     Attributes:
         codes: exit codes by process, negative for a signal.
@@ -325,10 +325,10 @@ class ProcessWatch:
             started what does so.
     """
 
-    def __init__(self, tell_unseen: Callable[[str, str], None]) -> None:
+    def __init__(self, on_unseen: Callable[[str, str], None]) -> None:
         self.codes: dict[int, int] = {}
         self.signalled: set[int] = set()
-        self._tell_unseen = tell_unseen
+        self._on_unseen = on_unseen
         listen(("os.kill", "os.killpg", *STARTS), self._on_audit_event)
         import subprocess  # noqa: PLC0415  # of no use to most processes below the tests
 
@@ -357,7 +357,7 @@ class ProcessWatch:
             if starts_a_killer(event, arguments):
                 self.signalled.add(ANYBODY)
             if event != "os.system" and (why := _why_unseen(event, arguments)):
-                self._tell_unseen(" ".join(_words(*arguments[:2])[:3]), why)
+                self._on_unseen(" ".join(_words(*arguments[:2])[:3]), why)
 
 
 def _why_unseen(event: str, arguments: tuple[Any, ...]) -> str | None:

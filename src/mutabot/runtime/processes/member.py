@@ -107,7 +107,7 @@ class TextOnly:
         self.writer.send(events.Acted(self.test))
 
 
-#: what a session tells that is written down as it is
+#: events of a session that are written down as they are
 _TOLD = (
     events.Acted, events.NotInstrumented, events.Problem, events.Remark, events.SiteSeen, events.TextsSeen,
 )  # fmt: skip
@@ -179,7 +179,7 @@ class Member:
         if session.meter is not None:
             session.meter.continue_in_copy()
         self._attend()
-        session.writer, session.is_fork = self, False  # it tells its own sites, also below a fork
+        session.writer, session.is_fork = self, False  # it reports its own sites, also below a fork
         if session.text is not None:
             session.text.writer = self
         self._watch_text()
@@ -246,7 +246,7 @@ class Member:
                 self.poll()
             case events.PlacesReached():
                 self._reached(line.places)
-            case _ if isinstance(line, _TOLD):  # the test process tells of its tests itself
+            case _ if isinstance(line, _TOLD):  # the test process reports its tests itself
                 self.event_file.send(line)
 
     def poll(self) -> None:

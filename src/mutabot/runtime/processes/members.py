@@ -33,7 +33,7 @@ class Members:
 
     Attributes:
         folder: where the members write.
-        children: what they tell.
+        children: what they report.
     """
 
     def __init__(self, home: str, session: Session, *, has_acted: bool = False) -> None:

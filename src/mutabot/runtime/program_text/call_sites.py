@@ -93,7 +93,7 @@ class CallSite:
         path: its file, as code objects name it.
         role: whose file it is.
         name: the last name of what is called.
-        extent: where it stands, as the interpreter tells of the running call.
+        extent: where it stands, as the interpreter reports the running call.
         is_handed: whether something is handed on there, rather than called.
         is_awaited: whether it is awaited where it stands.
         is_given: whether what is handed on is given to the call that stands there.
@@ -113,12 +113,12 @@ class CallSite:
     place: CallPlace | None = None
 
 
-#: decides what is called at a site: told the site, what stands there, the object that it was read from
+#: decides what is called at a site: gets the site, what stands there, the object that it was read from
 #: (``NOTHING`` where it was read from a name) and the frame
 Decide = Callable[[CallSite, Any, Any, FrameType], Any]
 
-#: told of an assignment: the site, the object that it changes, and what ``__setattr__`` or ``__setitem__``
-#: would be given of it beside the name of an attribute
+#: called at an assignment with the site, the object that it changes, and what ``__setattr__`` or
+#: ``__setitem__`` would be given of it beside the name of an attribute
 Stored = Callable[[CallSite, Any, list[Any]], None]
 
 #: the receiver of what was read from a name
@@ -140,7 +140,7 @@ class CallSites(SourceStep):
         sees_itself: handlers of what sees its calls itself: of that nothing is asked.
         hands: decides what is handed on; None to leave that as it is.
         are_read: whether ``hands`` decides about each attribute that is read, handed on or not.
-        stored: told of each assignment to an attribute or an item, before it is made; None if nobody asks.
+        stored: called at each assignment to an attribute or an item, before it is made; None if not wanted.
 
     Attributes:
         loaded: files that were given questions.

@@ -1,7 +1,7 @@
 """Decide what is called at a call site: an operation, a replacement, or another callable of that name.
 
 People who test hardware code put mocks, fakes and patched classes in the place of the robot. A person who
-edits the text changes what these are told; so does a mutant. Hence a call is seen at its site wherever what
+edits the text changes these; so does a mutant. Hence a call is seen at its site wherever what
 is called is not the operation itself, which sees its calls (``targets``). In the place of an operation stands
 
 1. an attribute of its name, of an object of the operation's class, or of what stands in for that class;
@@ -65,8 +65,8 @@ class CallFindings:
     """What was called at sites, for the check of a vocabulary.
 
     Args:
-        test: tells the running test.
-        relative: tells a path below the root.
+        test: returns the running test.
+        relative: returns a path below the root.
     """
 
     test: Callable[[], str]
@@ -146,7 +146,7 @@ class CallTargets:
 
     Attributes:
         known: operations by the sites of this session's mutants.
-        noted: what is to be told of it; None if nobody asks.
+        noted: what is to be reported of it; None if that is not wanted.
         stood: operations that stood at sites which something was left alone at, or could be.
         alone: where something was left alone.
         by_name: the operations by their last names.

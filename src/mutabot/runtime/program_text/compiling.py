@@ -106,7 +106,7 @@ def is_wanted(path: str) -> bool:
 def compile_plainly(text: str, name: str, flags: int) -> CodeType:
     """Return the code of a text as it stands. Raises SyntaxError or ValueError."""
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", SyntaxWarning)  # told when the program is compiled
+        warnings.simplefilter("ignore", SyntaxWarning)  # reported when the program is compiled
         code: CodeType = _builtin(text, name, "exec", flags, True)
     return code
 

@@ -138,7 +138,7 @@ class _Instrumenter(ast.NodeTransformer):
         return placed(ast.IfExp(_is_chosen(place), tree, node), node)
 
     def _statement(self, node: ast.stmt, place: TextPlace) -> list[ast.stmt]:
-        if self._record and isinstance(node, ast.AugAssign):  # what is added tells the type
+        if self._record and isinstance(node, ast.AugAssign):  # what is added shows the type
             self.generic_visit(node)
             node.value = _seen(node.value, place, node.value)
             return [node]
@@ -160,7 +160,7 @@ class _Instrumenter(ast.NodeTransformer):
             return [placed(ast.If(_is_chosen(place), chain, []), node), node]
         return [
             placed(
-                ast.If(_is_chosen(place), [placed(ast.Expr(_asked(0, "tell")), node), *chain], [node]), node
+                ast.If(_is_chosen(place), [placed(ast.Expr(_asked(0, "act")), node), *chain], [node]), node
             )
         ]
 
@@ -217,7 +217,7 @@ def _expression(alternative: Alternative) -> ast.expr:
 def _filled(made: _Node, place: TextPlace, node: ast.AST, *, observed: bool = True) -> _Node:
     """Return a template at the position of its place, with the kept parts inserted.
 
-    ``observed``: whether the value of the whole original is told, where a template keeps it.
+    ``observed``: whether the value of the whole original is reported, where a template keeps it.
     """
     if not place.kept:
         return _moved(made, node)
@@ -296,7 +296,7 @@ class SessionText:
         root: absolute path of the project.
         instrumentation: what is to stand in the text.
         writer: where reports go; a copy of a fork server gets its own.
-        on_act: told when the active alternative changes something for the first time in a test.
+        on_act: called when the active alternative changes something for the first time in a test.
 
     Attributes:
         alternatives: the switches of the instrumented text; idle where places are only looked at.

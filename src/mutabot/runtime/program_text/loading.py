@@ -80,7 +80,7 @@ def loader_name(loader: Any) -> str:
     return f"{kind.__module__}.{kind.__qualname__}"
 
 
-#: told the tree of a file, its source and its path
+#: called with the tree of a file, its source and its path
 Change = Callable[[ast.Module, bytes, str], None]
 
 
@@ -101,7 +101,7 @@ def hook_pytest(wants: Callable[[str], bool], change: Change, look: Change | Non
             setattr(tree, compiling.DONE, True)
 
     def read_pyc(source: Any, *rest: Any, **named: Any) -> Any:
-        # what pytest compiled in earlier sessions tells nothing
+        # what pytest compiled in earlier sessions is of no use
         return None if wants(str(source)) else read(source, *rest, **named)
 
     rewriting.rewrite_asserts, rewriting._read_pyc = rewrite_asserts, read_pyc

@@ -1,7 +1,7 @@
 """Predict the value of an expression without side effects.
 
 The fork parent looks ahead with it: a mutant of the program text needs no process of its own as long as its
-value is the original's. And a mutant tells by it what the original would have given. Operators on plain
+value is the original's. And a mutant gets from it what the original would have given. Operators on plain
 numbers and texts are computed, and a few functions; what they work on are constants, names, and stored
 attributes and items. All else is left to a real evaluation.
 """
@@ -168,7 +168,7 @@ class Forms:
         """Return the alternatives whose value in a frame may differ from the original's."""
         try:
             given = self.original.value(frame)
-        except Exception:  # whatever it is: a real evaluation will tell
+        except Exception:  # whatever it is: a real evaluation will show it
             return indexes
         return frozenset(index for index in indexes if not self._gives(index, given, frame))
 
@@ -204,7 +204,7 @@ def is_number_of_numpy(value: Any) -> bool:
 
 
 def _silent() -> AbstractContextManager[Any]:
-    """Return a context in which numpy tells nobody of overflows and divisions by zero."""
+    """Return a context in which numpy does not warn of overflows and divisions by zero."""
     silent: AbstractContextManager[Any] = sys.modules["numpy"].errstate(all="ignore")
     return silent
 

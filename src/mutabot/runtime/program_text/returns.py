@@ -173,6 +173,6 @@ def _add_notes(function: FunctionNode, own: list[ast.AST]) -> None:
     has_text = ast.get_docstring(function, clean=False) is not None
     head, body = function.body[:has_text], function.body[has_text:]
     if body:
-        tells = ast.Expr(ast.Call(ast.Name(RAISED, ast.Load()), [], []))
-        handler = ast.ExceptHandler(None, None, [tells, ast.Raise()])
+        report = ast.Expr(ast.Call(ast.Name(RAISED, ast.Load()), [], []))
+        handler = ast.ExceptHandler(None, None, [report, ast.Raise()])
         function.body = [*head, placed(ast.Try(body, [handler], [], []), body[0])]

@@ -5,8 +5,9 @@ else E``. ``__mutabot__`` is a plain list with False at places that are off, so 
 a built-in name: modules keep the names they have.
 
 In a baseline the text becomes ``__mutabot__[0](p) or __mutabot__[p](E)``: the first call notes that the place
-is reached, whatever becomes of ``E``. A place is examined a few times per test, and no more once it has told
-all that the plan asks; from then on the function there passes the value through, as cheaply as a call can.
+is reached, whatever becomes of ``E``. A place is examined a few times per test, and no more once it has
+reported all that the plan asks; from then on the function there passes the value through, as cheaply as a
+call can.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ class Switch:
     Attributes:
         place: its number.
         index: the alternative that is active there; None if the place is only watched.
-        watched: alternatives that are to be told as soon as they would change something.
+        watched: alternatives to report as soon as they would change something.
     """
 
     __slots__ = ("_before", "_owner", "index", "place", "watched")
@@ -91,14 +92,14 @@ class Alternatives:
             watched place, those at which all alternatives that are still watched had it.
         example: value of the original and of the alternative when they first differed; of what is no plain
             value, its type.
-        on_place: told the number of a watched place, and which of its watched alternatives are about to
-            differ for the first time from the original, or may be; it may activate one of them, which then
+        on_place: called with the number of a watched place, and which of its watched alternatives are about
+            to differ for the first time from the original, or may be; it may activate one of them, which then
             stands there at once.
         forms: gives a place as trees that can be looked ahead of; None for statements.
-        on_idle: told that an evaluation of the active alternative has changed nothing; until its value is
+        on_idle: called when an evaluation of the active alternative has changed nothing; until its value is
             known, it counts as a change.
-        on_first: told the number of a place that is on when it is first evaluated since ``start``.
-        on_act: told when the active alternative is known to change something, or may do so, for the first
+        on_first: called with the number of a place that is on when it is first evaluated since ``start``.
+        on_act: called when the active alternative is known to change something, or may do so, for the first
             time since ``start``.
         switches: what instrumented program text looks at; item 0 is this object.
     """
@@ -110,7 +111,7 @@ class Alternatives:
         self.idle: dict[int, int] = {}
         self.example: tuple[Any, Any] | None = None
         self._kept: tuple[dict[int, int], dict[int, int], tuple[Any, Any] | None] = ({}, {}, None)
-        self._has_told = False
+        self._has_acted = False
         self._paused_in: set[int] = set()
         self.on_place: Callable[[int, frozenset[int]], None] | None = None
         self.forms: Callable[[int], Forms | None] = lambda place: None
@@ -126,7 +127,7 @@ class Alternatives:
     def start(self) -> None:
         """Reset the counts for a new test."""
         hits, idle, self.example = self._kept
-        self.hits, self.idle, self._has_told = dict(hits), dict(idle), False
+        self.hits, self.idle, self._has_acted = dict(hits), dict(idle), False
 
     @property
     def place(self) -> int:
@@ -146,12 +147,12 @@ class Alternatives:
             return
         if before is not _UNKNOWN and self.example is None:
             self.example = (shown(before), shown(after))
-        self.tell()
+        self.act()
 
-    def tell(self) -> None:
+    def act(self) -> None:
         """Report that the active alternative changed something, or may have."""
-        if not self._has_told:
-            self._has_told = True
+        if not self._has_acted:
+            self._has_acted = True
             self.on_act()
 
     def activate(self, place: int = 0, index: int = 0) -> None:
@@ -222,7 +223,7 @@ class Alternatives:
     def _control(self, place: int, index: int) -> None:
         """Act as a control, which every place has: do nothing, or raise."""
         if index == FATAL:
-            self.tell()
+            self.act()
             raise FatalFault(f"control: place {place} fails")
         assert index == IDENTITY
         self.idle[place] = self.idle.get(place, 0) + 1
@@ -240,7 +241,7 @@ class Alternatives:
 
     def fail(self, name: str, text: str) -> NoReturn:
         """Raise an exception of this name and text."""
-        self.tell()
+        self.act()
         raise error_of(name)(text)
 
     def fail_if(self, value: Any, wrong: Any, name: str, text: str) -> Any:

@@ -19,7 +19,7 @@ import wrapt
 
 from mutabot.model.path import class_name
 from mutabot.model.signature import parse_signature, signature_of, takes_anything
-from mutabot.runtime.targets.target import Finding, Handler, NotFoundError, Tell, resolve
+from mutabot.runtime.targets.target import Finding, Handler, NotFoundError, OnFinding, resolve
 from mutabot.runtime.targets.wrapper import Method, Wrapper
 
 if TYPE_CHECKING:
@@ -66,11 +66,11 @@ def look_at(operation: Operation, original: Any) -> Iterator[Finding]:
 
 def _advice(operation: Operation, is_native: bool) -> str:
     if is_native:
-        why = f"{operation.target} is native and does not tell its arguments"
+        why = f"{operation.target} is native and has no signature"
     else:
-        why = f"{operation.target} is wrapped in (*args, **kwargs), which does not tell its arguments"
+        why = f"{operation.target} is wrapped in (*args, **kwargs), which hides its arguments"
     proposal = f'write signature = "({", ".join(operation.described)}, …)", with all names in their order'
-    return f"{why}: only those that a call gives by keyword can be told apart; {proposal}"
+    return f"{why}: only those that a call gives by keyword can be distinguished; {proposal}"
 
 
 class NotCallableError(TypeError):
@@ -81,7 +81,7 @@ class Callables:
     """The wrappers of operations that are callables.
 
     Args:
-        tell: told about a target that turns out wrong when it is found.
+        on_finding: called for a target that turns out wrong when it is found.
 
     Attributes:
         pending: targets whose module has not been imported yet.
@@ -89,8 +89,8 @@ class Callables:
         owners: the class and the attribute's name of each target that is in a class.
     """
 
-    def __init__(self, tell: Tell) -> None:
-        self._tell = tell
+    def __init__(self, on_finding: OnFinding) -> None:
+        self._on_finding = on_finding
         self.pending: set[str] = set()
         self.found: dict[str, Any] = {}
         self.owners: dict[str, type] = {}
@@ -112,11 +112,11 @@ class Callables:
             try:
                 self._install(target, module, qualname, handler, late=late, is_set=is_set)
             except NotFoundError as error:
-                self._tell(target, Finding("call", str(error), error.name, error.known))
+                self._on_finding(target, Finding("call", str(error), error.name, error.known))
             except NotCallableError as error:
-                self._tell(target, Finding("call", str(error)))
+                self._on_finding(target, Finding("call", str(error)))
             except Exception as error:  # descriptors and metaclasses of the user's may do anything
-                self._tell(target, Finding("call", f"{target} cannot be intercepted: {error!r}"))
+                self._on_finding(target, Finding("call", f"{target} cannot be intercepted: {error!r}"))
 
         wrapt.register_post_import_hook(imported, module_name)
 
@@ -154,7 +154,7 @@ class Callables:
                 raise NotCallableError(f"{target} cannot be intercepted: {error}") from error
             self.found[target], self.owners[target] = original, owner
             text = f"{target} cannot be wrapped ({error}): only calls that are written as such are seen"
-            self._tell(target, Finding("call", text, is_remark=True))
+            self._on_finding(target, Finding("call", text, is_remark=True))
             return
         self.found[target] = original
         if isinstance(owner, type):

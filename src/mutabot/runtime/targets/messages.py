@@ -13,7 +13,7 @@ import wrapt
 from mutabot.errors import ExtensionError
 from mutabot.extensions import ExtensionPart, brought
 from mutabot.model.operation import Form, Named, Refused, named_of
-from mutabot.runtime.targets.target import Finding, Handler, MiddlewareModule, Tell, TypedMiddleware
+from mutabot.runtime.targets.target import Finding, Handler, MiddlewareModule, OnFinding, TypedMiddleware
 
 if TYPE_CHECKING:
     from mutabot.model import Operation
@@ -35,7 +35,7 @@ _FORMS: dict[Form, tuple[str, Form | None]] = {
 _LISTENING = (Form.RECEIVE, Form.SUBSCRIBE, Form.GOAL, Form.CLIENT, Form.RESULT)
 
 
-#: names that are told
+#: names that are listed
 _MOST = 4
 
 
@@ -43,16 +43,16 @@ class Messages:
     """The handlers of all operations that have a name.
 
     Args:
-        tell: told about a target that turns out wrong when it is found.
+        on_finding: called for a target that turns out wrong when it is found.
 
     Attributes:
         used: what was done under which names, in this process and those below the tests.
-        on_heard: told of each message that passes under a name; None if nobody asks.
-        on_node: told the resolved name of each node that is made here; None if nobody asks.
+        on_heard: called with each message that passes under a name; None if not wanted.
+        on_node: called with the resolved name of each node that is made here; None if not wanted.
     """
 
-    def __init__(self, tell: Tell) -> None:
-        self._tell = tell
+    def __init__(self, on_finding: OnFinding) -> None:
+        self._on_finding = on_finding
         self.on_heard: Callable[[str, Any], None] | None = None
         self.on_node: Callable[[str], None] | None = None
         self._handlers: list[tuple[Named, Handler]] = []
@@ -139,7 +139,7 @@ class Messages:
             middleware: MiddlewareModule = part.load()
         except ExtensionError as error:  # the program might catch it
             for named, _handler in self._handlers:
-                self._tell(named.target, Finding(named.form.value, str(error)))
+                self._on_finding(named.target, Finding(named.form.value, str(error)))
             raise
         self._undo.append(middleware.hook(self))
 
@@ -167,7 +167,10 @@ def unheard(refused: Collection[Refused], used: Collection[Named]) -> Iterator[F
 
 def _instead(named: Named, used: Collection[Named]) -> str:
     """Describe other uses of the same name or type, nearest first."""
-    wanted = (_FORMS[named.form][1], named.form)  # of one name, what was done is told, not what was set up
+    wanted = (
+        _FORMS[named.form][1],
+        named.form,
+    )  # of one name, what was done is reported, not what was set up
     similar = sorted((wanted.index(use.form), use.target, use.name) for use in used if use.form in wanted)
     alike = {name: target for _, target, name in similar}
     if not alike:

@@ -31,7 +31,7 @@ What hooks keep to, so that all operators mean the same in every middleware:
   none. ``wrapped`` has a parameter for each that it is called with.
 - A parameter is read by ``wrapped(default=…)``, where the program or its declaration gives a default, and
   what ``wrapped`` returns is the value itself.
-- Each message that passes, as it is in truth, is told to ``names.heard``; each node that is made to
+- Each message that passes, as it really is, is passed to ``names.heard``; each node that is made to
   ``names.note_node``.
 """
 
@@ -83,8 +83,8 @@ class MiddlewareControls:
         cancel: cancels what the call has begun, given what it returned; None for what cannot be cancelled.
         jump: lets the program's clock jump by so many seconds; None where it cannot.
         once: whether the program waits for one message: what comes after it comes to nobody.
-        end: ends the node's process, and begins it anew if told so, where that is no process of the operating
-            system; None where it is one.
+        end: ends the node's process, and, if asked to, starts it again, where that is no process of the
+            operating system; None where it is one.
     """
 
     sleep: Callable[[float], Awaitable[None]] = _sleep
@@ -127,7 +127,7 @@ class TimeModule(Protocol):
 
 
 #: ``handler(wrapped, instance, args, kwargs, where=NOWHERE)``, as wrapt calls it, with a ``Where`` behind it
-#: if the frames do not tell; what it returns is what the program receives: a coroutine if ``wrapped`` is a
+#: if the frames do not show it; what it returns is what the program receives: a coroutine if ``wrapped`` is a
 #: coroutine function. Of what comes by itself it may return a ``Delivery`` in its place
 Handler = Callable[..., Any]
 
@@ -143,7 +143,7 @@ class Where:
         means: what can befall the call beside other values; None if nothing can.
         is_again: whether the same call of the program's goes on: it still waits for a message.
         site: the site itself, where the call was seen in the text.
-        handed: the place at which what is called was handed on, if the frames tell none.
+        handed: the place at which what is called was handed on, if the frames show none.
         receiver: what was called was read from this object; None if it was not, or that is the instance.
         is_awaited: whether what the call gives is awaited there.
         signature: by which its arguments are read, where it is not the operation's.
@@ -222,7 +222,7 @@ class Where:
         return self.means if self.means is not None else MiddlewareControls()
 
 
-#: the frames above tell all
+#: the frames above show all
 NOWHERE = Where()
 
 
@@ -276,8 +276,8 @@ class Finding:
     is_remark: bool = False
 
 
-#: told about a target that turns out wrong when it is found
-Tell = Callable[[str, Finding], None]
+#: called with a target that turns out wrong when it is found, and what is wrong
+OnFinding = Callable[[str, Finding], None]
 
 
 class NotFoundError(LookupError):
@@ -396,7 +396,7 @@ class Environment(Protocol):
             home: the worker's folder, which its forks share: what nodes write there meets what those of forks
                 write.
             operations: what the vocabulary describes; None where it is not known yet: the program's files
-                tell then.
+                decide then.
 
         Returns whether it did: a fork of this process, whose nodes would meet ours, needs its own then.
 

@@ -82,8 +82,8 @@
     const within = [body, document.getElementById("nav")].find((one) => one.contains(active));
     const { parts } = here();
     mutabot.forget("mutant ", "recordings ");
-    const told = (one) => one && `${one.ends}\n${one.why}`;
-    if (parts[0] === "mutant" && told(older.byNumber.get(Number(parts[1]))) === told(campaign.byNumber.get(Number(parts[1])))) return;
+    const content = (one) => one && `${one.ends}\n${one.why}`;
+    if (parts[0] === "mutant" && content(older.byNumber.get(Number(parts[1]))) === content(campaign.byNumber.get(Number(parts[1])))) return;
     if ((within && active.matches("select")) || (!getSelection().isCollapsed && body.contains(getSelection().anchorNode))) return; // in the midst of a choice
     const key = !within ? null : active.id ? `#${CSS.escape(active.id)}` : active.hasAttribute("href") ? `a[href="${CSS.escape(active.getAttribute("href"))}"]`
       : active.dataset.status ? `[data-status="${CSS.escape(active.dataset.status)}"]` : active.dataset.sort ? `[data-sort="${active.dataset.sort}"]` : null;

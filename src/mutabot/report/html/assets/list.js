@@ -34,7 +34,7 @@
     const campaign = mutabot.campaign;
     const state = { ...asked };
     const results = h("div", { id: "results" });
-    const told = h("p", { class: "told", "aria-live": "polite" });
+    const resultCount = h("p", { class: "result-count", "aria-live": "polite" });
     const search = h("input", { id: "search", type: "search", placeholder: "Number, place, text …", autocomplete: "off", spellcheck: "false", value: asked.q || "",
       oninput: (event) => { state.q = event.target.value; delete state.page; update(); } });
     const chips = h("div", { class: "chips", role: "group", "aria-label": "Status" });
@@ -69,7 +69,7 @@
         h("div", { class: "field wide" }, h("label", { for: "search" }, "Search"), search), chips,
         h("div", { class: "selects" }, select("role", "Role", each("role")), select("family", "Family", each("family")), select("operator", "Operator", each("operator")),
           select("file", "File", named(campaign.files)), select("world", "Survivors by effect", [["differs", "with an effect"], ["same", "no measured effect"]]), select("test", "Reached by", campaign.tests.map((name, index) => [String(index), name])), reset)),
-      told, results);
+      resultCount, results);
 
     function update(isFirst) {
       const began = performance.now();
@@ -79,7 +79,7 @@
       const page = Math.min(Math.max(1, Number(state.page) || 1), pages);
       const shown = found.slice(PAGE * (page - 1), PAGE * page);
       const line = state.line && state.file ? ` at ${state.file}:${state.line}` : "";
-      told.textContent = mutabot.legible(`${count(found.length, "mutant")}${found.length === campaign.mutants.length ? "" : ` of ${campaign.mutants.length}`}${line}${pages > 1 ? `, page ${page} of ${pages}` : ""}`);
+      resultCount.textContent = mutabot.legible(`${count(found.length, "mutant")}${found.length === campaign.mutants.length ? "" : ` of ${campaign.mutants.length}`}${line}${pages > 1 ? `, page ${page} of ${pages}` : ""}`);
       results.replaceChildren(found.length ? table(shown, state, sort) : empty("No matching mutants.", "Remove a filter or shorten the search text: ",
         h("a", { href: address(["mutants"]) }, "show all mutants"), "."), pager(page, pages));
       reset.hidden = !Object.keys(state).some((name) => !["sort", "down", "page"].includes(name) && state[name]);

@@ -25,9 +25,9 @@
   }
   /** The marks of all rounds; runs of equal rounds are said once. */
   function ends(letters) {
-    const told = [...letters].map((letter, round) => `round ${round + 1} ${(LETTERS[letter] || ["", "?"])[1]}`);
+    const names = [...letters].map((letter, round) => `round ${round + 1} ${(LETTERS[letter] || ["", "?"])[1]}`);
     const alike = new Set(letters).size === 1 && letters.length > 1;
-    const name = alike ? `all ${letters.length} rounds ${LETTERS[letters[0]][1]}` : told.join(", ");
+    const name = alike ? `all ${letters.length} rounds ${LETTERS[letters[0]][1]}` : names.join(", ");
     return h("span", { class: "ends", role: "img", "aria-label": name, title: name },
       [...letters].map((letter) => h("span", { class: `mark m-${(LETTERS[letter] || LETTERS["·"])[0]}` }, letter)));
   }

@@ -73,7 +73,7 @@
     const section = h("section", { "aria-labelledby": "there" }, h("h2", { id: "there" }, "Source location"));
     mutabot.load("sources", "data/sources.js").then((sources) => {
       for (const span of one.spans) section.append(...lines(span, new Map(sources).get(span.file), one.spans.length > 1));
-      if (page.change) section.append(h("p", null, `At first, the ${one.role} ${page.change}`, page.told ? [" (", page.told, ")"] : null, "."));
+      if (page.change) section.append(h("p", null, `At first, the ${one.role} ${page.change}`, page.effect_place ? [" (", page.effect_place, ")"] : null, "."));
     }, (error) => section.append(h("p", null, error.message)));
     return section;
   }
@@ -151,7 +151,7 @@
 
   function nothingRecorded(one, page) {
     if (page.withoutRecordings) return empty("There was no room for its recordings.", `The report holds those of the survivors that went farthest first. \`mutabot show ${one.number}\` prints what they tell.`);
-    if (page.rounds.some((outcome) => outcome && outcome.diverged.length)) return empty("Its recordings were not kept.", "There was no room for them (", h("code", null, "evidence"), " in the configuration sets it), or their file was deleted. ", h("code", null, `mutabot show ${one.number}`), " prints what they told.");
+    if (page.rounds.some((outcome) => outcome && outcome.diverged.length)) return empty("Its recordings were not kept.", "There was no room for them (", h("code", null, "evidence"), " in the configuration sets it), or their file was deleted. ", h("code", null, `mutabot show ${one.number}`), " prints what they recorded.");
     if (one.indistinguishable) return empty("The robot did the same as in the original.", "Nothing that was recorded, read or returned differs; there are no two paths to show.");
     if (!one.valid && !["refused", "guarded"].includes(one.status)) return empty("Nothing to show.", `This mutant was not counted: ${marks.MEANING[one.status]}.`);
     if (one.status === "not covered") return empty("No test runs this line.", "The fault was never executed. Add a test that runs this line.");
@@ -262,7 +262,7 @@
       return section;
     }
     section.append(h("p", { class: "hint" }, `Round ${outcome.round}: each check, the values that it compared or was passed, and by how much it held. Checks that ran before the tests' process reached the fault are not listed.`));
-    const [story] = outcome.diverged; // the test that the story is told in comes first
+    const [story] = outcome.diverged; // the test of the story comes first
     outcome.looked.toSorted((test, other) => other.acted - test.acted || (story ? (other.test === story.test) - (test.test === story.test) : 0)).forEach((test, index) => section.append(checked(one, { checks: [], ...test }, index === 0)));
     return section;
   }
@@ -271,10 +271,10 @@
     const many = test.checks.length + test.more;
     const spares = test.checks.map((check) => check.spare).filter((spare) => spare !== undefined);
     const nearest = Math.min(...spares);
-    const told = !test.acted ? "the mutant changed nothing in it" : !many ? "no check was seen after the fault; assertions that pytest does not rewrite are not seen"
+    const conclusion = !test.acted ? "the mutant changed nothing in it" : !many ? "no check was seen after the fault; assertions that pytest does not rewrite are not seen"
       : `${count(many, "check")} held${spares.length ? `, the nearest by ${number(nearest, 3)}` : ""}`;
-    if (!test.acted || !test.checks.length) return h("p", null, h("code", null, mutabot.breakable(test.test)), `: ${told}`);
-    return h("details", { class: "test-box", open: isOpen }, h("summary", null, h("code", null, mutabot.breakable(test.test)), `: ${told}`),
+    if (!test.acted || !test.checks.length) return h("p", null, h("code", null, mutabot.breakable(test.test)), `: ${conclusion}`);
+    return h("details", { class: "test-box", open: isOpen }, h("summary", null, h("code", null, mutabot.breakable(test.test)), `: ${conclusion}`),
       h("div", { class: "scroll", role: "region", tabindex: "0", "aria-label": `Checks of ${test.test}` }, h("table", { class: "checks" },
         h("thead", null, h("tr", null, h("th", { scope: "col" }, "place"), h("th", { scope: "col" }, "check"), h("th", { scope: "col" }, "with"), h("th", { scope: "col", class: "n" }, "to spare"))),
         h("tbody", null, test.checks.slice(0, CHECKS).map(({ place, text, seen, spare, times }) => h("tr", { class: spare === nearest ? "nearest" : null },
@@ -305,7 +305,7 @@
     return section;
   }
 
-  /** The first value and the one in its place, in the test that the story is told in. */
+  /** The first value and the one in its place, in the test of the story. */
   const first = (outcome) => outcome && ((outcome.diverged[0] && outcome.diverged[0].example) || outcome.example);
 
   function round(one, page, those) {

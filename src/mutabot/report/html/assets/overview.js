@@ -87,8 +87,8 @@
   function dots(one) {
     const x = (share) => 4 + 192 * share;
     const rounds = one.rounds.filter((round) => round.score !== null);
-    const told = rounds.map((round, index) => `round ${index + 1} ${percent(round.score)}`).join(", ");
-    return svg("svg", { class: "dots", viewBox: "0 0 200 34", role: "img", "aria-label": `Score ${percent(one.score)}${one.interval ? `, 95 % interval ${between(one.interval)}` : ""}; ${told}; check score ${percent(one.check_score)}` },
+    const scores = rounds.map((round, index) => `round ${index + 1} ${percent(round.score)}`).join(", ");
+    return svg("svg", { class: "dots", viewBox: "0 0 200 34", role: "img", "aria-label": `Score ${percent(one.score)}${one.interval ? `, 95 % interval ${between(one.interval)}` : ""}; ${scores}; check score ${percent(one.check_score)}` },
       svg("line", { class: "axis", x1: x(0), x2: x(1), y1: 22, y2: 22 }),
       [0, 0.25, 0.5, 0.75, 1].map((share) => svg("line", { class: "axis", x1: x(share), x2: x(share), y1: 20, y2: 24 })),
       [0, 0.5, 1].map((share) => svg("text", { x: x(share), y: 33, "text-anchor": share === 0 ? "start" : share === 1 ? "end" : "middle" }, 100 * share)),

@@ -58,9 +58,9 @@
 
   /** The moment that all drawings of a page show. */
   class Clock {
-    constructor(end, time) { this.end = end; this.time = time; this.told = []; }
-    on(tell) { this.told.push(tell); tell(this.time); }
-    set(time) { this.time = Math.min(this.end, Math.max(0, time)); for (const tell of this.told) tell(this.time); }
+    constructor(end, time) { this.end = end; this.time = time; this.listeners = []; }
+    on(listener) { this.listeners.push(listener); listener(this.time); }
+    set(time) { this.time = Math.min(this.end, Math.max(0, time)); for (const listener of this.listeners) listener(this.time); }
   }
 
   /** A command's pattern as texts name it, without format specifications. */

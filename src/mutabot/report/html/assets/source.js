@@ -74,7 +74,7 @@
     const box = h("div", { class: "code", role: "list", "aria-label": `${file}, line by line` });
     coloured(text.replace(/\n$/, ""), marked).forEach((line, index) => box.append(row(file, line, index + 1, byLine.get(index + 1) || [])));
     const toggle = h("label", { class: "toggle" }, h("input", { type: "checkbox", checked: true, onchange: (event) => { box.classList.toggle("bare", !event.target.checked); } }), "Survivors under their lines");
-    return h("div", null, h("div", { class: "told walk" }, toggle), box, marks.legend(new Set(mutants.map(LETTER))),
+    return h("div", null, h("div", { class: "result-count walk" }, toggle), box, marks.legend(new Set(mutants.map(LETTER))),
       mutants.some((one) => one.survives && one.indistinguishable) ? h("p", { class: "hint" }, "Outlined: survived, and nothing that was compared differs from the original.") : "");
   }
 

@@ -1,4 +1,4 @@
-/* What was told, read and touched, original beside mutant. */
+/* Commands, readings and contacts over time, original beside mutant. */
 "use strict";
 (() => {
   const { h, number } = mutabot;
