@@ -92,7 +92,7 @@ class Extension:
             library's module whose import puts their hooks in place.
         environments: modules that keep ``runtime.targets.target.Environment``, by any name.
         futures: classes of futures, by the name under which recorded answers keep them: one that is made
-            without arguments is not done until somebody completes it.
+            without arguments is not done until it is completed.
         failures: classes of exceptions, by any name, that come from the tools around a program and never from
             the program: a run that met one is an error.
         libraries: client libraries, by the name of the top-level package, in which ``*`` stands for any

@@ -12,12 +12,12 @@ GRADED = "graded"
 #: their operators are those of ``mutabot_catalogue``
 CATALOGUE = "catalogue"
 MIDDLEWARE = "middleware"
-#: mutabot's own mutants, which nobody asks for
+#: mutabot's own mutants, which users do not choose
 CONTROL = "control"
 
 #: the core's own providers: faults of calls, and of messages and what else goes over a middleware
 CALLS, MESSAGES = "calls", "messages"
 #: their families, in the order in which they are listed
 OF_CALLS = (ROBOT, GRADED, CATALOGUE, MIDDLEWARE)
-#: what is planted if nobody asks
+#: the family without a choice of the user's
 USUAL = (ROBOT,)

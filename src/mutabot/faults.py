@@ -44,7 +44,7 @@ class Project:
     Attributes:
         root: its folder.
         program: files and folders of the program, relative to it.
-        vocabulary: the robot API; empty if nobody needs one.
+        vocabulary: the robot API; empty if none is needed.
         families: the families that are asked for.
         moments: at which of its calls a mutant of calls acts, a mutant each; None for every call.
         demands: of which magnitudes users speak: these are planted, whatever the families.

@@ -128,7 +128,7 @@ class Original:
         text: what was seen of this, by round.
         hits: recorded calls by place, in the order in which places were first reached.
         answers: what these calls returned.
-        unread: whether nobody uses what the calls of a place return.
+        unread: whether the results of the calls of a place are not used.
         stand_ins: places at which a mock or a fake of the project gets calls.
         written_through: places that return the robot's own memory, to which the program writes.
         unreached: places of calls that no test reaches, found by the names of operations: a mutant there is

@@ -12,7 +12,7 @@ from .values import CATALOGUE, like, middle_of, within
 
 #: the robot, or the program, takes the number as if it were in the other unit
 _TAKEN = "taken"
-#: the number is worked out in the other unit, and nobody converts it
+#: the number is worked out in the other unit, and not converted
 _GIVEN = "given"
 
 _BASE = {"frame": "base", "mode": Mode.TO}

@@ -130,8 +130,8 @@ class _Setting(_FreeValueOperator):
 
 
 class WrongName(_Setting):
-    """A publisher, subscription or client is set up under a name that nobody else has, or without the
-    namespace of its node, as a wrong remapping does.
+    """A publisher, subscription or client is set up under a name of its own, which no other node has, or
+    without the namespace of its node, as a wrong remapping does.
     """
 
     name = "wrong-name"

@@ -42,7 +42,7 @@ class QuickCheck:
         quiet: given two numbers of ticks of the stretch, up to which of the ticks between them the check
             would have found nothing; in doubt too few. All before the first are known to be quiet. It is
             asked of ever later ticks, and changes nothing.
-        passed: so many ticks have passed without it.
+        passed: number of ticks that have passed without it.
     """
 
     until: Callable[[], int]
@@ -107,7 +107,7 @@ class Lookahead:
         """Return how many of the first ticks, in a row, no check would have objected to.
 
         Args:
-            known: at so many at least.
+            known: at this many at least.
         """
         for quiet in self._quiet:
             ticks = quiet(stretch, known, ticks)

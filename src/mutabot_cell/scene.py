@@ -102,7 +102,7 @@ class DepthCamera:
         field_of_view: across the columns, degrees.
         baseline: from the left imager to the right one along x, m.
         subpixel: standard deviation of the disparity, pixels: 0.08 is Intel's for a textured surface.
-        decimation: of each square of so many by so many pixels, a picture has the middle.
+        decimation: side of a square of pixels of which a picture has the middle one.
     """
 
     name: str

@@ -120,8 +120,8 @@ class Simulation:
         """Advance by one control tick (`TICK` s) and return the simulated time, s.
 
         Args:
-            most: so many control ticks may pass instead, where nothing has to decide in between. All is bit
-                by bit the same as one by one.
+            most: number of control ticks that may pass instead, where nothing has to decide in between. All
+                is bit by bit the same as one by one.
 
         Raises:
             SimulationDiverged: the physics gave NaN or absurd speeds.

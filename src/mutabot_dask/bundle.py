@@ -1,6 +1,6 @@
 """The bundle of a project for workers: a tar of the files sent, named by a hash of its contents.
 
-Also, in words, what goes to workers and what stays here.
+Also descriptions of what goes to workers and what stays here.
 """
 
 from __future__ import annotations

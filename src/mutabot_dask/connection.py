@@ -68,7 +68,7 @@ class ClusterConnection:
             stack.callback(self._dismiss)
             if not is_private(self.link.address):
                 notify(
-                    f"the connection to {self.link.address} is not encrypted: whoever can reach its port "
+                    f"the connection to {self.link.address} is not encrypted: anyone who can reach its port "
                     "can run programs on the workers; tls:// closes it (docs/cluster.md, TLS)"
                 )
             self._check_versions()

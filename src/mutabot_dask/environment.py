@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 #: variables that say how Python, pytest and numbers behave, each by its whole name: a prefix would also take
-#: what somebody else keeps under such a name, as a key. Those that name places stay with their machine.
+#: what others keep under such a name, as a key. Those that name places stay with their machine.
 _DECIDED = {
     "LANG", "LANGUAGE", "LC_ALL", "LC_ADDRESS", "LC_COLLATE", "LC_CTYPE", "LC_IDENTIFICATION",
     "LC_MEASUREMENT", "LC_MESSAGES", "LC_MONETARY", "LC_NAME", "LC_NUMERIC", "LC_PAPER", "LC_TELEPHONE",

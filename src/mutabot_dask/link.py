@@ -25,7 +25,7 @@ from mutabot.api.reports import UsageError
 
 try:
     import distributed
-except ImportError as error:  # said in words a user can act on
+except ImportError as error:  # reported in a way that a user can act on
     raise UsageError(
         "--cluster needs the library distributed, which is not installed here: "
         f"pip install 'path/to/mutabot[cluster]' ({error})"
@@ -36,7 +36,7 @@ from .settings import ClusterSettings
 
 #: seconds that a scheduler may take to answer
 PATIENCE = 10.0
-#: seconds between two looks at who is connected; without an answer for so many, the scheduler is gone
+#: seconds between two looks at who is connected; without an answer for that long, the scheduler is gone
 _PERIOD, _SILENCE = 0.5, 45.0
 #: threads that fetch answers
 _FETCHERS = 4
@@ -65,7 +65,7 @@ class WorkerReply:
     Attributes:
         asked: the number of what was asked.
         data: the answer; None if there is none.
-        why: why not, in words.
+        why: why not.
         is_foreign: whether it is nothing that our functions answer.
     """
 
@@ -85,7 +85,7 @@ class Link:
     Attributes:
         replies: answers, as they come.
 
-    Raises UsageError if nobody answers there.
+    Raises UsageError if there is no answer.
     """
 
     _numbers = count(1)

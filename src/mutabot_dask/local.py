@@ -1,6 +1,6 @@
 """A cluster on this machine: a scheduler and its workers, in sessions of their own.
 
-They listen on 127.0.0.1 only, talk to nobody without the certificate of this run, show no dashboard, and end
+They listen on 127.0.0.1 only, talk only to those with the certificate of this run, show no dashboard, and end
 with the controller, however that ends. Certificates are made for one run, and readable by its user alone.
 """
 
@@ -19,7 +19,7 @@ from pathlib import Path
 from mutabot.api.processes import interruptible
 from mutabot.api.reports import UsageError
 
-#: what the processes run; the kernel kills them with whoever started them (PR_SET_PDEATHSIG)
+#: what the processes run; the kernel kills them with their parent (PR_SET_PDEATHSIG)
 _CODE = (
     "import ctypes, os, signal, sys\n"
     "ctypes.CDLL(None).prctl(1, signal.SIGKILL, 0, 0, 0)\n"
@@ -143,10 +143,10 @@ def address_in(file: Path) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Certificates:
-    """Paths of files in PEM format; whoever has the key belongs to the cluster.
+    """Paths of files in PEM format; the holder of the key belongs to the cluster.
 
     Attributes:
-        ca: whom the cluster trusts: nobody but this certificate.
+        ca: the only certificate that the cluster trusts.
         cert: the certificate of all its processes.
         key: its private key.
     """

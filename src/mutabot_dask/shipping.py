@@ -1,7 +1,7 @@
 """Selects the project's files that are sent to workers: those tracked by git, and those configured.
 
-Nothing else leaves this machine, since a project's folder also holds what nobody means to give away: keys,
-passwords, the robot's own addresses. Where there is no repository, nobody has said what may be given away;
+Nothing else leaves this machine, since a project's folder also holds what is not to be given away: keys,
+passwords, the robot's own addresses. Where there is no repository, it is unknown what may be given away;
 then it is program text and the kinds of files that robots are described in, without hidden ones and those
 named like secrets.
 """

@@ -26,7 +26,7 @@ from mutabot.api.reports import MutabotError
 from .environment import apply
 from .unit import Introduction, InvalidData, SharedData, UnitAnswer, WorkUnit
 
-#: signals by which systems end processes: for want of memory, or since somebody else needs the machine
+#: signals by which systems end processes: for want of memory, or since others need the machine
 _BY_OTHERS = {-signal.SIGKILL, -signal.SIGTERM}
 #: bytes that must be free on the disks of a worker
 _ROOM = 1 << 20

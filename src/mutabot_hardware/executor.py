@@ -98,7 +98,9 @@ class HardwareExecutor:
     ) -> Iterator[Self]:
         """Open an executor whose processes may send commands until it is closed. Raises UsageError."""
         if unasked == "ask" and not sys.stdin.isatty():
-            raise UsageError("hardware: each mutant is to be confirmed, but nobody can: use --hardware yes")
+            raise UsageError(
+                "hardware: each mutant needs a confirmation, but this is no terminal: use --hardware yes"
+            )
         home = request.journal_path.parent
         home.mkdir(exist_ok=True)
         journal = request.root / table.rehearsal if table.rehearsal is not None else None

@@ -1,6 +1,6 @@
 """The results of mutants in a campaign on a simulation of the same program: a rehearsal.
 
-The order on hardware is by that, the most harmless first: what changed nothing that anybody could see, then
+The order on hardware is by that, the most harmless first: what changed nothing visible, then
 by how far the world was from the original's, and last what the simulated robot refused, what crashed or hung,
 and what the rehearsal does not know.
 """
@@ -24,7 +24,7 @@ class Rehearsed:
 
     Attributes:
         harm: 0 for none, larger for more; infinite for what is not known.
-        text: the same in words.
+        text: description of the same.
     """
 
     harm: float

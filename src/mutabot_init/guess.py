@@ -60,7 +60,7 @@ _RANGES = (
 )
 #: what libraries may scale to a share of its most
 _SCALED = frozenset({"speed", "acceleration", "angle", "force", "torque"})
-#: where a scale without a unit ends: a fraction, or so many bits
+#: ends of a scale without a unit: of a fraction, or of a number of bits
 _TOPS = (1.0, 127.0, 255.0, 1023.0, 4095.0)
 #: words of docstrings for a number that counts
 _COUNT = re.compile(

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from .loader import RobotProgram as RobotProgram
     from .loader import load as load
 
-#: what needs the cell: whoever asks what this package brings does not load that
+#: modules that need the cell: they are not loaded where only the list of features is wanted
 _LAZY = ("RobotProgram", "load")
 
 __all__ = ["LanguageError", "ProgramError", "UnsupportedError", *_LAZY]  # noqa: PLE0604

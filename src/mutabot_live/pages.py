@@ -19,7 +19,7 @@ from mutabot.api.reports import LiveReport
 _LEAST, _TIMES = 1.0, 20.0
 _KINDS = {".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml"}
 _NUMBERED = re.compile(r"data/(mutants|originals)/([0-9]{1,7})\.js")
-#: the report from disk asks nobody for anything; this one asks the server that it came from
+#: the report from disk makes no requests; this one asks the server that it came from
 _POLICY = ("default-src 'none';", "default-src 'none'; connect-src 'self';")
 _STYLE = '<link rel="stylesheet" href="assets/live.css">\n</head>'
 _SCRIPT = '<script src="assets/live.js"></script>\n<script src="data/campaign.js">'

@@ -5,7 +5,7 @@ this machine's (which also stops names that are made to lead here), and its ``Or
 
 Browsers get the last state, and notes. There is no queue for each: a browser that asks gets what is new since
 he last asked, and a state only once it is the last: a browser that is slow misses states in between, and
-holds up nobody.
+holds up no other.
 """
 
 from __future__ import annotations
@@ -132,7 +132,7 @@ HOST = "127.0.0.1"
 _NAMES = re.compile(r"(localhost|127\.0\.0\.1|\[::1\])(:[0-9]{1,5})?", re.IGNORECASE)
 #: seconds: for one request or one write; between two signs of life; between two looks; between two states
 _PATIENCE, _HEARTBEAT, _TICK, _REST = 30.0, 15.0, 1.0, 0.2
-#: connections at a time; further ones are closed. A request must be whole within so many seconds and bytes
+#: connections at a time; further ones are closed. Limits of a whole request, in seconds and bytes
 MOST, WITHIN, _LARGEST = 64, 10.0, 1 << 16
 _HEADERS = {
     "Cache-Control": "no-store",
@@ -182,7 +182,7 @@ class _Server(ThreadingHTTPServer):
     """The HTTP server; connections beyond ``MOST`` are closed to save descriptors and memory."""
 
     daemon_threads = True
-    block_on_close = False  # a browser that does not read holds up nobody
+    block_on_close = False  # a browser that does not read holds up no other
     request_queue_size = MOST
 
     def __init__(self, port: int, token: str, pages: Pages, feed: LiveFeed, commands: PageCommands) -> None:

@@ -37,7 +37,7 @@ class FilmedTest:
     Attributes:
         film: its pictures, if there are any.
         recording: what else was seen of it; None if its process died.
-        ended: how it ended, in words, such as ``passed``.
+        ended: how it ended, such as ``passed``.
         problems: why pictures are missing, one line each.
     """
 

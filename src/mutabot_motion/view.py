@@ -25,7 +25,7 @@ class MotionView:
     Attributes:
         number: the mutant's number.
         id: its id.
-        what: what it changes, in words.
+        what: description of what it changes.
         place: ``file:line``.
         test: node id.
         round: 0-based.
@@ -33,7 +33,8 @@ class MotionView:
             recorded differs has none on disk.
         story: what happened, in a sentence; empty if nothing is known.
         apart: when both went different ways, s; None if they never did, or if that is not known.
-        ended: how the test ended in the original and in the mutant, in words; empty if that is not known.
+        ended: how the test ended in the original and in the mutant, such as ``passed``; empty if that is not
+            known.
     """
 
     number: int

@@ -34,7 +34,7 @@ _FILES = {
     ".gif": ("video", 0, b"GIF8"),
 }
 
-#: one way to look at it: says what there is now, in words, and raises UsageError where it fails
+#: one way to look at it: returns a sentence on what there is now, and raises UsageError where it fails
 Viewer = Callable[[MotionView], str]
 
 

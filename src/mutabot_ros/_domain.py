@@ -91,7 +91,7 @@ def _claim(theirs: str | None) -> int | None:
 def _running() -> Iterator[str]:
     """Yield the domains with which running processes were started.
 
-    Of a campaign that was killed nodes may be left, which nobody holds a domain for any more.
+    A campaign that was killed may leave nodes in a domain that is no longer held.
     """
     mark = f"{DOMAIN}=".encode()
     for name in os.listdir("/proc") if os.path.isdir("/proc") else ():

@@ -1,7 +1,7 @@
 """Starts a ROS 1 master for the nodes of one worker.
 
 Workers that shared a master would meet in its names. One alone takes 0.1 s and 30 MB, so each worker has its
-own: on a port that nobody uses, of this machine only, with its logs in the worker's home. It ends with the
+own: on a free port, of this machine only, with its logs in the worker's home. It ends with the
 worker, also if that is killed.
 """
 

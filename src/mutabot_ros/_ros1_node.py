@@ -113,7 +113,7 @@ def later(seconds: float, action: Callable[[], object]) -> None:
         rospy: Any = sys.modules[_MODULE]
         try:
             rospy.sleep(seconds)
-        except rospy.ROSException:  # the node is shut down: nobody is there any more
+        except rospy.ROSException:  # the node is shut down
             return
         action()
 

@@ -127,7 +127,7 @@ class Monitor(CheckProposal):
     Attributes:
         owner: the name of the object.
         condition: what must hold at every moment.
-        name: says so in words.
+        name: its description.
         is_release: whether it says from where something may be let go.
         distance: how far the nearest survivor breaks it, in what counts as clear.
     """

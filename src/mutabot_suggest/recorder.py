@@ -171,7 +171,7 @@ def _parts_of(text: str, read: Callable[[], Any]) -> dict[str, Any]:
     found: dict[str, Any] = {}
     try:
         whole = read()
-        if inspect.iscoroutine(whole):  # nobody awaits it here
+        if inspect.iscoroutine(whole):  # it is not awaited here
             whole.close()
         for key, value in _parts(text, whole, _DEPTH):
             found[key] = value

@@ -26,7 +26,7 @@ class WorldEnd(StrEnum):
     #: all tests pass, and it is unknown how the world ended
     PASSED = "passed"
     LIVED = "lived with"
-    #: it disturbed nothing, or nobody knows
+    #: it disturbed nothing, or the result is unknown
     UNKNOWN = "not known"
 
 
@@ -78,7 +78,7 @@ class WorldLadder:
         unit: of the magnitudes.
         tests: node ids of the tests.
         found: by magnitude, rising, and round, what became of it in each test.
-        texts: the disturbance in words, by magnitude.
+        texts: descriptions of the disturbance, by magnitude.
         numbers: the mutants' numbers, by magnitude and test.
     """
 

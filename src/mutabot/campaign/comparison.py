@@ -200,8 +200,8 @@ def _on_the_way(
 ) -> tuple[float | None, str, int]:
     """Compare readings after the same calls, up to the first call that differs.
 
-    Returns the greatest deviation (None if there is nothing to compare), the greatest difference in words,
-    empty if it is within the tolerance, and how many moments were compared.
+    Returns the greatest deviation (None if there is nothing to compare), a description of the greatest
+    difference, empty if it is within the tolerance, and how many moments were compared.
     """
     common = _common_moments(original, mutant)
     found = [
@@ -414,7 +414,7 @@ class _ProbeDifference(NamedTuple):
         tolerance: difference up to which it counts as the same.
         unit: of the part, if the vocabulary says it.
         is_clock: whether it is a time, which is no distance.
-        text: the difference in words.
+        text: description of the difference.
     """
 
     key: str

@@ -3,7 +3,7 @@
 The whole suite judges a mutant. Where the tests that do not reach survivors, after the first that does, would
 take longer than all the rest of the campaign, they are left out at first. A mutant that ends otherwise than
 as a survivor after tests were left out is run with all of them before it counts. Of those that are let
-through, so many are run again with the whole suite, drawn at random, as at most double the campaign. If that
+through, a random sample that at most doubles the campaign is run again with the whole suite. If that
 notices one, all are run.
 """
 

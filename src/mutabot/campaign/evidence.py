@@ -103,7 +103,7 @@ class CampaignEvidence:
     ) -> tuple[Diverged, ...]:
         """Keep what differs of a mutant's tests. Return the differences, the most telling first.
 
-        Recordings that cannot be read or written any more, whoever has spoiled them, cost no outcome.
+        Recordings that can no longer be read or written cost no outcome, whatever the cause.
         """
         try:
             return () if self.is_lost else self._take(mutant, round, ends, survived=survived)

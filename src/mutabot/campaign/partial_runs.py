@@ -89,7 +89,7 @@ class CampaignRun(Campaign):
         Raises SelectionError if the program no longer has it.
         """
         place = Place.of(mutant)
-        if place in self.baseline.hits:  # which it also is if nobody asks for its family or magnitude now
+        if place in self.baseline.hits:  # which it also is if its family or magnitude is not chosen now
             self.baseline.plant(PlannedMutant(mutant, active=Activation.of_call(place)))
             return mutant
         if mutant.id not in self.planned:

@@ -39,13 +39,13 @@ class Death:
     """How a process ended that did not run its tests to their end.
 
     Attributes:
-        text: in words.
+        text: description.
         test: the test it was in, or None.
         signal: the signal that killed it, or None.
         overdue: whether its wall-clock time was up.
         acted: whether its mutant had changed anything by then.
         in_mutated_call: whether it was in the midst of a mutated call.
-        hindered: why that says little of it, as the machine was busy, in words; None if it was not.
+        hindered: why that says little of it, as the machine was busy; None if it was not.
         is_starved: whether it was ended although it had not had its time.
     """
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 Triple = tuple[float, float, float]
 #: seconds that a new simulation in the same test comes after the one before
 _GAP = 1e-3
-#: by so much may sums of time steps be off
+#: largest error of sums of time steps
 _HAIR = 1e-6
 
 

@@ -1,7 +1,7 @@
 """Clean up after workers: processes in sessions of their own, and folders.
 
 All that is started below a worker finds the worker's folder in its environment, and the kernel shows with
-what environment a process began, whoever its parent is by then. A look at all processes takes about a
+what environment a process began, whatever its parent is by then. A look at all processes takes about a
 millisecond. The folder is removed, whatever the worker has made of it.
 """
 

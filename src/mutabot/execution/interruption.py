@@ -1,7 +1,7 @@
 """Delay Ctrl-C, and the end of a campaign's time, until it is safe.
 
 Python raises KeyboardInterrupt between any two instructions, also between the opening of a descriptor or
-the start of a process and the moment from which on somebody looks after it. So the first Ctrl-C is kept for
+the start of a process and the moment from which on it is supervised. So the first Ctrl-C is kept for
 the next time that the campaign waits, which is at most a few seconds away. A second one is not.
 
 Ctrl-C may be ignored, as in what a script starts with ``nohup … &``. Other ways to end a campaign, and the
@@ -76,7 +76,7 @@ def interruptions_kept() -> Iterator[None]:
     """Delay Ctrl-C inside the context until the campaign waits, or until the end of the block.
 
     Does nothing in other threads than the main one, in which Python handles no signals, and where
-    somebody else handles them already. Where Ctrl-C is ignored it stays so.
+    another handler is installed. Where Ctrl-C is ignored it stays so.
     """
     global _guard  # noqa: PLW0603  # a process has one handler of each signal
     is_main = threading.current_thread() is threading.main_thread()

@@ -92,7 +92,7 @@ class Home:
 
     def stop_forks(self) -> None:
         """Make the process end its forks and start no more."""
-        with contextlib.suppress(OSError):  # somebody has deleted the folder
+        with contextlib.suppress(OSError):  # the folder was deleted
             (self.folder / STOP).touch()
 
     def log_text(self) -> str:
@@ -119,7 +119,7 @@ def refuse_full_disk(folder: Path) -> None:
     """Raise OSError if a process that worked in ``folder`` may have died because the disk is full."""
     try:
         is_full = disk_usage(folder).free < _ROOM
-    except FileNotFoundError:  # somebody has deleted it
+    except FileNotFoundError:  # it was deleted
         return
     if is_full:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(folder))
@@ -272,7 +272,7 @@ class Copy:
     """A copy of a fork server, running a job. Like ``Spawned``, but the server waits for it."""
 
     pidfd = None
-    #: nobody but the server's supervisor looks after what it leaves
+    #: only the server's supervisor looks after what it leaves
     left: list[str] | None = None
 
     def __init__(self, pid: int, server: ForkServerProcess) -> None:

@@ -139,8 +139,8 @@ class Result:
         watched: limits of the suite's own that would end it during that test.
         end: its orderly end; None if there was none.
         exit_code: its exit code, negative for a signal.
-        overdue: which limit of time it exceeded, in words, or None.
-        hindered: why that says little of it, as the machine was busy, in words; None if it was not.
+        overdue: description of the limit of time that it exceeded, or None.
+        hindered: why that says little of it, as the machine was busy; None if it was not.
         is_starved: whether it was ended although it had not had its time, as it would have taken too long.
         wall: seconds from its start to its end.
         log: the last lines it printed.
@@ -246,7 +246,7 @@ class Executor(Protocol):
     Attributes:
         spread: how many places share nothing, neither fork parents nor fork servers. Work for them is cut
             into parts, the longest first. 1 on one machine.
-        remarks: what is to be known of where tasks ran, for whoever reads the journal.
+        remarks: what readers of the journal should know of where tasks ran.
     """
 
     @property

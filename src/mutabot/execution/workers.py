@@ -52,7 +52,7 @@ class TokenPool:
     def __init__(self, size: int) -> None:
         self._size = size
         self.reading, self._writing = os.pipe()
-        # whatever a test puts there or takes away, nobody may wait for it
+        # whatever a test puts there or takes away, nothing may wait for it
         os.set_blocking(self.reading, False)
         os.set_blocking(self._writing, False)
         self.give_back(size)
@@ -90,7 +90,7 @@ class TokenPool:
         os.close(self._writing)
 
 
-#: said of a process whose own folder somebody deleted while it ran: what it kept there is lost
+#: said of a process whose own folder was deleted while it ran: what it kept there is lost
 _HOME_LOST = Untrusted("the folder in which the tests' process worked was deleted or closed while it ran")
 
 
@@ -127,7 +127,7 @@ class Workers:
 
     Attributes:
         pool: the tokens of fork parents and forks.
-        look: called several times a second while it waits; what it raises ends the run. None: nobody looks.
+        look: called several times a second while it waits; what it raises ends the run. None for none.
         spread, remarks: see ``Executor``.
     """
 
@@ -236,7 +236,7 @@ class Workers:
         if not task.is_fork_parent:
             return True
         if not self._workers:
-            self.pool.refill()  # nobody is left who could hold one
+            self.pool.refill()  # no process is left that could hold one
         return self.pool.take(beside=self._spared)
 
     @property

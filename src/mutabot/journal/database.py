@@ -2,12 +2,12 @@
 
 Most tables hold one object a row, as the JSON of its ``data``; the columns beside it are for SQL to ask by.
 
-A file may come from anybody. A view or a trigger in it would be evaluated with each question: only the tables
-of this version may be there.
+A file may come from a stranger. A view or a trigger in it would be evaluated with each question: only the
+tables of this version may be there.
 
 While it is written, programs under test can do anything to it. A shared index of the log would be mapped into
-memory, and whoever shortens it would end the process. So the writer keeps its index to itself, and readers
-take a copy. It takes no lock that others could hold: ``files.WriterLock`` keeps other writers out.
+memory, and a process that shortens it would end this one. So the writer keeps its index to itself, and
+readers take a copy. It takes no lock that others could hold: ``files.WriterLock`` keeps other writers out.
 """
 
 from __future__ import annotations
@@ -128,7 +128,7 @@ def loaded(source: sqlite3.Connection) -> sqlite3.Connection:
 def connect_to_read(path: Path) -> sqlite3.Connection:
     """Open a connection to the current content that creates, changes and locks nothing. Raises OSError."""
     log = path.with_name(f"{path.name}-wal")
-    if not log.exists():  # nobody writes
+    if not log.exists():  # no process writes
         return _open(f"{path.absolute().as_uri()}?immutable=1", ("schema_version",), uri=True)
     # what is open can be read when it has no name any more
     with TemporaryDirectory(prefix="mutabot-journal-") as folder:

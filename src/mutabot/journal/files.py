@@ -1,8 +1,8 @@
 """Mutabot's files in a project, and the lock that lets one campaign at a time write a journal.
 
 What a journal says is believed: outcomes in it are taken over, and gates are decided by it. One that git
-tracks was written by whoever wrote the commit, as by a stranger's pull request, which would judge itself. It
-is refused.
+tracks was written by the author of the commit, such as a stranger's pull request, which would judge itself.
+It is refused.
 """
 
 from __future__ import annotations
@@ -72,9 +72,9 @@ class WriterLock:
         journal.parent.mkdir(parents=True, exist_ok=True)
         lock = journal.with_name(journal.name + ".lock")
         if os.path.lexists(lock) and not stat.S_ISREG(lock.lstat().st_mode):
-            clear(lock)  # nobody holds that
+            clear(lock)  # no process holds that
         descriptor = os.open(lock, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
-        # A reader that looks whether somebody writes holds it for a moment, hence more than one try.
+        # A reader that looks for a writer holds it for a moment, hence more than one try.
         for _ in range(10):
             try:
                 fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -184,7 +184,7 @@ def _why(journal: Path, folder: Path, names: list[str]) -> str:
     option = "-r " if folder.name == HOME else ""
     what = HOME if option else first
     return (
-        f"the journal {journal} is not used, since git tracks {first}{more}: whoever commits a journal "
+        f"the journal {journal} is not used, since git tracks {first}{more}: its author "
         f"decides what it says. Take it out of the repository with `git rm --cached {option}{what}`, add "
         f"{HOME}/ to .gitignore, and keep journals for CI in a cache outside of the checkout"
     )

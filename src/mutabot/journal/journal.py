@@ -69,8 +69,8 @@ class Journal(JournalReader):
 
     Attributes:
         moved: where what lay in its place was moved to, if that was no journal of this version.
-        lost: how often the file was deleted or replaced while it was written, in words; it was written again.
-        altered: what somebody else changed in the file meanwhile, in words; it was written again.
+        lost: descriptions of how the file was deleted or replaced while it was written; it was written again.
+        altered: descriptions of what another process changed in the file meanwhile; it was written again.
     """
 
     def __init__(
@@ -84,7 +84,7 @@ class Journal(JournalReader):
         self._done: list[tuple[str, tuple[Any, ...]]] | None = None  # in a transaction
         # whether there was nothing in the file: then the first transaction brings the tables into it
         self._is_new = not self._rows("SELECT count(*) FROM sqlite_master")[0][0]
-        self._stamps = database.stamps(path)  # what it looks like when nobody else has written
+        self._stamps = database.stamps(path)  # what it looks like when no other process has written
         if self._is_new:
             copy.executescript(database.TABLES)
         # for its campaign to begin: until then it is that of the one before
@@ -252,7 +252,7 @@ class Journal(JournalReader):
     def add_outcome(self, outcome: Outcome, *, key: str = "") -> None:
         """Add an outcome, replacing an earlier one of the same mutant and round.
 
-        ``key`` is what it depends on; the empty key says that nobody knows, and that it is not to be reused.
+        ``key`` is what it depends on; the empty key says that this is unknown, so that it is not reused.
         """
         verdict, data = outcome.verdict.value, _dump(outcome)
         self._put("outcome", outcome.mutant, outcome.round, verdict, data, key, 0)
@@ -351,13 +351,13 @@ class Journal(JournalReader):
     def _transaction(self, *, whole: bool = False) -> Iterator[None]:
         """Apply what is written inside the context together or not at all, in both databases.
 
-        Before, the file is compared with what was written if somebody else wrote, and row by row if it is to
-        be ``whole``; after, it is written again if it is not so.
+        Before, the file is compared with what was written if another process wrote, and row by row if it is
+        to be ``whole``; after, it is written again if it is not so.
         """
         with database.guarded(self.path):
             is_ours = False
             with self._noted():
-                self._file.execute("BEGIN IMMEDIATE")  # from here on nobody else can write
+                self._file.execute("BEGIN IMMEDIATE")  # from here on no other process can write
                 is_ours = not self._is_new and self._is_ours(whole)
             self._copy.execute("BEGIN")
             try:

@@ -44,7 +44,7 @@ class Recordings:
         path: the file.
         used: bytes of all recordings together.
         dropped: how many made room for others, or found none.
-        removed: what lay in the place of the file and had to go, in words; empty if nothing did.
+        removed: description of what lay in the place of the file and had to go; empty if nothing did.
     """
 
     def __init__(self, path: Path, connection: sqlite3.Connection, limit: int = 0) -> None:

@@ -28,7 +28,8 @@ REMARKS = "remarks"
 SIMULATION, RAN_OVER = "simulation", "ran_over"
 #: how a campaign ended of which all has run, but not every outcome is in the journal
 INCOMPLETE = "incomplete"
-#: rows of the journal that something else changed while the campaign ran, and that were restored, in words
+#: descriptions of rows of the journal that something else changed while the campaign ran, and that were
+#: restored
 ALTERED = "altered"
 #: summaries of the operators of the plan by their names, and ``Reaching``
 OPERATORS, REACHING, DRAWS = "operators", "reaching", "draws"
@@ -141,7 +142,7 @@ class BaselineTest:
     Attributes:
         round: 0-based round.
         repetition: 0-based repetition of that round.
-        test: how it ended and what it took. Mutants were compared with what it did; nobody asks later.
+        test: how it ended and what it took. Mutants were compared with what it did; it is not needed later.
     """
 
     round: int
@@ -177,7 +178,7 @@ class KeptBaseline:
     Attributes:
         depends: what they depend on, as a digest.
         taken: when they were made, in seconds since 1970; the first of them, if not all at once.
-        opened: the files that somebody opened meanwhile; None if that is not known.
+        opened: the files that were opened meanwhile; None if that is not known.
         runs: in the order in which they were made.
     """
 
@@ -195,7 +196,7 @@ class Kept:
         mutant, round, verdict: as in the outcome.
         key: what it depends on.
         is_sound: whether it says anything about the mutant, and not about the tool or the machine.
-        data: the outcome as JSON; empty where nobody asked for it.
+        data: the outcome as JSON; empty where it was not asked for.
     """
 
     mutant: str
@@ -326,7 +327,7 @@ class Disagreement:
     Attributes:
         mutant, number: id and number of the mutant.
         round: 0-based round.
-        first, second: how it ended in the campaign and in the fresh process, in words.
+        first, second: descriptions of how it ended in the campaign and in the fresh process.
     """
 
     mutant: str

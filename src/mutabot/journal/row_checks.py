@@ -1,4 +1,4 @@
-"""What rows of a journal may hold: whoever reads one checks it, since a file may come from anybody."""
+"""Check what rows of a journal hold whenever they are read, since the file may come from a stranger."""
 
 from __future__ import annotations
 

@@ -2,8 +2,8 @@
 
 Only what a copy surely preserves is kept: plain values, containers of them, arrays, enumerations, and objects
 whose whole state is made of these. An object that the call knew already (the instance, an argument) is kept
-as a reference to it. A part of the robot API is never copied: its copy would be a robot that nobody commands.
-A future is kept as one that is never done.
+as a reference to it. A part of the robot API is never copied: its copy would be a robot that gets no
+commands. A future is kept as one that is never done.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from mutabot.model.data import is_of_numpy
 from mutabot.model.enumeration import is_member, member_of, name_of
 from mutabot.model.path import class_name
 
-#: futures of the standard library: kinds by module and class; modules that nobody has imported stay so
+#: futures of the standard library: kinds by module and class; modules that are not imported stay so
 _FUTURES = (("asyncio", "Task"), ("asyncio", "Future"), ("concurrent.futures", "Future"))
 
 

@@ -18,7 +18,8 @@ class CallFault(StrEnum):
     An operator that wants one first asks ``call.cannot(call_fault)``.
     """
 
-    #: it is carried out so many seconds of the program's clock later. The program waits for it only where it
+    #: it is carried out this many seconds of the program's clock later. The program waits for it only where
+    #: it
     #: waits for an answer: what is published goes out by itself
     LATE = "late"
     #: what it begins is cancelled at once
@@ -27,7 +28,7 @@ class CallFault(StrEnum):
     KILLED = "killed"
     #: the process that makes it is killed in its stead, and begins anew; this happens once
     RESTARTED = "restarted"
-    #: before it is made, the program's clock jumps by so many seconds
+    #: before it is made, the program's clock jumps by this many seconds
     JUMPED = "jumped"
 
 
@@ -131,9 +132,9 @@ class Call:
         call_faults: what befalls it, with seconds where it takes some.
         cannot: why something cannot befall it here; empty if it can.
         time: simulated seconds since the test's first tick; raises LookupError without a clock.
-        wait: lets so many seconds pass on the program's clock; raises LookupError where nothing says how.
+        wait: lets a number of seconds pass on the program's clock; raises LookupError where nothing says how.
         previous: what the program's call of this operation, or text command, before this one wrote; None if
-            there was none in this test. Raises LookupError where nobody knows.
+            there was none in this test. Raises LookupError where that is unknown.
         defer: has a call made right after the program's next command; never if none follows. While one is
             due, the operator is not asked: the next call at its site is made as it is.
         is_refusal: whether an exception is one by which the robot refuses a command.

@@ -2,7 +2,7 @@
 
 Tests replace ``time.monotonic`` and its like, in all modules that have taken them by name, or what these do.
 None of it reaches these: they are bound when the first of ours is imported, are equal to none of those
-functions, and ask the system for a clock that nobody pretends to be at another time.
+functions, and ask the system for a clock that cannot be faked.
 """
 
 from __future__ import annotations

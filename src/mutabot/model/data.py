@@ -25,7 +25,7 @@ UNKNOWN = object()
 DEPTH = 20
 #: an integer beyond it is no number for operators, which calculate with floating-point numbers
 _LARGEST = int(sys.float_info.max)
-#: what nobody can change, and what is its own data
+#: types of immutable values, which are their own data
 _FIXED = frozenset({type(None), bool, int, float, complex, str, bytes, range, slice})
 #: modules of the standard library whose objects say by their texts what they are
 _TEXTUAL = ("datetime", "decimal", "fractions")

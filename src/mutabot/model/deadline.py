@@ -2,7 +2,7 @@
 
 A process that computes is ended by its processor time, which other processes on the machine do not change.
 One that waits uses none: the wall clock ends it, without the time in which it wanted a processor and had
-none. Nobody counts the time that a host takes from a virtual machine. So a process that has used most of its
+none. The time that a host takes from a virtual machine is not counted. So a process that has used most of its
 processor time is given up to twice the wall clock's limit to use the rest.
 """
 
@@ -57,7 +57,7 @@ class Deadline:
         used: what there was when its time began.
         until: moment (``time.monotonic``) at which to look (again).
         by_processor: whether its processor time is used up.
-        hindered: why nobody can say that the wall clock gave it enough, in words, or None.
+        hindered: the reason to doubt that it had enough time by the wall clock, for the user, or None.
         is_starved: whether it is to be ended although it has not had its time, as it would take too long.
     """
 

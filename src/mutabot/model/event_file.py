@@ -1,6 +1,6 @@
 """Files of events: one for each process, one numbered and sealed event a line.
 
-A file needs nobody who listens, and its content stays when its process dies. The seal shows a reader that a
+A file needs no listener, and its content stays when its process dies. The seal shows a reader that a
 line is whole, ours, and of this process; the number shows that none is missing and none comes twice. The
 tests' code can write into any file, by mistake or because of a mutant. Processes know the key of the seals,
 so this guards against accidents and not against code that wants to deceive.
@@ -153,4 +153,4 @@ UNWRITTEN = 117
 #: a program dies of these by its own fault; others come from outside
 OWN_FAULT = {signal.SIGSEGV, signal.SIGABRT, signal.SIGBUS, signal.SIGFPE, signal.SIGILL}
 #: stands for any process, as in kill(2)
-ANYBODY = -1
+ANY_PROCESS = -1

@@ -43,7 +43,7 @@ class TestEnd(Event):
         message: first lines of the exception's text.
         place: ``file:line`` where the failure was noticed.
         timeout: which limit was exceeded, or None.
-        hindered: why the limit of wall clock that it exceeded says little, as the machine was busy, in words;
+        hindered: why the limit of wall clock that it exceeded says little, as the machine was busy;
             else None.
         failure: the simulator's failure, or None.
         invalid: whether the mutated call rejected its arguments' types.
@@ -74,7 +74,7 @@ class TestEnd(Event):
         processes: processes below the tests that were there during it, by number, with a name for people.
         below: indexes of the sites that processes below the tests called, by their origin.
         hit_below: origins of the processes below the tests in which the mutant was hit.
-        exclusive: by what it gets in the way of other processes, in words, or None.
+        exclusive: description of how it gets in the way of other processes, or None.
         moments: probes along the way: after which call (from 1), parts that differ from the moment before,
             and whether these are all parts.
         reading: processor seconds it takes to read all probes; None if they cannot be read along the way.
@@ -187,7 +187,7 @@ class Watched(Event):
     Attributes:
         test: the test.
         until: from when on, by the clock of ``time.monotonic``, which all processes share.
-        text: the limit, in words.
+        text: description of the limit.
     """
 
     test: str
@@ -311,7 +311,7 @@ class ForkDied(Event):
         mutant: id of the mutant it was.
         test: the test it was in; empty before any.
         exit_code: its exit code, negative for a signal.
-        overdue: which limit of time it exceeded, in words, or None.
+        overdue: description of the limit of time that it exceeded, or None.
         hindered, is_starved: as in ``Result``.
         acted: whether the mutant had changed anything.
         in_mutated_call: whether it was in the midst of a mutated call.
@@ -551,7 +551,7 @@ class Found(Event):
 
 @frozen
 class Signalled(Event):
-    """The process sends a signal to another, or to a group (negative), or to ``ANYBODY``."""
+    """The process sends a signal to another, or to a group (negative), or to ``ANY_PROCESS``."""
 
     pid: int
 
@@ -581,7 +581,7 @@ class Untrusted(Event):
     """The events of a process are unreliable; added by their reader, not by the process.
 
     Attributes:
-        reason: in words.
+        reason: the reason, for the user.
     """
 
     reason: str

@@ -1,6 +1,6 @@
 """Open files safely in folders that programs under test can write to.
 
-A pipe in the place of a file would make whoever opens it wait for ever, a link would lead elsewhere.
+A pipe in the place of a file would block the process that opens it for ever, a link would lead elsewhere.
 """
 
 from __future__ import annotations

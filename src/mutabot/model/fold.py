@@ -15,7 +15,7 @@ from typing import Any
 from mutabot.frozen import frozen
 from mutabot.model import events
 from mutabot.model.clocks import monotonic, sleep
-from mutabot.model.event_file import ANYBODY, FOLDER, NOW, OWN_FAULT, SUFFIX, EventReader
+from mutabot.model.event_file import ANY_PROCESS, FOLDER, NOW, OWN_FAULT, SUFFIX, EventReader
 from mutabot.model.files import read_file
 from mutabot.model.job import Job
 from mutabot.model.outcome import added
@@ -230,7 +230,7 @@ class FactsOfTest:
         index_of: its own index of a site.
         has_acted: whether the mutant changed anything in an earlier test.
         codes: exit codes of processes.
-        signalled: processes, and groups (negative), that somebody sent a signal to, or ``ANYBODY``.
+        signalled: processes, and groups (negative), that were sent a signal, or ``ANY_PROCESS``.
     """
 
     job: Job
@@ -359,4 +359,4 @@ def _lost(end: events.TestEnd, records: Sequence[ChildRecord], facts: FactsOfTes
 def _was_signalled(record: ChildRecord, facts: FactsOfTest) -> bool:
     """Return whether the tests, or a process below them, sent the process a signal."""
     pid, group = record.began.pid, record.began.group
-    return not {pid, -pid, -group, ANYBODY}.isdisjoint(facts.signalled)
+    return not {pid, -pid, -group, ANY_PROCESS}.isdisjoint(facts.signalled)

@@ -50,7 +50,7 @@ class Forking:
 
     Attributes:
         mutants: the mutants that are alive in this round.
-        tokens: where the pipe of the token pool can be opened; filled in by whoever runs the job.
+        tokens: where the pipe of the token pool can be opened; filled in by the process that runs the job.
         limits: the time that a fork may take for a test, by test.
         limit: the same for tests that are missing there.
         startup: the same until its first test begins.

@@ -156,7 +156,7 @@ def _print(field: Field, value: Any, like: str | None) -> str:
         return format(str(value), field.spec)
     if field.kind == "d":
         value = round(value)
-    # "g" alone keeps six digits; that would change a value such as 1234.5678 that nobody mutated
+    # "g" alone keeps six digits; that would change a value such as 1234.5678 that is not mutated
     plain = format(value, field.spec) if field.spec != "g" else _shortest(value)
     return _alike(plain, value, like) if like is not None else plain
 

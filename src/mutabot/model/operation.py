@@ -410,7 +410,7 @@ class Wait:
     """How the program's time can be advanced.
 
     Attributes:
-        target: callable that takes one number and returns when so much time has passed, as
+        target: callable that takes one number and returns when that much time has passed, as
             ``module:qualified.name``. A method is called on the object of its class that the program uses.
         unit: unit of that number.
     """

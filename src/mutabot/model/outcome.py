@@ -56,8 +56,8 @@ class Check:
         text: what the test says there.
         seen: the values that it compared, or the arguments of a call; of a check that was made several times,
             those that were nearest to fail. Empty if they are no plain values.
-        spare: how far the two sides of the comparison were apart, in their unit: by so much it held. None if
-            it is no matter of more or less.
+        spare: by how much it held: the distance between the two sides of the comparison, in their unit. None
+            if it is no matter of more or less.
         times: how often it was made.
     """
 

@@ -263,7 +263,7 @@ def _can_be_set(copied: Any, name: str) -> bool:
 
 
 def _is_fixed(value: Any, step: Step) -> bool:
-    """Return whether a step of an object is a part of it that Python lets nobody change, or is computed."""
+    """Return whether a step of an object is a read-only part of it, or is computed."""
     if is_member(value) or is_scalar_of_numpy(value):
         return True
     if step.attribute is None:

@@ -221,8 +221,8 @@ class Quantity:
     def of(self, value: Any) -> Value:
         """Return the value at the end of its path, with stamps in seconds and orientations as numbers.
 
-        A member of an enumeration is what ``values`` write for it. ``data.UNKNOWN`` if nobody may look into
-        it. Raises PathError.
+        A member of an enumeration is what ``values`` write for it. ``data.UNKNOWN`` if it is unsafe to look
+        into it. Raises PathError.
         """
         if self.values is not None and is_member(value):
             return written_of(value, self.values)

@@ -110,7 +110,7 @@ def _still_there() -> list[int]:
 def _end_others() -> None:
     until = time.monotonic() + _PATIENCE
     while (found := _children()) and time.monotonic() < until:
-        for pid in found:  # nobody else can have its number as long as it is our child
+        for pid in found:  # no other process can have its number as long as it is our child
             os.kill(pid, signal.SIGKILL)
         time.sleep(_PAUSE)
         _reap(0)  # what is below those comes to us

@@ -40,7 +40,7 @@ class CommandOperator(Operator):
     """The base class of operators on whole calls: on commands, unless ``fits`` says otherwise.
 
     Class attributes:
-        fault: the fault in words, with ``{what}`` for what is sent and ``{variant}`` for the variant.
+        fault: description of the fault, with ``{what}`` for what is sent and ``{variant}`` for the variant.
         variants: a mutant each, with what they mean (``context.option``).
     """
 

@@ -107,7 +107,7 @@ class Need(Enum):
 
     #: where a written quantity is now (``call.current``): the vocabulary names a reading that gives
     PLACE = auto()
-    #: a negative value among the recorded ones, without which nobody knows whether there is a direction
+    #: a negative value among the recorded ones, without which it is unknown whether there is a direction
     SIGN = auto()
     #: what the command answers while the robot does nothing (``call.idle``), by baseline or vocabulary
     IDLE = auto()

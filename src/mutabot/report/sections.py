@@ -162,7 +162,7 @@ def untested(found: Untested, *, everything: bool = False) -> Iterator[Section]:
         yield Section(found.text or "Calls that no test reaches may be robot calls", lines=lines)
 
 
-#: so many survivors are described although none had a measured effect
+#: number of survivors that are described although none had a measured effect
 _FEW = 10
 
 

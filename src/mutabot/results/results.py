@@ -167,8 +167,8 @@ class Results:
         since: what was run of what has changed since a revision; None if that was not asked for.
         budget: how limited time was used; None if it was not limited.
         shard: which part of its plan the campaign has run; None for all of it.
-        set_aside: what the journal holds that Mutabot has not written or that cannot be, in words. Nothing
-            of it is believed: its outcomes count as not run.
+        set_aside: descriptions of what the journal holds that Mutabot has not written or that cannot be.
+            Nothing of it is believed: its outcomes count as not run.
         sources: text of the mutated files at the time of the campaign, by path relative to the project.
         operators: what each operator does, in a sentence, by its name; those of journals that do not say it
             are missing.
@@ -274,7 +274,7 @@ class Results:
         if found:
             raise SelectionError(_several(name, found))
         ids = [candidate.mutant.id for candidate in everything]
-        if nearest_name(name, ids) is None:  # a list of ids would help nobody
+        if nearest_name(name, ids) is None:  # a list of ids would be of no help
             known = f"numbers 1 to {everything[-1].mutant.number}, ids, or parts of ids such as {ids[0]!r}"
             raise SelectionError(f"there is no mutant {shortened(name)!r}; give {known}")
         raise SelectionError(unknown_name_text("mutant", name, ids))

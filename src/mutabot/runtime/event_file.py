@@ -41,7 +41,7 @@ class EventFile:
         folder: where the file is.
         name: its name, without its ending; it is made if it is not there.
         key: of the seals.
-        fail: called if something could not be written; by default it ends the process, of which nobody could
+        fail: called if something could not be written; by default it ends the process, of which nothing could
             know anything any more.
         bell: descriptor of the pipe by which the controller learns that there is something to read. It is
             replaced by the lowest one that is free: tests may expect theirs to follow one upon another.

@@ -58,7 +58,7 @@ def look_at(code: Any) -> None:
         exact = [found for found in same if found.co_qualname == part.co_qualname]
         if not exact and not part.co_name.startswith("<"):
             exact = same  # a method taken out of its class
-        if len(exact) == 1 and id(part) not in executed:  # of several, nobody knows which it was
+        if len(exact) == 1 and id(part) not in executed:  # of several, it is unknown which it was
             pairs = zip(_parts(part), _parts(exact[0]), strict=True)
             executed.update((id(mine), (mine, yours)) for mine, yours in pairs)
 

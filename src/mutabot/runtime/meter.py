@@ -23,7 +23,7 @@ class Meter:
         operations: intercepted calls so far.
         started, now: simulated time at the test's first tick and at its last one, s; None before.
         used: simulated time that earlier clocks of the same test counted, s.
-        exceeded: the limit that was exceeded, in words.
+        exceeded: description of the limit that was exceeded.
         guarded: which command a guard kept from the robot, and why; None if none did.
         began: processor time of this process when it began with the test, s.
     """

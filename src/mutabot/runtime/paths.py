@@ -1,6 +1,6 @@
 """Which file of the project a path stands for: without links, and for a copy the original.
 
-Tests copy the program and run the copy: beside other files, in a folder of its own, in a zip file. Whoever
+Tests copy the program and run the copy: beside other files, in a folder of its own, in a zip file. Code that
 edits the program by hand changes what such a copy holds as well. So a file that was written after the session
 has begun, and holds the text of a file of the program, is mutated at the same places. Older files with the
 same text are others, as an edit of the program does not reach them.

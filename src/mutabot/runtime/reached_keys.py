@@ -1,7 +1,7 @@
 """Track which keys the running test reaches: simulated time, calls, and their counts.
 
-Only keys that somebody awaits are looked for: the mutants of a fork parent, or the fault of this process. To
-both they are reported in the same way, so that a fault begins in a fork where it does in a process of its
+Only keys that are awaited are looked for: by the mutants of a fork parent, or by the fault of this process.
+To both they are reported in the same way, so that a fault begins in a fork where it does in a process of its
 own.
 """
 

@@ -34,7 +34,7 @@ from mutabot.runtime.targets.callables import Callables
 from mutabot.runtime.targets.messages import Messages
 from mutabot.runtime.targets.target import Finding, Handler
 
-if TYPE_CHECKING:  # processes below the tests fork for nobody
+if TYPE_CHECKING:  # processes below the tests do not fork mutants
     from mutabot.model import Moment, Mutant, Operation, Probe
     from mutabot.model.activation import Activation, Key
     from mutabot.model.job import Job

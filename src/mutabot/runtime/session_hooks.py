@@ -146,7 +146,7 @@ class SessionHooks:
         self.tests.start_clocks(is_new=True)
         self.tests.left_out = self.job.left_out(mutant.id)
         if self.config is not None:
-            # nobody reads a fork's traceback, and to lay one out takes longer than most forks
+            # a fork's traceback is not shown, and to lay one out takes longer than most forks
             self.config.option.tbstyle = "value"
             _keep_cache_in(self.config, folder)
         fork = ForkedRun(self.tests, self.session.fork_parent, mutant, self._files.home)

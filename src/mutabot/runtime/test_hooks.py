@@ -98,7 +98,7 @@ class ForkedRun:
         if self._tests.members is None and os.getpid() == self._pid:
             try:
                 self._tests.members = self._own_processes()
-            except OSError:  # nobody could know anything of them
+            except OSError:  # nothing could be known of them
                 os._exit(UNWRITTEN)
 
     def _own_processes(self) -> Members:
@@ -218,7 +218,7 @@ class TestHooks:
         """Note a fixed address at which the test listens, which two processes cannot share."""
         address = arguments[1]
         is_chosen = isinstance(address, tuple) and len(address) > 1 and address[1] == 0
-        if not is_chosen and self._address is None:  # by the system, which gives one that nobody else has
+        if not is_chosen and self._address is None:  # by the system, which gives a free one
             self._address = f"waits at the address {address!r}"
 
     @pytest.hookimpl(tryfirst=True)

@@ -1,8 +1,8 @@
 """Find out which files of the project a process reads, and which of them as text rather than to import them.
 
-Text of the program that somebody reads is the original's while a mutant stands in what was compiled. What
-only shows lines (tracebacks, warnings) reads nothing that counts, and what ``runpy`` reads is compiled with
-the mutant in it.
+Text of the program that is read at run time is the original's while a mutant stands in what was compiled.
+What only shows lines (tracebacks, warnings) reads nothing that counts, and what ``runpy`` reads is compiled
+with the mutant in it.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _LINES = "mutabot.getlines"
 #: modules that read files for others, and those that read program text for others
 _FOR_OTHERS = ("pathlib", "linecache", "tokenize", "codecs")
 _TEXT_FOR_OTHERS = (*_FOR_OTHERS, "inspect")
-#: methods of loaders that give the content of a file to whoever calls them
+#: methods of loaders that give the content of a file to their caller
 _OF_LOADERS = {"get_data", "get_source"}
 #: modules that import; the last is pytest, which rewrites tests
 _IMPORTING = ("_frozen_importlib", "importlib._bootstrap", "zipimport", "_pytest.")
@@ -78,7 +78,7 @@ class TextReads:
             return
         try:
             frame = _getframe(FRAMES)
-        except ValueError:  # the interpreter opens the script that it is to run: nobody reads that as text
+        except ValueError:  # the interpreter opens the script that it is to run: that is not read as text
             return
         if event == "open" and arguments[2] & (os.O_WRONLY | os.O_TRUNC):
             return

@@ -23,7 +23,7 @@ class MagnitudeResult(StrEnum):
     MISSED = "missed"
     #: the robot would not do it, or a guard let it not, which no test had a hand in
     REFUSED = "refused"
-    #: it changed nothing, or nobody knows
+    #: it changed nothing, or the result is unknown
     UNKNOWN = "unknown"
 
     @property

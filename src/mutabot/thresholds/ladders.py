@@ -112,7 +112,7 @@ class NextLarger(StrEnum):
     LARGEST = "missed up to the largest"
     REFUSED = "refused"
     NO_EFFECT = "no effect"
-    #: it was not run, or nobody knows
+    #: it was not run, or the result is unknown
     OPEN = "open"
 
 

@@ -38,7 +38,7 @@ HEAD = OPTIONS + DEFAULTS
 def compile_quietly(spec: mujoco.MjSpec) -> mujoco.MjModel:
     """Compile a spec without MuJoCo's warnings about attached parts.
 
-    They are of empty prefixes, with which a model may not be saved correctly (nobody saves these), and of
+    They are of empty prefixes, with which a model may not be saved correctly (these are not saved), and of
     options of parts, for which those of the cell hold.
     """
     with warnings.catch_warnings():
@@ -50,6 +50,6 @@ def _ignore_warning(message: str) -> None:
     """Ignore a warning: models are checked, and `Simulation.tick` detects what matters."""
 
 
-# here, since whoever builds a model imports this: MuJoCo writes the first warning into MUJOCO_LOG.TXT in the
-# working directory, which building alone can cause
+# here, since every module that builds a model imports this one: MuJoCo writes the first warning into
+# MUJOCO_LOG.TXT in the working directory, which building alone can cause
 mujoco.set_mju_user_warning(_ignore_warning)

@@ -54,7 +54,7 @@ def _opening(text: str, path: str | PathLike[str]) -> tuple[str, int]:
     try:
         root = ElementTree.fromstring(text)
     except ElementTree.ParseError as error:
-        # prefixes that nobody declared are common in these files, and MuJoCo does not mind them
+        # undeclared prefixes are common in these files, and MuJoCo does not mind them
         if "unbound prefix" not in str(error):
             raise BadModel(f"{path} is not well-formed: {error}") from error
         root = None

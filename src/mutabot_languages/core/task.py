@@ -252,7 +252,7 @@ def declare_data(
                 undeclared[_declared(node)] = ProgramError(str(error))
             else:
                 undeclared.pop(_declared(node), None)
-        if len(left) == len(waiting):  # what nobody uses is no error
+        if len(left) == len(waiting):  # what is not used is no error
             return
         waiting = left
 

@@ -28,7 +28,7 @@ _PLAIN_TYPES = {
 }  # fmt: skip
 _OF_TRUTH = frozenset(("<", "<=", ">", ">=", "=", "==", "<>", "!=", "and", "or", "xor", "exor", "not"))
 _COMPONENT = re.compile(r"[xyzabc]|[ae][1-6]|q[1-4]|rax_[1-6]|eax_[a-f]|cp")
-#: the edits that change a pose along or about an axis by an amount; None if nobody knows how
+#: the edits that change a pose along or about an axis by an amount; None if that is unknown
 _PoseChange = Callable[[ProgramNode, int, float], tuple[Edit, ...] | None]
 
 
@@ -147,11 +147,11 @@ class Rewriter:
         raise NotImplementedError
 
     def shifted(self, target: ProgramNode, axis: int, metres: float) -> tuple[Edit, ...] | None:
-        """The edits that shift a pose along an axis; None if nobody knows how."""
+        """The edits that shift a pose along an axis; None if that is unknown."""
         raise NotImplementedError
 
     def turned(self, target: ProgramNode, axis: int, degrees: float) -> tuple[Edit, ...] | None:
-        """The edits that turn a pose about an axis of its own; None if nobody knows how."""
+        """The edits that turn a pose about an axis of its own; None if that is unknown."""
         raise NotImplementedError
 
     # what they share

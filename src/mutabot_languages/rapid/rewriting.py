@@ -96,7 +96,7 @@ class RapidRewriter(Rewriter):
             yield TextChange("forget-wait", node, self.put(node, "WaitTime 0"))
 
     def _compared(self, node: ProgramNode) -> Iterator[TextChange]:
-        """A signal that is compared with 0 or 1: a name that nobody declares, or DInput."""
+        """A signal that is compared with 0 or 1: a name without a declaration, or DInput."""
         signal, value = node.parts
         is_name = signal.kind == "name" and signal.name not in self.types
         is_function = signal.kind == "call" and signal.name in ("dinput", "doutput")

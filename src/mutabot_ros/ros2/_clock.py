@@ -1,7 +1,7 @@
 """The time of a node: waiting, calling something later, and clock jumps.
 
 A node that follows ``/clock`` waits in that time. Where it stands still meanwhile, as in a cell whose time
-passes only while something is done, the wait is over when as much of ours has passed: nobody waits forever.
+passes only while something is done, the wait is over when as much of ours has passed: no wait is endless.
 """
 
 from __future__ import annotations

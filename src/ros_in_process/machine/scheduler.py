@@ -23,13 +23,13 @@ from ros_in_process.machine.schedules import FirstIn, Schedule
 SECOND = 1_000_000_000
 #: what reading a clock costs, so that two readings are never equal
 READING = 1_000
-#: after so many fruitless polls in a row, a poll takes time: a loop that polls must not stop time
+#: number of fruitless polls in a row after which a poll takes time: a loop that polls must not stop time
 PATIENCE = 64
 #: the longest time that one fruitless poll takes
 LONGEST_POLL = SECOND // 1_000
-#: after so many jumps of time garbage is collected, where it is not collected at any time
+#: number of jumps of time after which garbage is collected, where it is not collected at any time
 JUMPS = 10_000
-#: alarms in a row that wake nobody before the graph counts as stuck
+#: alarms in a row that wake no task before the graph counts as stuck
 FRUITLESS_ALARMS = 100_000
 
 
@@ -271,7 +271,7 @@ class Scheduler:
                 gc.collect()
             try:
                 self.advanced()
-            except BaseException as error:  # whoever watches time ends the test
+            except BaseException as error:  # an observer of time ends the test
                 return self._stop(error)
             if self.limit is not None and self.now > self.limit:
                 self.limit = None

@@ -47,7 +47,7 @@ class Arguments:
     levels: dict[str, int] = field(default_factory=dict)
     has_rosout: bool = True
     has_console: bool = True
-    has_library: bool = True  # a log file, which nobody writes here
+    has_library: bool = True  # a log file, which is not written here
     others: list[str] = field(default_factory=list)
     unknown: list[str] = field(default_factory=list)
 

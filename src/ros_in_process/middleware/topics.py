@@ -40,7 +40,7 @@ class SentMessage:
     stamp: int  # the system time at which it was published
     number: int  # among its publisher's
     gid: list[int]  # its publisher's
-    expires: int | None  # the system time from which nobody hears it any more
+    expires: int | None  # the system time from which it is no longer delivered
 
 
 class _Topic(Endpoint):

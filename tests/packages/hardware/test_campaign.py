@@ -199,7 +199,7 @@ def test_a_motion_that_was_stopped_is_not_repeated_unasked(folder: Path, server:
         (("--engine", "fork", "--hardware", "yes"), "copies of a program cannot share a robot"),
         (("--hardware", "perhaps"), "--hardware perhaps: ask, yes, repeat"),
         (("-o", "hardware.safe_state='cell_io:nowhere'", "--hardware", "yes"), "has no attribute 'nowhere'"),
-        ((), "each mutant is to be confirmed, but nobody can"),
+        ((), "each mutant needs a confirmation, but this is no terminal"),
     ],
 )
 def test_what_is_missing_is_told_before_anything_moves(

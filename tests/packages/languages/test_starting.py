@@ -77,7 +77,7 @@ def test_what_a_program_waits_for_is_what_the_input_says(tmp_path: Path) -> None
     assert language is not None
     found = {signal.name: signal for signal in signals_of([language.read("a.src", text)], "krl")}
     assert [found[name].value for name in ("$IN[1]", "$IN[2]")] == [False, True]
-    assert found["$OUT[1]"].told == "lamp"
+    assert found["$OUT[1]"].meaning == "lamp"
     assert '# [out."$OUT[1]"]' in starting.cell_map_text("a.src", [*found.values()])
 
 

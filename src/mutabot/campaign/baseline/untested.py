@@ -118,7 +118,7 @@ def add_untested(
 def _texts(root: Path, files: Iterable[str]) -> Iterator[tuple[str, str]]:
     """Yield the name and text of each file of the program that holds more than a docstring.
 
-    A file that cannot be parsed has an empty one: nobody can import it.
+    A file that cannot be parsed has an empty one: it cannot be imported.
     """
     for file in files:
         if front_end_of(file) is not PYTHON:

@@ -52,7 +52,7 @@ class Control:
         provider: the provider whose mutants it is run for.
         round: the round it is run in.
         tests: the tests to run.
-        subject: what it is run for, in words.
+        subject: name of what it is run for.
     """
 
     name: str

@@ -38,7 +38,8 @@ if TYPE_CHECKING:
 _PATIENCE = 60.0
 #: fewest mutants of a part, since each part runs the suite once more; and most parts for each place
 _LEAST, _PARTS = 10, 16
-#: a part with fewer mutants pays if its forks take so many times as long as its own tests; and fewest then
+#: a part with fewer mutants pays if its forks take this many times as long as its own tests; and the fewest
+#: mutants then
 _WORTH, _FEWEST = 4, 2
 #: seconds that a fork takes at least
 _FORK = 0.01
@@ -62,7 +63,7 @@ class Unhandled:
         runs: mutants and rounds.
         apart: ids of mutants that need a process of their own, whatever their tests.
         reasons: test to why mutants cannot be forked in it.
-        notes: what else went wrong, in words.
+        notes: messages about what else went wrong.
         suspects: (round, test) that ended otherwise in a fork parent than in the baseline.
     """
 

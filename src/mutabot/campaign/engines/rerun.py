@@ -34,11 +34,11 @@ from mutabot.model.outcome_text import outcome_text, same_end
 
 from .replay import replay
 
-#: so many kills of a test, or this share of what it judges, could be failures at random
+#: this number of kills of a test, or this share of what it judges, could be failures at random
 _FEW, _SHARE = 2, 0.1
 #: repeats of kills in doubt may take this share of the time that the campaign has taken
 SHARE = 0.05
-#: the same once a kill has not come out again, and for what is left to chance; or so many seconds
+#: the same once a kill has not come out again, and for what is left to chance; or this number of seconds
 MOST_SHARE, MOST_SECONDS = 0.1, 10.0
 #: how often an outcome is repeated whose operator leaves to chance what happens
 RACES = 3

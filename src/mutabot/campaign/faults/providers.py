@@ -126,7 +126,7 @@ def _at_places(
                 try:
                     answers = _answers(original, place, of_any=Need.ERROR in rule.needs)
                     mutant = replace(mutant, idle=idle_of(operation, subject.pattern, answers))
-                except NoAnswerError as error:  # of a statement by itself nobody needs one
+                except NoAnswerError as error:  # a statement by itself needs none
                     reason = None if original.unread.get(place, False) else str(error)
             yield PlannedMutant(mutant, reason, (0, index, ranks[rule.name]), active=active)
 
@@ -227,7 +227,7 @@ def _distinct(mutant: Mutant, taken: set[str]) -> Mutant:
     return mutant
 
 
-#: a recorded value of the subject, and what it would become; None where nobody knows beforehand
+#: a recorded value of the subject, and what it would become; None where that is unknown beforehand
 _Predicted = tuple[Any, Any]
 
 

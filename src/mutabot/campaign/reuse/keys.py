@@ -335,7 +335,7 @@ class OutcomeWriter:
     """Writes outcomes into the journal of a campaign, each with the key of what it depends on.
 
     Args:
-        dependencies: None where files change meanwhile: then nobody knows, and nothing is to be reused.
+        dependencies: None where files change meanwhile: then they are unknown, and nothing is to be reused.
         mutants: those of the plan.
         on_outcome: called with each outcome, first with those that the journal holds already.
 

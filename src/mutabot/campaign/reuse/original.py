@@ -97,7 +97,8 @@ class OriginalRuns:
     def keep(self, write: Callable[[KeptBaseline], object]) -> None:
         """Keep the new runs for later campaigns.
 
-        That is nothing if files of the project changed meanwhile: nobody knows which of them tests have seen.
+        That is nothing if files of the project changed meanwhile: tests may have
+        seen any of them.
         """
         if not self._made or self.after != self.before:
             return

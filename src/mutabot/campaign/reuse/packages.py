@@ -1,6 +1,6 @@
 """The content of installed packages whose code takes part in a run.
 
-A version identifies the content of an installed package, unless somebody works on it: one that is
+A version identifies the content of an installed package, unless it is under development: one that is
 installed editable, or brings parts of mutabot, counts by the content of its files, of whatever kind they are.
 """
 

@@ -52,7 +52,7 @@ def counted(
     Args:
         digests: all files of the project.
         written: those that the baseline touched.
-        opened: those that anybody opened meanwhile; None if that is not known.
+        opened: those that were opened meanwhile; None if that is not known.
     """
     own = own_files(request)
     found = {}

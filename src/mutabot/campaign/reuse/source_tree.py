@@ -25,7 +25,7 @@ class SourceTree:
 
     Args:
         digests: by their names.
-        text: what stood in a file with this name and digest; None if nobody knows that any more.
+        text: what stood in a file with this name and digest; None if that is no longer known.
     """
 
     def __init__(self, digests: Parts, text: Callable[[str, str], bytes | None]) -> None:

@@ -33,8 +33,8 @@ class NumberOperator(ValueOperator):
     """The base class of operators that change one number by a magnitude.
 
     Class attributes:
-        fault: the fault in words, behind the name of the quantity, with ``{}`` for the magnitude; empty where
-            that is added.
+        fault: description of the fault, behind the name of the quantity, with ``{}`` for the magnitude; empty
+            where that is added.
     """
 
     family = GRADED

@@ -32,7 +32,7 @@ _STATUS: Mapping[str, str] = {
     Verdict.ERROR: "RuntimeError",  # the run failed, and no test did
     Verdict.NO_EFFECT: "Ignored",  # it ran and was the original: nothing was there to judge
     Verdict.UNSTABLE: "Ignored",  # it ran, and what came of it is not believed
-    ACCEPTED: "Ignored",  # somebody has looked at it, and its reason says why it may survive
+    ACCEPTED: "Ignored",  # reviewed: its reason says why it may survive
     NOT_RUN: "Pending",  # it was planned, and has not been run yet
 }
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from mutabot.results.results import MutantResult
 
 _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
-#: paths are relative to this; whoever reads the file knows where it is
+#: paths are relative to this, which the reader of the file resolves
 _ROOT = "%SRCROOT%"
 #: part of a name in ``partialFingerprints``; rises if ids of mutants are made in another way
 _FINGERPRINT = "mutabotMutant/v1"

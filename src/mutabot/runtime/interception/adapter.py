@@ -184,9 +184,9 @@ class Adapter:
         on_problem: called with (key, error) for each path or argument that does not fit.
         lately: values that last came by under the names of a middleware, by target; adapters share it.
         handles: classes that are part of the robot API: their objects are never copied.
-        now, wait: return the program's time, s, and let so much of it pass.
+        now, wait: return the program's time, s, and let a number of seconds of it pass.
         handler: what stands around the operation.
-        remembers: the commands, by the texts of their patterns, whose last answers somebody may ask for.
+        remembers: the commands, by the texts of their patterns, whose last answers may be asked for.
         commands: how often the robot was made to do this, if it does anything.
         guard: what is asked before each call; None without guards.
     """

@@ -45,10 +45,10 @@ from mutabot.runtime.observation.probes import Along
 from mutabot.runtime.targets.target import NOWHERE, CallPlace, Handler, Where
 from mutabot.runtime.targets.wrapper import bound
 
-if TYPE_CHECKING:  # processes below the tests fork for nobody
+if TYPE_CHECKING:  # processes below the tests do not fork mutants
     from mutabot.runtime.program_text.returns import Returns
 
-#: what runs in this context: the program, what an operation does or has begun, or what is nobody's
+#: what runs in this context: the program, what an operation does or has begun, or neither
 _PROGRAM, _OPERATION, _UNTRACKED = 0, 1, 2
 _runs: ContextVar[int] = ContextVar("mutabot_runs", default=_PROGRAM)
 #: what a call gives that is none of those that an operation describes
@@ -99,7 +99,7 @@ class Dispatcher:
         turn: asked before each call, in a process that does not see its tests begin; None in all others.
         meter: what the running test has used; None between tests: then nothing is noted.
         on_reach: called before each call is made, with its key, and by its number among those of its site;
-            None if nobody asks.
+            None if not wanted.
         oracle_nodes: names of nodes whose calls are the oracle's, wherever they stand.
         mutant: the mutant of calls that is at work; None for the original, and for other mutants.
         on_live: called in the baseline for each call that returned the robot's own memory; None in other

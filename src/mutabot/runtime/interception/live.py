@@ -24,7 +24,7 @@ _LAST = 8
 _MISSING = object()
 #: the first item of a list, as if a vocabulary described it
 _FIRST: Any = SimpleNamespace(path=Path(None, (Step(item=0),)))
-#: values that nobody can write to
+#: immutable values
 _FIXED = (int, float, complex, str, bytes, bool, type(None), frozenset, range)
 
 
@@ -61,7 +61,7 @@ def _is_held(value: Any, known: int) -> bool:
     base = arrays.base.__get__(value)
     if base is None or not arrays.flags.__get__(value).writeable:
         return False
-    # a view of an array that nobody else has is as good as that array
+    # a view of an array without another reference is as good as that array
     return not issubclass(type(base), arrays) or _is_held(base, _OF_ANSWER)
 
 

@@ -3,8 +3,9 @@
 A process with private files, and all that it starts, sees the project as it is on disk, and its own changes.
 
 The process enters a mount namespace of its own and lays an overlay over each folder: what it writes, renames
-or deletes there goes into a layer that nobody else sees. An ordinary user needs a user namespace for that,
-which some systems and most containers refuse. Mount flags: <linux/mount.h>; clone flags: <linux/sched.h>.
+or deletes there goes into a layer that no other process sees. An ordinary user needs a user namespace for
+that, which some systems and most containers refuse. Mount flags: <linux/mount.h>; clone flags:
+<linux/sched.h>.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ _NO_MOUNTS = "this system allows no private mounts"
 _SHARED_MEMORY = "/dev/shm"
 #: where a process keeps what it prints, in its home
 LOG = "log.txt"
-#: the layers of a process lie in its own folder; of folders in memory, and of those that hardly anybody
+#: the layers of a process lie in its own folder; of folders in memory, and of those that hardly any process
 #: writes to, in a file system in memory that ends with the process, since to make them on a disk takes longer
 _LAYERS, _IN_MEMORY, _UPPER = "files", "memory", "upper"
 #: attributes that an overlay gives to a file of its upper layer, and that hold for no copy of it
@@ -64,7 +65,7 @@ class PrivateFiles:
         home: the process's own folder, in one of the campaign's in that of mutabot, which is private as well.
 
     Attributes:
-        why_not: why its files are not private, in words; None if they are.
+        why_not: why its files are not private; None if they are.
     """
 
     root: str
@@ -81,7 +82,7 @@ class PrivateFiles:
     def make(self) -> str | None:
         """Make files private in this process.
 
-        Returns why that is not possible, in words, and nothing has changed then, bar the namespace; None if
+        Returns why that is not possible, and nothing but the namespace has changed then; None if
         it is done.
         """
         place, self.why_not = os.getcwd(), None
@@ -245,7 +246,7 @@ def _copy(source: str, target: str, links: dict[tuple[int, int], str]) -> None:
             shutil.copyfileobj(old, new)
     elif stat.S_ISCHR(status.st_mode) or stat.S_ISFIFO(status.st_mode):  # what was deleted is such a device
         os.mknod(target, status.st_mode, status.st_rdev)
-    else:  # nobody is at the other end of a socket
+    else:  # a socket without a peer
         return
     if status.st_nlink > 1 and not stat.S_ISDIR(status.st_mode):
         links[identity] = target

@@ -4,9 +4,10 @@ At the first hit of a site the parent forks a child for each of the site's mutan
 came before, takes on its mutant, and goes on to the end of the session, as the whole suite would with the
 mutant in it; or until a test decides about the mutant. The parent goes on as the original.
 
-Whoever computes holds a token, and there are as many tokens as processes may run at a time. The pool is a
-pipe with one byte for each free token. The parent hands its own token to the child that it forks, and waits
-for another one, which is either free in the pool or comes back when a child ends. Children never touch the
+A process that computes holds a token, and there are as many tokens as processes may run at a time. The pool
+is a pipe with one byte for each free token. The parent hands its own token to the child that it forks, and
+waits for another one, which is either free in the pool or comes back when a child ends. Children never touch
+the
 pool: the parent gives back for them, however they ended.
 """
 

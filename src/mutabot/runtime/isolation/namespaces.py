@@ -178,7 +178,7 @@ def _stack() -> ctypes.Array[ctypes.c_char]:
     return ctypes.create_string_buffer(_STACK_BYTES)
 
 
-#: exit code of a process that found nobody to work for
+#: exit code of a process whose parent had ended
 ALONE = 115
 _PR_SET_PDEATHSIG = 1  # <linux/prctl.h>
 
@@ -186,7 +186,7 @@ _PR_SET_PDEATHSIG = 1  # <linux/prctl.h>
 def die_with_parent(parent: int | None = None, pipe: int | None = None) -> None:
     """Ask the kernel to end this process when its parent dies; end it now if the parent is gone.
 
-    It is if it is not ``parent``, or if nobody has the reading end of this ``pipe``.
+    It is if it is not ``parent``, or if no process has the reading end of this ``pipe``.
     """
     _libc().prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
     # it may have died before the kernel was asked

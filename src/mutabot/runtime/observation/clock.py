@@ -160,7 +160,7 @@ def _forget(made: dict[int, weakref.ref[Any]], key: int, gone: weakref.ref[Any])
 
 
 def _held(instance: Any, known: int) -> Callable[[], Any]:
-    """Return a reference to an object that keeps it alive until its test ends, if nobody could notice.
+    """Return a reference to an object that keeps it alive until its test ends, if that is not noticeable.
 
     ``known``: the weak references to it that are kept here.
     """

@@ -225,7 +225,7 @@ class Along:
         read: reads the probes.
         entries: number of the call after which it was read, parts that differ from the reading before, and
             whether these are all parts there are.
-        step: it is read after every so many commands; 0 for never.
+        step: number of commands after which it is read again; 0 for never.
     """
 
     read: Callable[[], Reading]

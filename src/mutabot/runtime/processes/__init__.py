@@ -21,7 +21,7 @@ class _LateInspect:
 
 
 if sys.modules.keys().isdisjoint(("dataclasses", "inspect")):  # a process below the tests
-    sys.modules["inspect"] = _LateInspect()  # type: ignore[assignment]  # nobody asks whether it is a module
+    sys.modules["inspect"] = _LateInspect()  # type: ignore[assignment]  # it need not be a module
     import dataclasses  # noqa: F401  # all of ours need it
 
     del sys.modules["inspect"]

@@ -22,7 +22,7 @@ from itertools import takewhile
 from json import dumps, loads
 from typing import Any
 
-from mutabot.model.event_file import ANYBODY, NOW, TESTS, VARIABLE, WAKE
+from mutabot.model.event_file import ANY_PROCESS, NOW, TESTS, VARIABLE, WAKE
 from mutabot.model.files import open_file, read_file
 from mutabot.runtime.paths import BEGAN
 
@@ -292,7 +292,7 @@ _APART = {"-I", "-E", "-S"}
 def starts_a_killer(event: str, arguments: tuple[Any, ...]) -> bool:
     """Return whether an audit event starts a program that may end others, directly or by a shell.
 
-    Nobody can know from outside whom such a program ends.
+    It cannot be known from outside which processes such a program ends.
     """
     if event == "os.system":
         name, command_line = "sh", _words(None, arguments[0])
@@ -321,7 +321,7 @@ class ProcessWatch:
 
     Attributes:
         codes: exit codes by process, negative for a signal.
-        signalled: processes, and groups (negative), that the tests sent a signal to; ``ANYBODY`` if they
+        signalled: processes, and groups (negative), that the tests sent a signal to; ``ANY_PROCESS`` if they
             started what does so.
     """
 
@@ -355,7 +355,7 @@ class ProcessWatch:
             self.signalled.add(-arguments[0])
         else:
             if starts_a_killer(event, arguments):
-                self.signalled.add(ANYBODY)
+                self.signalled.add(ANY_PROCESS)
             if event != "os.system" and (why := _why_unseen(event, arguments)):
                 self._on_unseen(" ".join(_words(*arguments[:2])[:3]), why)
 

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 from mutabot.errors import text_of
 from mutabot.model import events
 from mutabot.model.clocks import monotonic
-from mutabot.model.event_file import ANYBODY
+from mutabot.model.event_file import ANY_PROCESS
 from mutabot.model.job import Job, read_job
 from mutabot.runtime import FOLDER as OURS
 from mutabot.runtime import executed_text
@@ -370,7 +370,7 @@ class Member:
         elif event == "os.exec" and _member is self:
             self.end()
         if _member is self and starts_a_killer(event, arguments):
-            self.event_file.send(events.Signalled(ANYBODY))
+            self.event_file.send(events.Signalled(ANY_PROCESS))
 
     def _raised(self, error: BaseException, *, in_thread: bool) -> None:
         if isinstance(error, KeyboardInterrupt | SystemExit) or _member is not self:
@@ -392,7 +392,7 @@ class Member:
 def _session(job: Job, writer: Member) -> Session | TextOnly:
     text = job.instrumentation
     if text is not None and job.mutant is None and not text.record:
-        text = None  # those below a fork parent are the original, and fork for nobody
+        text = None  # those below a fork parent are the original, and do not fork mutants
     job = replace(job, inspect=False, moments={}, evidence=False, instrumentation=text)
     if job.is_of_text:
         return TextOnly(job, writer)

@@ -260,7 +260,7 @@ class CallTargets:
     def named(self, name: str, found: Any, receiver: Any, frame: FrameType) -> Adapter | None:
         """Return the operation of this name that a callable replaces."""
         mock = mock_of(found)
-        is_read = is_mock(mock, "PropertyMock")  # called as the attribute is read, which nobody calls
+        is_read = is_mock(mock, "PropertyMock")  # called when the attribute is read
         raw, kinds = self.callables.found, (property, cached_property)
         ones = [
             adapter
@@ -406,7 +406,7 @@ def _is_a(value: Any, kind: Any) -> bool:
 
 
 #: what a mock stands for, as noted on it: the operation, what it was read from, and where it was handed on,
-#: which is None if nobody knows any more
+#: which is None if that is no longer known
 _MARK = "_mutabot_handed"
 
 
@@ -428,7 +428,7 @@ class PassedCallables:
 
     Args:
         call_targets: decides what stands for an operation.
-        given: takes where functions of the robot were handed on; None if nobody knows any more.
+        given: takes where functions of the robot were handed on; None if that is no longer known.
     """
 
     def __init__(self, call_targets: CallTargets, given: dict[Adapter, CallPlace | None]) -> None:

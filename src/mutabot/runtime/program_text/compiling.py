@@ -5,7 +5,7 @@ expand macros or rewrite text, from ``runpy`` and from ``exec(compile(text, path
 patched, so a loader makes of the changed text what it would make of any.
 
 Text is changed when it is compiled. A loader that parses it first gets the changed tree, as long as the
-import system asks it for code: whoever parses a program at other times only reads it. A tree that comes
+import system asks it for code: code that parses a program at other times only reads it. A tree that comes
 without the changes gets them when it is compiled. So do trees, in any case, what only asks about calls: a
 loader that looks at calls sees those of the program alone.
 """
@@ -34,7 +34,7 @@ class SourceStep(Protocol):
     """A change of source files before they are compiled.
 
     One with an attribute ``is_optional`` leaves alone what is not compiled as it stands in its file; one with
-    an attribute ``is_last`` takes its turn after whoever rewrites a tree.
+    an attribute ``is_last`` takes its turn after all that rewrite a tree.
     """
 
     def wants(self, path: str) -> bool:

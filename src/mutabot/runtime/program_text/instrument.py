@@ -45,7 +45,7 @@ _ExpressionKey = tuple[str, Extent]
 _Nodes = dict[int, ast.expr]
 _Node = TypeVar("_Node", bound=ast.AST)
 _KEPT = Alternative.kept_name(0).partition("0")[0]
-#: up to so many places in a file, it is worth while to look where they are before anything is changed
+#: number of places in a file up to which it pays to find them before anything is changed
 _FEW = 20
 
 

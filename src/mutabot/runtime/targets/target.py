@@ -74,15 +74,15 @@ class MiddlewareControls:
     Seconds are those of the node's own clock, so that simulated time counts.
 
     Attributes:
-        sleep: waits for so many seconds. Around a plain call it must not suspend: it blocks. Around a
+        sleep: waits for a number of seconds. Around a plain call it must not suspend: it blocks. Around a
             coroutine function it may await whatever that may await.
-        later: has a callback called after so many seconds, as the node calls others, and returns at once.
-        goes_out: has a message go out after so many seconds, whatever the node does meanwhile.
+        later: has a callback called after a number of seconds, as the node calls others, and returns at once.
+        goes_out: has a message go out after a number of seconds, whatever the node does meanwhile.
         lost: what the program meets when the answer it waits for never comes: raises what the middleware
             raises, or waits as long as it would; None for what has no answer.
         cancel: cancels what the call has begun, given what it returned; None for what cannot be cancelled.
-        jump: lets the program's clock jump by so many seconds; None where it cannot.
-        once: whether the program waits for one message: what comes after it comes to nobody.
+        jump: lets the program's clock jump by a number of seconds; None where it cannot.
+        once: whether the program waits for one message: later ones are not received.
         end: ends the node's process, and, if asked to, starts it again, where that is no process of the
             operating system; None where it is one.
     """
@@ -352,7 +352,7 @@ class Names(Protocol):
     """The interface of this process's names, for the hooks of middlewares.
 
     Attributes:
-        on_heard: None if nobody asks for messages that pass.
+        on_heard: None if messages that pass are not wanted.
     """
 
     on_heard: Callable[[str, Any], None] | None

@@ -51,7 +51,7 @@ class Method(_Copied, wrapt.BoundFunctionWrapper):  # type: ignore[type-arg]
         return super().__new__(cls, function, handler)  # type: ignore[call-arg]
 
     def __init__(self, function: FunctionType, handler: Any) -> None:
-        # unbound, for objects of any class: whoever calls gives the object first
+        # unbound, for objects of any class: the caller gives the object first
         super().__init__(function, None, handler, None, "function", None, object)  # type: ignore[call-arg]
 
     def __get__(self, instance: Any, owner: type | None = None) -> Any:

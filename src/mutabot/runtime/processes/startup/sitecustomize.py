@@ -114,7 +114,7 @@ def enter(command: "str | None" = None) -> None:
         return
     try:
         wake = os.path.join(folder, "wake")
-        if not os.path.isfile(wake):  # whatever somebody has put there, nobody waits for it
+        if not os.path.isfile(wake):  # whatever was put there, do not wait for it
             return
         with open(wake, encoding="utf-8", errors="surrogateescape") as file:
             lines = [line.rstrip("\n").partition(" ") for line in file]
