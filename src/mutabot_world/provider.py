@@ -55,10 +55,8 @@ class WorldFaults(FaultProvider):
         """Return nothing, but say how to see how disturbances end. Raises UsageError for wrong parameters."""
         if parameters_of(project.tables.get("world") or WorldTable(), project.root):
             notify("`mutabot world` shows which disturbances the tests notice, and which are suffered unseen")
-        elif {*project.families} == {FAMILY}:
-            notify(
-                f"the table `world` has no parameter; {NO_PARAMETER}"
-            )  # others may have faults of this family
+        elif {*project.families} == {FAMILY}:  # others may have faults of this family
+            notify(f"the table `world` has no parameter; {NO_PARAMETER}")
         return ()
 
     def is_monotone(self, operator: str) -> bool:
