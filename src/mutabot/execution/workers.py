@@ -300,9 +300,8 @@ class Workers:
         """Wait at most ``most`` seconds for events; ``next_task`` has no place yet."""
         timeout = min((seconds for seconds in (self._patience(), most) if seconds is not None), default=None)
         is_for_token = next_task is not None and next_task.is_fork_parent and len(self._workers) < self._jobs
-        is_for_token = (
-            is_for_token and not self._spared
-        )  # the task for which tokens are spared says when it ends
+        # the task for which tokens are spared says when it ends
+        is_for_token = is_for_token and not self._spared
         if is_for_token:
             self._selector.register(self.pool.reading, selectors.EVENT_READ, None)
         if self.look is not None:

@@ -167,10 +167,7 @@ def unheard(refused: Collection[Refused], used: Collection[Named]) -> Iterator[F
 
 def _instead(named: Named, used: Collection[Named]) -> str:
     """Describe other uses of the same name or type, nearest first."""
-    wanted = (
-        _FORMS[named.form][1],
-        named.form,
-    )  # of one name, what was done is reported, not what was set up
+    wanted = (_FORMS[named.form][1], named.form)  # of one name, what was done, not what was set up
     similar = sorted((wanted.index(use.form), use.target, use.name) for use in used if use.form in wanted)
     alike = {name: target for _, target, name in similar}
     if not alike:
