@@ -156,7 +156,7 @@ def test_where_the_fatal_control_does_not_end_a_fork_no_fork_is_believed(
     script.control = lambda run: {} if run.is_fork and not is_identity(run) else None
     found, said = engines_of(tmp_path, script, {})
     assert found == {"first": "replay", "second": "replay"}
-    assert "what forks tell of any test does not count" in said[0]
+    assert "results of forks from any test do not count" in said[0]
 
 
 def test_what_forks_tell_of_a_test_whose_own_control_ended_otherwise_is_left_to_replay(
