@@ -23,14 +23,14 @@ class Edit:
 
 
 def applied(text: str, edits: Iterable[Edit]) -> str:
-    """The text with the edits, which do not overlap."""
+    """Return the text with the edits, which do not overlap."""
     for edit in sorted(edits, key=lambda change: change.start, reverse=True):
         text = text[: edit.start] + edit.text + text[edit.end :]
     return text
 
 
 def digest(content: bytes) -> str:
-    """What shows whether a file is as it was."""
+    """Return a digest that shows whether a file is as it was."""
     return sha256(content).hexdigest()
 
 
@@ -52,11 +52,11 @@ class ActiveEdits:
     missed: list[str] = field(default_factory=list)
 
     def is_of(self, path: Path) -> bool:
-        """Whether a file is meant, by its path."""
+        """Return whether a file is meant, by its path."""
         return f"/{path.as_posix()}".endswith(f"/{self.file}")
 
     def concern(self, path: Path, content: bytes) -> bool:
-        """Whether a file that is loaded is meant."""
+        """Return whether a file that is loaded is meant."""
         if not self.is_of(path):
             return False
         if digest(content) != self.digest:
@@ -78,12 +78,12 @@ def note_read(path: Path) -> None:
 
 
 def were_read() -> frozenset[Path]:
-    """The files that this process, or the one that it was forked from, has read for runs."""
+    """Return the files that this process, or the one that it was forked from, has read for runs."""
     return frozenset(_Active.read)
 
 
 def active() -> tuple[ActiveEdits, ...]:
-    """The edits that are active in this process."""
+    """Return the edits that are active in this process."""
     return _Active.edits
 
 

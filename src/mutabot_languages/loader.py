@@ -141,7 +141,7 @@ class RobotProgram:
 def load(
     path: str | PathLike[str], *more: str | PathLike[str], cell_map: str | PathLike[str] | None = None
 ) -> RobotProgram:
-    """A program from its files.
+    """Return a program from its files.
 
     Args:
         path: the file with the main routine. Of KRL, the ``.dat`` beside a ``.src``, and ``$config.dat``,
@@ -172,13 +172,13 @@ def load(
 
 
 def _assigned(tree: ProgramNode) -> frozenset[str]:
-    """The variables that a program gives a value."""
+    """Return the variables that a program gives a value."""
     targets = (node.parts[0] for node in tree.walk() if node.kind == "assign")
     return frozenset(target.name for target in targets if target.kind == "name")
 
 
 def _watched(tree: ProgramNode, edits: ActiveEdits) -> list[int]:
-    """Where the statements begin that are different."""
+    """Return where the statements begin that are different."""
     shift, found = 0, list[int]()
     for edit in sorted(edits.edits, key=lambda watched_edit: watched_edit.start):
         start, end = edit.start + shift, edit.start + shift + len(edit.text)

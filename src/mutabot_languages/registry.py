@@ -16,13 +16,13 @@ LANGUAGES: tuple[RobotLanguage, ...] = (URSCRIPT, RAPID, KRL)
 
 
 def language_for(file: str) -> RobotLanguage | None:
-    """The language of a file by its suffix; None if it is none of these."""
+    """Return the language of a file by its suffix; None if it is none of these."""
     name = file.lower()
     return next((language for language in LANGUAGES if name.endswith(language.suffixes)), None)
 
 
 def rewriter_of(language: RobotLanguage) -> type[Rewriter]:
-    """What makes mutants of programs in a language."""
+    """Return the class that makes mutants of programs in a language."""
     from .krl.rewriting import KrlRewriter  # noqa: PLC0415  # likewise
     from .rapid.rewriting import RapidRewriter  # noqa: PLC0415  # of no use to the tests' processes
     from .urscript.rewriting import UrRewriter  # noqa: PLC0415  # likewise

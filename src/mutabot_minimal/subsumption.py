@@ -24,12 +24,12 @@ Killer = tuple[str, int]
 
 
 def killers_of(result: MutantResult) -> frozenset[Killer]:
-    """The tests, each with its round, that kill a mutant."""
+    """Return the tests, each with its round, that kill a mutant."""
     return frozenset((test, end.round) for end in result.outcomes for test in end.noticing_tests)
 
 
 def dominators(killers: Mapping[M, frozenset[Killer]]) -> tuple[tuple[M, ...], ...]:
-    """The classes of mutants that no other class subsumes, in the order in which they first occur.
+    """Return the classes of mutants that no other class subsumes, in the order in which they first occur.
 
     Args:
         killers: of each mutant; those that nothing kills are in no class.

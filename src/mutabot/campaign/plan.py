@@ -92,7 +92,7 @@ def summaries(mutants: Iterable[Mutant]) -> dict[str, str]:
 
 
 def of_common(mutants: Iterable[Mutant]) -> list[Mutant]:
-    """The mutants among them of operators that ``--operators common`` keeps."""
+    """Return the mutants among them of operators that ``--operators common`` keeps."""
     mutants = list(mutants)
     common = {(by, rule.name) for by, rule in _rules(mutants) if rule.is_common}
     return [mutant for mutant in mutants if (mutant.provider, mutant.operator) in common]

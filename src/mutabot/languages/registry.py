@@ -56,7 +56,7 @@ def front_end_of(file: str) -> FrontEnd:
 
 
 def highlighting_of(file: str) -> tuple[str, str]:
-    """What reports mark in a file, as ``FrontEnd`` says; empty if its language says nothing."""
+    """Return what reports mark in a file, as ``FrontEnd`` says; empty if its language says nothing."""
     return getattr(_by_language().get(language_of(file) or ""), "highlighting", ("", ""))
 
 

@@ -295,7 +295,7 @@ class Results:
         return self.sources.get(file)
 
     def reached_by(self, mutant: Mutant) -> tuple[str, ...]:
-        """Node ids of the tests that reach a mutant in any round, according to the journal."""
+        """Return node ids of the tests that reach a mutant in any round, according to the journal."""
         return self.reaching.at(mutant.site.id)
 
     @property

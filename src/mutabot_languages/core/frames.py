@@ -19,7 +19,7 @@ class Frame:
 
     @classmethod
     def of_euler(cls, position: Sequence[float], z: float, y: float, x: float) -> Frame:
-        """Of Euler angles in degrees: R = Rz·Ry·Rx."""
+        """Return the frame of Euler angles in degrees: R = Rz·Ry·Rx."""
         (cz, sz), (cy, sy), (cx, sx) = (
             (math.cos(math.radians(angle) / 2), math.sin(math.radians(angle) / 2)) for angle in (z, y, x)
         )
@@ -33,7 +33,7 @@ class Frame:
 
     @classmethod
     def of_vector(cls, position: Sequence[float], vector: Sequence[float]) -> Frame:
-        """Of a rotation vector: axis times angle, rad."""
+        """Return the frame of a rotation vector: axis times angle, rad."""
         angle = math.hypot(*vector)
         if angle < 1e-12:
             return cls(vector_of(position))
@@ -43,7 +43,7 @@ class Frame:
 
     @classmethod
     def of_quaternion(cls, position: Sequence[float], rotation: Sequence[float]) -> Frame:
-        """Of a quaternion, which need not have the length 1. Raises ValueError if it is 0."""
+        """Return the frame of a quaternion of any length. Raises ValueError if it is 0."""
         length = math.hypot(*rotation)
         if length < 1e-9:
             raise ValueError("a quaternion of zeros is no rotation")
@@ -51,20 +51,20 @@ class Frame:
         return cls(vector_of(position), (w, x, y, z))
 
     def __mul__(self, other: Frame) -> Frame:
-        """What stands at ``other`` in this frame, seen from where this frame is given."""
+        """Return what stands at ``other`` in this frame, seen from where this frame is given."""
         shift = self.turn(other.position)
         (x, y, z), (a, b, c) = self.position, shift
         return Frame((x + a, y + b, z + c), _product(self.rotation, other.rotation))
 
     def inverse(self) -> Frame:
-        """The frame that takes this one back."""
+        """Return the frame that takes this one back."""
         w, x, y, z = self.rotation
         back = Frame(rotation=(w, -x, -y, -z))
         a, b, c = back.turn(self.position)
         return Frame((-a, -b, -c), back.rotation)
 
     def turn(self, vector: Sequence[float]) -> Vector:
-        """A direction of this frame, seen from where this frame is given."""
+        """Return a direction of this frame, seen from where this frame is given."""
         w, x, y, z = self.rotation
         a, b, c = vector
         # v + 2w (q × v) + 2 q × (q × v)
@@ -72,7 +72,7 @@ class Frame:
         return (a + w * d + y * f - z * e, b + w * e + z * d - x * f, c + w * f + x * e - y * d)
 
     def euler(self) -> tuple[float, float, float]:
-        """Euler angles z, y, x in degrees, as ``of_euler`` takes them."""
+        """Return Euler angles z, y, x in degrees, as ``of_euler`` takes them."""
         w, x, y, z = self.rotation
         sine = max(-1.0, min(1.0, 2 * (w * y - z * x)))
         if abs(sine) > 1 - 1e-12:
@@ -84,7 +84,7 @@ class Frame:
         )
 
     def vector(self) -> Vector:
-        """The rotation vector: axis times angle, rad, of the shorter way."""
+        """Return the rotation vector: axis times angle, rad, of the shorter way."""
         w, x, y, z = self.rotation if self.rotation[0] >= 0 else tuple(-part for part in self.rotation)
         sine = math.hypot(x, y, z)
         if sine < 1e-12:
@@ -93,14 +93,14 @@ class Frame:
         return (x * factor, y * factor, z * factor)
 
     def between(self, other: Frame, fraction: float) -> Frame:
-        """The frame at a part of the way to another one."""
+        """Return the frame at a part of the way to another one."""
         step = self.inverse() * other
         turn = tuple(part * fraction for part in step.vector())
         shift = tuple(part * fraction for part in step.position)
         return self * Frame.of_vector(shift, turn)
 
     def distance(self, other: Frame) -> float:
-        """Between the positions, m."""
+        """Return the distance between the positions, m."""
         return math.dist(self.position, other.position)
 
 
@@ -108,13 +108,13 @@ IDENTITY = Frame()
 
 
 def vector_of(values: Sequence[float]) -> Vector:
-    """Three numbers."""
+    """Return three numbers as a vector."""
     x, y, z = (float(value) for value in values)
     return (x, y, z)
 
 
 def cross(a: Sequence[float], b: Sequence[float]) -> Vector:
-    """The cross product of two vectors."""
+    """Return the cross product of two vectors."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 

@@ -64,7 +64,7 @@ class Interrupts:
         self.is_handling = False
 
     def steps(self, site: ProgramPlace) -> Steps:
-        """The steps of the task, until there is no interrupt."""
+        """Yield the steps of the task, until there is no interrupt."""
         while self.known:
             for key, interrupt in [*self.known.items()]:
                 yield from interrupt.look()

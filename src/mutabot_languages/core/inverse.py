@@ -16,7 +16,7 @@ _LONGEST = 0.3
 def joint_target(
     kinematics: Any, model: Any, target: Frame, near: list[float], *, is_limited: bool = True
 ) -> list[float] | None:
-    """Joint angles, degrees, that bring the cell's tool point to ``target``; None if none are found.
+    """Return joint angles, degrees, with the cell's tool point at ``target``; None if none are found.
 
     Args:
         kinematics: of the arm: ``tool(joints)`` and ``jacobian()``.
@@ -73,7 +73,7 @@ def _solve(np: Any, kinematics: Any, limits: Any, position: Any, wanted: Any, se
 
 
 def _turn(np: Any, rotation: Any) -> Any:
-    """The rotation vector, rad, of a rotation matrix."""
+    """Return the rotation vector, rad, of a rotation matrix."""
     axis = np.array(
         [rotation[2, 1] - rotation[1, 2], rotation[0, 2] - rotation[2, 0], rotation[1, 0] - rotation[0, 1]]
     )
@@ -91,7 +91,7 @@ def _azimuth(np: Any, kinematics: Any, start: Any, position: Any) -> float:
 
 
 def _wrapped(np: Any, model: Any, solution: Any, start: Any) -> Any:
-    """Turns that change nothing are taken away where the joint's range lets them."""
+    """Remove full turns where the joint's range lets them."""
     wrapped = solution.copy()
     for index, (low, high) in enumerate(model.ranges):
         turned = solution[index] + 2 * math.pi * round((start[index] - solution[index]) / (2 * math.pi))

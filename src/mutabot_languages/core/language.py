@@ -62,7 +62,7 @@ class RobotLanguage:
         return "|".join(f"({pattern})" for pattern in patterns), "gim" if lexis.ignores_case else "gm"
 
     def text_of(self, content: bytes) -> str:
-        """The text of a file: UTF-8 if it is that, else Latin-1."""
+        """Return the text of a file: as UTF-8 if it is that, else as Latin-1."""
         return decode(content)[0]
 
     def read(self, name: str, text: str) -> ParsedFile:
@@ -70,7 +70,7 @@ class RobotLanguage:
         return self.parser(SourceText(name, text)).parse()
 
     def units(self, content: bytes) -> Mapping[str, tuple[int, str, list[TextSpan]]]:
-        """The bodies of a file's routines, each without those in it, and the rest of the file."""
+        """Return the bodies of a file's routines, each without those in it, and the rest of the file."""
         parsed = self.read("", self.text_of(content))
         source, tokens = parsed.source, scan(parsed.source.text, self.parser.lexis)
         owners, names = [MODULE] * len(tokens.starts), {MODULE: ""}
@@ -93,20 +93,20 @@ class RobotLanguage:
         return {name: (number, "\0".join(said[number]), extents[number]) for number, name in names.items()}
 
     def names(self, source: str) -> Mapping[TextSpan, tuple[str, int]]:
-        """Names of all statements, calls and readings in a file."""
+        """Return names of all statements, calls and readings in a file."""
         parsed = self.read("", source)
         found = occurrences_in(parsed.tree, source, STATEMENTS | _EXPRESSIONS)
         return {parsed.source.extent(*at): (text, number) for at, (_, text, number) in found.items()}
 
     def file_of(self, frame: FrameType) -> str | None:
-        """The file that the machine carries out in its call of the cell; None for all other frames."""
+        """Return the file that the machine carries out in its call of the cell; None for all other frames."""
         if frame.f_code is not _CALL:
             return None
         file: str = frame.f_locals["site"].file
         return file if file.lower().endswith(self.suffixes) else None
 
     def position_of(self, frame: FrameType) -> tuple[TextSpan, str]:
-        """The part of the program that makes a call of the cell, and its routine."""
+        """Return the part of the program that makes a call of the cell, and its routine."""
         site: Any = frame.f_locals["site"]
         return site.extent, site.routine
 
@@ -116,7 +116,7 @@ Occurrences = dict[tuple[int, int], tuple[str, str, int]]
 
 
 def occurrences_in(tree: ProgramNode, text: str, kinds: frozenset[str] | None = None) -> Occurrences:
-    """The nodes of a tree, or those of some kinds, that may be a site."""
+    """Return the nodes of a tree, or those of some kinds, that may be a site."""
     counts: dict[tuple[str, str], int] = {}
     found: Occurrences = {}
     waiting: list[tuple[ProgramNode, str]] = [(tree, "<module>")]
@@ -134,7 +134,7 @@ def occurrences_in(tree: ProgramNode, text: str, kinds: frozenset[str] | None = 
 
 
 def site_text(node: ProgramNode, text: str) -> str:
-    """What a site's name is: what is called, or how the node begins."""
+    """Return the name of a site: what is called, or how the node begins."""
     if node.kind in ("call", "method") and node.name:
         return node.name
     return in_short(node, text)

@@ -60,11 +60,11 @@ class Dialect:
         raise NotImplementedError
 
     def name(self, task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Any:
-        """The value of a name that is no variable. Raises UnsupportedError."""
+        """Return the value of a name that is no variable. Raises UnsupportedError."""
         raise task.unsupported(node, scope)
 
     def index(self, task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Any:
-        """The value of an index of a name that is no variable; NotImplemented if it is none of these."""
+        """Return the value of an index of a name that is no variable; NotImplemented for other names."""
         return NotImplemented
 
     def assign(self, task: Evaluation, target: ProgramNode, value: Any, scope: RoutineScope) -> Any:
@@ -72,31 +72,31 @@ class Dialect:
         return NotImplemented
 
     def binary(self, operator: str, left: Any, right: Any) -> Any:
-        """The value of a binary operation. Raises TypeError, ValueError, ZeroDivisionError."""
+        """Return the value of a binary operation. Raises TypeError, ValueError, ZeroDivisionError."""
         raise NotImplementedError
 
     def unary(self, operator: str, value: Any) -> Any:
-        """The value of a unary operation."""
+        """Return the value of a unary operation."""
         return -value if operator == "-" else value if operator == "+" else not self.truth(value)
 
     def literal(self, task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
-        """The value of a list, a pose or an aggregate."""
+        """Return the value of a list, a pose or an aggregate."""
         raise NotImplementedError
 
     def truth(self, value: Any) -> bool:
-        """Whether a condition holds."""
+        """Return whether a condition holds."""
         return bool(value)
 
     def assigned(self, variable: Variable, value: Any) -> Any:
-        """What a variable of a type gets."""
+        """Return what a variable of a type gets."""
         return copy.deepcopy(value) if isinstance(value, (list, dict)) else value
 
     def matches(self, subject: Any, label: Any) -> bool:
-        """Whether a case of a switch is meant."""
+        """Return whether a case of a switch is meant."""
         return bool(subject == label)
 
     def is_reference(self, parameter: ProgramNode) -> bool:
-        """Whether a parameter is the caller's variable itself."""
+        """Return whether a parameter is the caller's variable itself."""
         return False
 
 
@@ -146,7 +146,7 @@ class Machine:
             )
 
     def site(self, node: ProgramNode, scope: RoutineScope) -> ProgramPlace:
-        """The part of the program that a node is."""
+        """Return the part of the program that a node is."""
         key = (id(scope.unit), id(node))
         found = self._sites.get(key)
         if found is None:
@@ -186,16 +186,16 @@ class Evaluation:
     # errors and places
 
     def site(self, node: ProgramNode, scope: RoutineScope) -> ProgramPlace:
-        """The part of the program that a node is."""
+        """Return the part of the program that a node is."""
         return self.machine.site(node, scope)
 
     def place(self, node: ProgramNode, scope: RoutineScope) -> str:
-        """Where a node stands, for messages."""
+        """Return where a node stands, for messages."""
         source = scope.unit.source
         return f"{source.name}:{source.line_of(node.start)}"
 
     def unsupported(self, node: ProgramNode, scope: RoutineScope, what: str = "") -> UnsupportedError:
-        """Say that something is not carried out."""
+        """Return the error for something that is not carried out."""
         source = scope.unit.source
         why = ", which no loaded file declares" if not (what or node.name.startswith("$")) else ""
         line = source.line_of(node.start)
@@ -206,13 +206,13 @@ class Evaluation:
         self.station.note(f"{node.name} at line {scope.unit.source.line_of(node.start)} has no effect here")
 
     def error(self, node: ProgramNode, scope: RoutineScope, text: str) -> ProgramError:
-        """An error of the program at a node."""
+        """Return an error of the program at a node."""
         return ProgramError(f"{self.place(node, scope)}: {text} (in {scope.routine})")
 
     # values
 
     def value(self, node: ProgramNode, scope: RoutineScope) -> Steps:
-        """The value of an expression."""
+        """Return the value of an expression."""
         kind = node.kind
         if kind in ("number", "text", "constant"):
             return node.value
@@ -238,7 +238,7 @@ class Evaluation:
         raise self.unsupported(node, scope, node.name or kind)
 
     def _called(self, node: ProgramNode, scope: RoutineScope) -> Steps:
-        """The value that a call has where one is needed."""
+        """Return the value that a call has where one is needed."""
         found = yield from self.call(node, scope)
         if found is None and node.name in self.dialect.ignored:
             raise self.unsupported(node, scope, f"the value of {node.name}")
@@ -289,7 +289,7 @@ class Evaluation:
         return owner
 
     def whole_number(self, node: ProgramNode, value: Any, scope: RoutineScope) -> int:
-        """The index of an element, from 0. Raises ProgramError if the value is none."""
+        """Return the index of an element, from 0. Raises ProgramError if the value is none."""
         if isinstance(value, bool) or not isinstance(value, (int, float)) or value != int(value):
             raise self.error(node, scope, f"an index must be a whole number, not {value!r}")
         return int(value) - self.dialect.first
@@ -297,7 +297,7 @@ class Evaluation:
     def values(
         self, nodes: Sequence[ProgramNode], scope: RoutineScope
     ) -> Generator[TaskOperation, Any, list[Any]]:
-        """The values of several expressions, in their order."""
+        """Return the values of several expressions, in their order."""
         found = list[Any]()
         for node in nodes:
             found.append((yield from self.value(node, scope)))  # no comprehension can yield
@@ -306,14 +306,14 @@ class Evaluation:
     # names and calls
 
     def find(self, name: str, scope: RoutineScope, *, of_globals: bool = False) -> Variable | None:
-        """A variable, from the inside out; None if there is none."""
+        """Return a variable, from the inside out; None if there is none."""
         for inner in () if of_globals else scope.chain():
             if name in inner.names:
                 return inner.names[name]
         return scope.unit.names.get(name) or self.machine.globals.get(name)
 
     def find_routine(self, name: str, scope: RoutineScope) -> Routine | None:
-        """A routine, from the inside out; None if there is none."""
+        """Return a routine, from the inside out; None if there is none."""
         for inner in scope.chain():
             if name in inner.routines:
                 return inner.routines[name]
@@ -450,7 +450,7 @@ class Evaluation:
     def arguments(
         self, node: ProgramNode, scope: RoutineScope
     ) -> Generator[TaskOperation, Any, tuple[list[Any], dict[str, Any]]]:
-        """The values of a call's arguments: those in order, and those by name."""
+        """Return the values of a call's arguments: those in order, and those by name."""
         values, named = list[Any](), dict[str, Any]()
         for part in node.parts:
             if part.kind == "option":

@@ -4,5 +4,5 @@ from __future__ import annotations
 
 
 def name_set(text: str) -> frozenset[str]:
-    """The words of a text."""
+    """Return the words of a text."""
     return frozenset(text.split())

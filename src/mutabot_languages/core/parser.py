@@ -131,7 +131,7 @@ class StatementParser:
         return self.expression()
 
     def number_of(self, word: str) -> int | float:
-        """The value of a number as it is written."""
+        """Return the value of a number as it is written."""
         return int(word) if word.isdecimal() else float(word)
 
     # blocks and recovery
@@ -165,7 +165,7 @@ class StatementParser:
         return self.statement()
 
     def begins_statement(self) -> bool:
-        """Whether a word that can end a block begins a statement here."""
+        """Return whether a word that can end a block begins a statement here."""
         return False
 
     def close(self, word: str, opened: int) -> None:
@@ -248,7 +248,7 @@ class StatementParser:
         bodies: list[list[ProgramNode]] | None = None,
         value: object = None,
     ) -> ProgramNode:
-        """A node from an offset to the end of the last token that was read."""
+        """Return a node from an offset to the end of the last token that was read."""
         return ProgramNode(kind, name, start, self.ends[self.at - 1], parts, bodies, value)
 
     # statements that languages have in common, behind their first word

@@ -46,7 +46,7 @@ class TaskSchedule:
         return [name for name in self._machine.tasks if name not in self._waiting and self._may_begin(name)]
 
     def _may_begin(self, name: str) -> bool:
-        """Whether a task may go on: beside an interrupt that is being carried out, no other one does."""
+        """Return whether a task may go on: while an interrupt is carried out, no other one does."""
         return name == HANDLERS or not self._machine.interrupts.is_handling
 
     def _advance(self, name: str, main: str) -> None:
@@ -94,7 +94,7 @@ class TaskSchedule:
         return _TaskWait(operation, end=self._station.time + operation.seconds)
 
     def _pass_time(self) -> None:
-        """All tasks wait: let a tick pass, and wake those whose wait is over."""
+        """Let a tick pass, as all tasks wait, and wake those whose wait is over."""
         first = next(iter(self._waiting.values()))
         self._station.call(first.operation.site, self._station.cell.wait, TICK)
         now = self._station.time

@@ -50,7 +50,7 @@ class Structure(dict[str, Any]):
 
     @classmethod
     def of(cls, type: str, components: Mapping[str, Any]) -> Structure:
-        """A structure of a type."""
+        """Return a structure of a type."""
         made = cls(components)
         made.type = type
         return made
@@ -111,7 +111,7 @@ class RoutineScope:
         self.retry = 0
 
     def chain(self) -> Iterator[RoutineScope]:
-        """This and those around it."""
+        """Yield this scope and those around it."""
         yield self
         if self.outer is not None:
             yield from self.outer.chain()

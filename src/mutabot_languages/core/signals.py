@@ -79,5 +79,5 @@ class CellMap:
 
 
 def signal_name(text: str) -> str:
-    """A signal's name as maps compare it: no spaces, small letters."""
+    """Return a signal's name as maps compare it: no spaces, small letters."""
     return "".join(text.split()).lower()

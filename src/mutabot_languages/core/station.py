@@ -102,34 +102,34 @@ class Station:
     # poses
 
     def to_cell(self, target: Frame) -> Frame:
-        """The pose of the cell's tool point that brings the program's to ``target``, robot base frame."""
+        """Return the cell's pose that brings the program's tool point to ``target``, robot base frame."""
         return target * self.tool.inverse() * self._mounted
 
     def to_program(self, pose: Any) -> Frame:
-        """The pose of the program's tool point, robot base frame, of a pose of the cell."""
+        """Return the pose of the program's tool point, robot base frame, of a pose of the cell."""
         at = Frame.of_euler((pose.x, pose.y, pose.z), pose.theta_z, pose.theta_y, pose.theta_x)
         return at * self._mounted.inverse() * self.tool
 
     def actual(self, site: ProgramPlace) -> Frame:
-        """Where the program's tool point is by the encoders, robot base frame."""
+        """Return where the program's tool point is by the encoders, robot base frame."""
         return self.to_program(self.call(site, self.cell.sensors.tool_pose))
 
     def commanded(self, site: ProgramPlace) -> Frame:
-        """Where it is meant to be, robot base frame."""
+        """Return where the program's tool point is meant to be, robot base frame."""
         return self.to_program(self.call(site, self.cell.arm.commanded_pose))
 
     def angles(self, site: ProgramPlace) -> list[float]:
-        """Joint angles by the encoders, degrees."""
+        """Return joint angles by the encoders, degrees."""
         return [float(angle) for angle in self.call(site, self.cell.sensors.joint_angles)]
 
     def forward(self, degrees: list[float]) -> Frame:
-        """Where the program's tool point is with these joint angles, robot base frame."""
+        """Return where the program's tool point is with these joint angles, robot base frame."""
         degrees = self._all_joints(degrees)
         position, rotation = self.cell.arm.kinematics.tool([math.radians(angle) for angle in degrees])
         return matrix_frame(position.tolist(), rotation.tolist()) * self._mounted.inverse() * self.tool
 
     def inverse(self, target: Frame, near: list[float] | None = None) -> list[float]:
-        """Joint angles, degrees, that bring the program's tool point to a pose; the nearest to others.
+        """Return the joint angles, degrees, for a pose of the program's tool point, nearest to others.
 
         Raises UnreachableError if it cannot be reached.
         """
@@ -150,7 +150,7 @@ class Station:
     # motions: each returns the function of the cell and its arguments
 
     def line(self, target: Frame, speed: float) -> ArmMotion:
-        """A straight motion of the tool point to a pose, at a speed in m/s."""
+        """Return a straight motion of the tool point to a pose, at a speed in m/s."""
         at = self.to_cell(target)
         # to 0.0001 degrees: programs write π with six digits, and what is left of a zero angle is no angle
         z, y, x = (round(angle, 4) + 0.0 for angle in at.euler())  # and no -0.0
@@ -158,11 +158,11 @@ class Station:
         return "move_to", (pose,), _part(speed / self.model.tool_limits.speed)
 
     def joint_move(self, angles: list[float], part: float) -> ArmMotion:
-        """A motion of all joints to angles in degrees, at a part of their speed."""
+        """Return a motion of all joints to angles in degrees, at a part of their speed."""
         return "move_joints", (tuple(self._all_joints(angles)),), _part(part)
 
     def joint_move_to(self, target: Frame, part: float) -> ArmMotion:
-        """A motion of all joints to a pose, at a part of their speed.
+        """Return a motion of all joints to a pose, at a part of their speed.
 
         Where no joint angles reach it, a straight one, whose refusal the cell words: a refusal is a call's.
         """
@@ -173,12 +173,12 @@ class Station:
             return self.line(target, part * float(self.model.tool_limits.speed))
 
     def _all_joints(self, angles: list[float]) -> list[float]:
-        """Angles of all joints, degrees: the arm may have more than the program's robot, and these stay."""
+        """Return angles of all joints, degrees; those that the program's robot lacks stay."""
         now = [math.degrees(angle) for angle in self.cell.arm.setpoint]
         return [*angles, *now[len(angles) :]][: self.joints]
 
     def arc(self, start: Frame, via: Frame, end: Frame, speed: float) -> list[ArmMotion]:
-        """A circular motion through ``via``, in short straight ones."""
+        """Return a circular motion through ``via``, in short straight ones."""
         return [self.line(point, speed) for point in arc_points(start, via, end)]
 
     # signals
@@ -211,7 +211,7 @@ class Station:
         return self._reader(site, entry)()
 
     def knows_input(self, name: str) -> bool:
-        """Whether something says what an input is."""
+        """Return whether something says what an input is."""
         key = signal_name(name)
         return key in self._inputs or key in self._map.inputs
 
@@ -235,7 +235,7 @@ class Station:
         return lambda: entry.get("constant", False)
 
     def function(self, name: str) -> Mapping[str, Any] | None:
-        """What the cell map says of a function; None if nothing."""
+        """Return what the cell map says of a function; None if nothing."""
         return self._map.functions.get(signal_name(name))
 
     def drive(self, site: ProgramPlace, entry: Mapping[str, Any], *, is_on: bool) -> None:
@@ -253,7 +253,7 @@ class Station:
 
 
 def matrix_frame(position: Sequence[float], rotation: Sequence[Sequence[float]]) -> Frame:
-    """The frame of a position and a rotation matrix, shape (3, 3)."""
+    """Return the frame of a position and a rotation matrix, shape (3, 3)."""
     (a, b, c), (d, e, f), (g, h, i) = rotation
     candidates = (
         (1 + a + e + i, (1 + a + e + i, h - f, c - g, d - b)),
@@ -265,7 +265,7 @@ def matrix_frame(position: Sequence[float], rotation: Sequence[Sequence[float]])
 
 
 def arc_points(start: Frame, via: Frame, end: Frame) -> list[Frame]:
-    """Points of the circle through three, the start left out; on a straight line its two ends.
+    """Return points of the circle through three, without the start; of a straight line, its two ends.
 
     The orientation turns evenly from the start's to the end's.
     """
@@ -305,5 +305,5 @@ def _dot(a: Any, b: Any) -> float:
 
 
 def _part(part: float) -> float:
-    """A part of a limit as the cell takes it."""
+    """Return a part of a limit as the cell takes it."""
     return min(1.0, max(0.005, part))

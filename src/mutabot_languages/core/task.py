@@ -70,7 +70,7 @@ class ProgramTask(Evaluation):
         yield from self.store(target, (yield from self._result(value, scope)), scope, node.name)
 
     def _result(self, node: ProgramNode, scope: RoutineScope) -> Steps:
-        """The value of an expression that is assigned or returned."""
+        """Return the value of an expression that is assigned or returned."""
         may_be_none = node.kind == "call" and self.dialect.has_none
         return (yield from (self.call if may_be_none else self.value)(node, scope))
 
@@ -301,18 +301,18 @@ _STATEMENTS: dict[str, Callable[[ProgramTask, ProgramNode, RoutineScope], Steps]
 
 
 def pause(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-    """What an instruction means that waits for the seconds of its last argument."""
+    """Carry out an instruction that waits for the seconds of its last argument."""
     values, _ = yield from task.arguments(node, scope)
     yield from task.wait(node, scope, float(values[-1]) if values else 0.0)
 
 
 def end_program(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-    """What an instruction means that ends the program."""
+    """Carry out an instruction that ends the program."""
     raise ControlFlow("exit")
 
 
 def of_values(function: Callable[..., Any]) -> Callable[..., Steps]:
-    """What a name that is called means, if it is a function of values alone."""
+    """Return the meaning of a called name that is a function of values alone."""
 
     def call(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
         values, named = yield from task.arguments(node, scope)

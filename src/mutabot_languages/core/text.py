@@ -11,7 +11,7 @@ _LINE_ENDS = re.compile(r"\r\n|\r|\n")
 
 
 def decode(content: bytes) -> tuple[str, str]:
-    """The text of a file and the encoding that gives its bytes back: UTF-8 if it is that, else Latin-1."""
+    """Return the text of a file, and the encoding that gives its bytes back: UTF-8 or else Latin-1."""
     try:
         return content.decode("utf-8"), "utf-8"
     except UnicodeDecodeError:
@@ -31,19 +31,19 @@ class SourceText:
         self._starts = [0, *(found.end() for found in _LINE_ENDS.finditer(text))]
 
     def line_of(self, offset: int) -> int:
-        """The 1-based line of an offset."""
+        """Return the 1-based line of an offset."""
         return bisect_right(self._starts, offset)
 
     def position(self, offset: int) -> tuple[int, int]:
-        """The 1-based line and the 0-based column, in UTF-8 bytes, of an offset."""
+        """Return the 1-based line and the 0-based column, in UTF-8 bytes, of an offset."""
         line = self.line_of(offset)
         return line, len(self.text[self._starts[line - 1] : offset].encode())
 
     def extent(self, start: int, end: int) -> TextSpan:
-        """The place of a part of the text."""
+        """Return the place of a part of the text."""
         return (*self.position(start), *self.position(end))
 
     def place(self, offset: int) -> str:
-        """``file:line:column`` with the 1-based column that editors show."""
+        """Return ``file:line:column`` with the 1-based column that editors show."""
         line = self.line_of(offset)
         return f"{self.name}:{line}:{offset - self._starts[line - 1] + 1}"

@@ -27,7 +27,7 @@ class Lexis:
 
     @classmethod
     def of(cls, groups: dict[str, str], *, ignores_case: bool) -> Lexis:
-        """A lexis of these patterns, tried in their order."""
+        """Return a lexis of these patterns, tried in their order."""
         alternatives = "|".join(f"(?P<{name}>{pattern})" for name, pattern in groups.items())
         return cls(re.compile(f"{alternatives}|(?P<other>.)", re.DOTALL | re.MULTILINE), ignores_case, groups)
 
@@ -47,7 +47,7 @@ class Tokens:
 
 
 def scan(text: str, lexis: Lexis) -> Tokens:
-    """The tokens of a text without trivia."""
+    """Return the tokens of a text without trivia."""
     kinds, words, starts, ends = list[str](), list[str](), list[int](), list[int]()
     for found in lexis.pattern.finditer(text):
         kind = found.lastgroup or ""

@@ -62,7 +62,7 @@ class ProgramNode:
         return {part.name: part for part in self.parts if part.kind == "option"}
 
     def walk(self) -> Iterator[ProgramNode]:
-        """This node and all below it, in the order of the text as far as it is one."""
+        """Yield this node and all below it, in the order of the text as far as it is one."""
         waiting = [self]
         while waiting:
             node = waiting.pop()
@@ -73,11 +73,11 @@ class ProgramNode:
 
 
 def in_short(node: ProgramNode, text: str) -> str:
-    """How a node of a text begins, on one line."""
+    """Return how a node of a text begins, on one line."""
     shown = " ".join(text[node.start : node.end].split("\n", maxsplit=1)[0].split())
     return shown if len(shown) <= _LONGEST else f"{shown[: _LONGEST - 1]}…"
 
 
 def routines(tree: ProgramNode) -> Iterator[ProgramNode]:
-    """The routines of a file, also those inside others."""
+    """Return the routines of a file, also those inside others."""
     return (node for node in tree.walk() if node.kind == "routine")

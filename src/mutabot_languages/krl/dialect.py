@@ -51,7 +51,7 @@ class KrlDialect(Dialect):
         names[node.name] = Variable(value, type)
 
     def name(self, task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Any:
-        """A system variable, or a signal."""
+        """Return the value of a system variable, or a signal."""
         machine = machine_of(task)
         name = node.name
         if name in machine.signals:
@@ -71,7 +71,7 @@ class KrlDialect(Dialect):
         raise task.unsupported(node, scope)
 
     def index(self, task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Any:
-        """An element of a system variable: ``$IN[1]``, ``$OUT[9]``, ``BASE_DATA[1]``."""
+        """Return an element of a system variable: ``$IN[1]``, ``$OUT[9]``, ``BASE_DATA[1]``."""
         return _element(task, node, scope)
 
     def assign(self, task: Evaluation, target: ProgramNode, value: Any, scope: RoutineScope) -> Any:
@@ -79,7 +79,7 @@ class KrlDialect(Dialect):
         return assign_system(task, target, value, scope)
 
     def binary(self, operator: str, left: Any, right: Any) -> Any:
-        """The value of a binary operation."""
+        """Return the value of a binary operation."""
         if operator in OF_VALUES:
             return OF_VALUES[operator](left, right)
         if operator in _OF_BITS:
@@ -87,11 +87,11 @@ class KrlDialect(Dialect):
         return join(left, right) if operator == ":" else _calculated(operator, left, right)
 
     def unary(self, operator: str, value: Any) -> Any:
-        """The value of a unary operation."""
+        """Return the value of a unary operation."""
         return ~int(value) if operator == "b_not" else super().unary(operator, value)
 
     def literal(self, task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
-        """The value of an aggregate or of a name of an enumeration."""
+        """Return the value of an aggregate or of a name of an enumeration."""
         if node.kind == "enum":
             return f"#{node.name}"
         if node.kind != "aggregate":
@@ -102,7 +102,7 @@ class KrlDialect(Dialect):
         return Structure.of(node.name, made)
 
     def assigned(self, variable: Variable, value: Any) -> Any:
-        """Structures are copied; components that an aggregate does not name keep their values."""
+        """Return what a variable gets: a copied structure; components that an aggregate leaves out stay."""
         if variable.type == "int" and isinstance(value, float):
             return math.floor(value + 0.5)
         if variable.type == "real" and isinstance(value, int) and not isinstance(value, bool):
@@ -110,7 +110,7 @@ class KrlDialect(Dialect):
         return copy.deepcopy(value) if isinstance(value, (dict, list)) else value
 
     def is_reference(self, parameter: ProgramNode) -> bool:
-        """OUT, which is also what is not written, is the caller's own variable."""
+        """Return whether a parameter is the caller's own variable: OUT, which is also the default."""
         return bool(parameter.value["mode"] == "out")
 
 
@@ -147,7 +147,7 @@ def machine_of(task: Evaluation) -> KrlMachine:
 
 
 def beginning(type: str, sizes: list[int]) -> Any:
-    """The value that a variable of a type begins with."""
+    """Return the value that a variable of a type begins with."""
     if sizes and type != "char":
         return [beginning(type, sizes[1:]) for _ in range(sizes[0])]
     plain: dict[str, Any] = {"int": 0, "real": 0.0, "bool": False, "char": ""}
@@ -159,7 +159,7 @@ def beginning(type: str, sizes: list[int]) -> Any:
 
 
 def frame_of(value: Any) -> Frame:
-    """The frame of a position, mm and degrees. Raises TypeError."""
+    """Return the frame of a position, mm and degrees. Raises TypeError."""
     if not isinstance(value, dict) or not set(value) & set(_CARTESIAN):
         raise TypeError(f"expected a position {{X …}}, found {value!r}")
     x, y, z, a, b, c = (float(value.get(name, 0.0)) for name in _CARTESIAN)
@@ -167,19 +167,19 @@ def frame_of(value: Any) -> Frame:
 
 
 def of_frame(frame: Frame, type: str) -> Structure:
-    """The position of a frame."""
+    """Return the position of a frame."""
     values = [*(number * 1000 for number in frame.position), *frame.euler()]
     return Structure.of(type, dict(zip(_CARTESIAN, values, strict=True)))
 
 
 def of_axes(degrees: list[float]) -> Structure:
-    """Joint angles; a seventh joint is E1."""
+    """Return joint angles as an axis position; a seventh joint is E1."""
     names = [f"a{number}" for number in range(1, 7)] + ["e1"]
     return Structure.of("e6axis", dict(zip(names, degrees, strict=False)))
 
 
 def join(left: Any, right: Any) -> Any:
-    """The geometric operator: the right one seen in the left one."""
+    """Apply the geometric operator: the right one seen in the left one."""
     if isinstance(right, dict) and set(right) <= {"s", "t"}:
         return left
     return of_frame(frame_of(left) * frame_of(right), getattr(right, "type", "") or "frame")
@@ -194,7 +194,7 @@ def _calculated(operator: str, left: Any, right: Any) -> Any:
 
 
 def _indexed(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
-    """The indexes of an element of a system variable, and its name."""
+    """Return the indexes of an element of a system variable, and its name."""
     indexes = [int(index) for index in (yield from task.values(node.parts[1:], scope))]
     return indexes, f"{node.parts[0].name}[{','.join(map(str, indexes))}]"
 

@@ -33,7 +33,7 @@ _AXES = ("a1", "a2", "a3", "a4", "a5", "a6", "e1")
 
 
 def _angles(task: ProgramTask, value: Any) -> list[float]:
-    """Joint angles of an axis position; axes that are not named stay."""
+    """Return joint angles of an axis position; axes that are not named stay."""
     now = [math.degrees(angle) for angle in task.station.cell.arm.setpoint]
     return [float(value.get(name, angle)) for name, angle in zip(_AXES, now, strict=False)]
 
@@ -43,7 +43,7 @@ def _is_axes(value: Any) -> bool:
 
 
 def _complete(task: ProgramTask, value: Any, site: ProgramPlace) -> Frame:
-    """The frame of a target; components that it does not name stay as they are."""
+    """Return the frame of a target; components that it does not name stay as they are."""
     if not isinstance(value, dict):
         raise TypeError(f"expected a position {{X …}} or axes {{A1 …}}, found {value!r}")
     base = machine_of(task).base
@@ -54,7 +54,7 @@ def _complete(task: ProgramTask, value: Any, site: ProgramPlace) -> Frame:
 
 
 def _move(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-    """PTP, LIN, CIRC, their splines, and all of them relative."""
+    """Carry out PTP, LIN, CIRC, their splines, and all of them relative."""
     yield from _with(task, node, scope)
     machine, station, site = machine_of(task), task.station, task.site(node, scope)
     targets = yield from task.values(node.plain, scope)
@@ -84,7 +84,7 @@ def _move(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
 
 
 def _relative(task: ProgramTask, value: Any, options: dict[str, ProgramNode], start: Frame) -> Any:
-    """The target of a relative motion: in the axes of the base, or of the tool."""
+    """Return the target of a relative motion: in the axes of the base, or of the tool."""
     if _is_axes(value):
         now = [math.degrees(angle) for angle in task.station.cell.arm.setpoint]
         return of_axes([item + float(value.get(name, 0.0)) for name, item in zip(_AXES, now, strict=False)])
@@ -100,7 +100,7 @@ def _relative(task: ProgramTask, value: Any, options: dict[str, ProgramNode], st
 
 
 def _with(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-    """System variables that a spline motion sets for itself."""
+    """Set system variables for one spline motion."""
     for option in node.parts:
         if option.kind == "option" and option.name == "with":
             target, value = option.parts
@@ -108,12 +108,12 @@ def _with(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
 
 
 def spline(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-    """The motions of a spline block, one after the other."""
+    """Carry out the motions of a spline block, one after the other."""
     yield from task.run(node.bodies[0], scope)
 
 
 def _trigger(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> None:
-    """What a trigger does is done at the end of the next motion."""
+    """Do what a trigger does at the end of the next motion."""
     machine_of(task).triggers.append((node.bodies[0][0], scope))
 
 
@@ -140,7 +140,7 @@ def _pulse(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
 
 
 def _interrupt(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-    """INTERRUPT DECL, ON, OFF, ENABLE and DISABLE; the one with IR_STOPM, in every program, is inert."""
+    """Carry out INTERRUPT DECL, ON, OFF, ENABLE and DISABLE; that with IR_STOPM has no effect."""
     interrupts = task.machine.interrupts
     is_inert = node.bodies and node.bodies[0][0].name == "ir_stopm"
     numbers = [int(number) for number in (yield from task.values(node.parts[:1], scope))]
@@ -164,14 +164,14 @@ def _interrupt(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Ste
 
 
 def _stop(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> None:
-    """BRAKE and RESUME of an interrupt's routine are not carried out; elsewhere they have no effect."""
+    """Refuse BRAKE and RESUME in an interrupt's routine; elsewhere they have no effect."""
     if task.name == HANDLERS:
         raise task.unsupported(node, scope, node.name.upper())
     task.note_without_effect(node, scope)
 
 
 def _bas(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-    """BAS(#COMMAND, value): what the inline forms set before a motion."""
+    """Carry out BAS(#COMMAND, value), by which inline forms set values before a motion."""
     command = node.parts[0].name if node.parts and node.parts[0].kind == "enum" else ""
     value = 0.0
     if len(node.parts) > 1 and node.parts[1].kind != "omitted":
@@ -195,7 +195,7 @@ _BAS = name_set("acc_ptp acc_cp acc_gluing ptp_dat cp_dat vel_sptp out_sync out_
 
 
 def _forms(task: ProgramTask, scope: RoutineScope) -> None:
-    """Tool and base of the data of the inline form, ``FDAT_ACT``."""
+    """Set tool and base from the data of the inline form, ``FDAT_ACT``."""
     found = task.find("fdat_act", scope)
     if found is None or not isinstance(found.value, dict):
         return
@@ -226,7 +226,7 @@ def _forward(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps
 
 
 def _inverse(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-    """INVERSE: axes for a position, the nearest to others; its last argument says whether there are any."""
+    """Carry out INVERSE: axes for a position that are nearest to others; the last argument says if any."""
     values, _ = yield from task.arguments(node, scope)
     start = _angles(task, values[1]) if len(values) > 1 and _is_axes(values[1]) else None
     try:

@@ -32,7 +32,7 @@ class KrlTask(ProgramTask):
 
 
 def _prepare(machine: Machine, task: ProgramTask) -> Steps:
-    """Routines of all files are known; data of ``.dat`` files is that of the ``.src`` beside, or of all."""
+    """Declare the routines of all files; data of a ``.dat`` file is of the ``.src`` beside, or of all."""
     homes: dict[str, dict[str, Variable]] = {}
     for unit in machine.units:
         unit.tree.value = {}
@@ -48,7 +48,7 @@ def _prepare(machine: Machine, task: ProgramTask) -> Steps:
 
 
 def _data(unit: ProgramUnit) -> list[ProgramNode]:
-    """The declarations of a data file, and those at the top of another file."""
+    """Return the declarations of a data file, and those at the top of another file."""
     found: list[ProgramNode] = []
     for node in unit.tree.bodies[0]:
         members = node.bodies[0] if is_data(node) else [node]
@@ -69,7 +69,7 @@ def _declare(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps
 
 
 def _element(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-    """``BASE_DATA[1]={…}`` of a data file; elements of arrays that are declared without a size are added."""
+    """Carry out ``BASE_DATA[1]={…}`` of a data file; arrays without a declared size grow."""
     target, value = node.parts
     name = target.parts[0].name if target.kind == "index" and target.parts else ""
     found = task.find(name, scope) if name else None
@@ -95,14 +95,14 @@ def _signal(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
 
 
 def _main(machine: Machine, task: ProgramTask, routine: str) -> Steps:
-    """The routine with the name of the first file, or its first one."""
+    """Carry out the routine with the name of the first file, or its first one."""
     first = machine.units[0]
     own = [node for node in first.tree.bodies[0] if node.kind == "routine" and not routine]
     yield from call_main(task, routine.lower() or first.source.name.rpartition(".")[0].lower(), own)
 
 
 def _beside(file: Path) -> list[Path]:
-    """The data file of a program, and ``$config.dat`` in its folder or in one called R1/System above it."""
+    """Return the data file of a program, and ``$config.dat`` in its folder or in R1/System above it."""
     found = [
         path
         for path in sorted(file.parent.iterdir())

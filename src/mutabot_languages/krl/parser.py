@@ -55,7 +55,7 @@ class KrlParser(StatementParser):
     )
 
     def begins_statement(self) -> bool:
-        """Whether a routine begins here and may: it does not stand in another one."""
+        """Return whether a routine begins here and may: it does not stand in another one."""
         return self.words[self.at] in _ENDS and not self.within.startswith("DEF")
 
     def statement(self) -> ProgramNode | None:
@@ -131,7 +131,7 @@ class KrlParser(StatementParser):
         return self.expression()
 
     def _declaration(self, start: int) -> ProgramNode:
-        """DECL TYPE name[2]=value, name …, or the words before it."""
+        """Parse ``DECL TYPE name[2]=value, name …``, or the words before it."""
         while self.words[self.at] in ("global", "const", "decl", "public"):
             self.at += 1
         if self.words[self.at] in ("struc", "enum", "signal"):
@@ -184,7 +184,7 @@ class KrlParser(StatementParser):
         return self.node("signal", name, start, parts)
 
     def _to_line_end(self, start: int) -> ProgramNode:
-        """What is read and has no meaning here: EXT, IMPORT."""
+        """Parse a statement without a meaning here, up to the end of its line: EXT, IMPORT."""
         word = self.words[self.at - 1]
         while self.kinds[self.at] not in ("newline", "end"):
             self.at += 1
@@ -271,7 +271,7 @@ class KrlParser(StatementParser):
         return self.node("call", word, start, [*parts, *self._after_target()])
 
     def _after_target(self) -> list[ProgramNode]:
-        """Approximation, ``#BASE`` or ``#TOOL``, and WITH after a motion."""
+        """Parse approximation, ``#BASE`` or ``#TOOL``, and WITH after a motion."""
         found: list[ProgramNode] = []
         while self.kinds[self.at] not in ("newline", "end"):
             at = self.starts[self.at]
@@ -294,7 +294,7 @@ class KrlParser(StatementParser):
         return found
 
     def _simple(self, start: int) -> ProgramNode:
-        """An assignment, a call, a label, or a declaration without DECL."""
+        """Parse an assignment, a call, a label, or a declaration without DECL."""
         if self.kinds[self.at] != "name" or (self.words[self.at] in RESERVED and not self._is_assigned()):
             raise Unexpected("a statement")
         word, follows = self.words[self.at], self.words[self.at + 1]
@@ -362,7 +362,7 @@ class KrlParser(StatementParser):
         return self.node("pair", name, start, [self.expression()])
 
     def number_of(self, word: str) -> int | float:
-        """The value of a number, which may be of hexadecimal or binary digits."""
+        """Return the value of a number, which may be of hexadecimal or binary digits."""
         if word.startswith("'"):
             return int(word[2:-1], 16 if word[1] in "hH" else 2)
         return super().number_of(word)
@@ -388,6 +388,6 @@ _READERS: dict[str, Callable[[KrlParser, int], ProgramNode]] = {
 
 
 def is_data(node: ProgramNode) -> bool:
-    """Whether a node is the DEFDAT of a data file."""
+    """Return whether a node is the DEFDAT of a data file."""
     value: Any = node.value
     return node.kind == "module" and value == "data"

@@ -61,23 +61,23 @@ class KrlRewriter(Rewriter):
         return {node.name: self._base_name(node.parts[0]) for node in signals}
 
     def note_type(self, node: ProgramNode) -> None:
-        """A signal has the type of what it stands for."""
+        """Give a signal the type of what it stands for."""
         if node.kind == "signal":
             self.add_type(node.name, self.kind_of(node.parts[0]))
         super().note_type(node)
 
     def is_amount(self, node: ProgramNode, parents: tuple[ProgramNode, ...]) -> bool:
-        """Components that are no coordinates and no angles say which, such as ``S`` and ``T``."""
+        """Return whether a number is an amount; ``S`` and ``T`` are none, as they name a configuration."""
         pairs = [outer.name for outer in parents if outer.kind == "pair"]
         return all(_COORDINATE.fullmatch(name) for name in pairs[-1:])
 
     def _meant(self, node: ProgramNode) -> str:
-        """The system variable that a node is of, or that its signal stands for."""
+        """Return the system variable that a node is of, or that its signal stands for."""
         name = self._base_name(node)
         return self._signals.get(name, name)
 
     def is_generated(self, node: ProgramNode, parents: tuple[ProgramNode, ...]) -> bool:
-        """The INI fold, what inline forms write before a motion, and files of the maker."""
+        """Return whether a node is of the INI fold, an inline form, or a file of the maker."""
         name = self.program.file.rpartition("/")[2].rpartition(".")[0].lower()
         if name in _MAKERS or (name.startswith("$") and node.kind != "declare"):
             return True
@@ -86,7 +86,7 @@ class KrlRewriter(Rewriter):
         return any(_is_form(outer) for outer in (*parents, node))
 
     def is_of_robot(self, node: ProgramNode) -> bool:
-        """Motions, outputs, waits, and what sets tool, base and speed."""
+        """Return whether a statement is a motion, output or wait, or sets tool, base or speed."""
         if node.kind == "call":
             return node.name in _OF_ROBOT
         return node.kind == "assign" and self._meant(node.parts[0]) in _SETTINGS
@@ -98,12 +98,12 @@ class KrlRewriter(Rewriter):
         return node.name
 
     def is_plain_number(self, node: ProgramNode, parents: tuple[ProgramNode, ...]) -> bool:
-        """Numbers of declarations count as well."""
+        """Return whether a number is plain; those of declarations count as well."""
         is_number = parents[-1].kind == "declare" and parents[-1].value["type"] in ("int", "real")
         return is_number or super().is_plain_number(node, parents)
 
     def of_node(self, node: ProgramNode, parents: tuple[ProgramNode, ...]) -> Iterator[TextChange]:
-        """The differences that are about an instruction, an assignment, a reading, or a declaration."""
+        """Yield the differences that are about an instruction, an assignment, a reading, or a declaration."""
         if node.kind in ("call", "assign") and self.is_of_robot(node) and self.is_statement(node, parents):
             yield TextChange("drop-statement", node, self.without(node))
         if node.kind == "call":
@@ -171,7 +171,7 @@ class KrlRewriter(Rewriter):
             yield from self._component(node, value)
 
     def _component(self, node: ProgramNode, value: ProgramNode) -> Iterator[TextChange]:
-        """``XP1.Z=XP1.Z+30``: the offset goes the other way."""
+        """Yield the reversed offset of ``XP1.Z=XP1.Z+30``."""
         if value.kind == "binary" and value.name in "+-":
             between = self.text[value.parts[0].end : value.parts[1].start]
             at = value.parts[0].end + between.find(value.name)
@@ -198,7 +198,7 @@ class KrlRewriter(Rewriter):
                 yield TextChange("other-input", node, self.put(number, text))
 
     def _form_data(self, node: ProgramNode, value: ProgramNode) -> Iterator[TextChange]:
-        """Tool and base of an inline form."""
+        """Yield changes of tool and base of an inline form."""
         for pair in value.parts:
             number = signed_number(pair.parts[0]) if pair.parts else None
             if number is not None and pair.name in ("tool_no", "base_no"):
@@ -241,13 +241,13 @@ class KrlRewriter(Rewriter):
         return self.kind_of(target) in _POSITIONS
 
     def shifted(self, target: ProgramNode, axis: int, metres: float) -> tuple[Edit, ...] | None:
-        """A component of a literal, or a geometric operator behind the target."""
+        """Return the edits of a component of a literal, or a geometric operator behind the target."""
         if target.kind == "aggregate":
             return self._literal(target, axis, metres)
         return self._joined(target, "xyz"[axis], metres * 1000)
 
     def turned(self, target: ProgramNode, axis: int, degrees: float) -> tuple[Edit, ...] | None:
-        """A geometric operator behind the target: about z is A, about y B, about x C."""
+        """Return a geometric operator behind the target: about z is A, about y B, about x C."""
         return self._joined(target, "cba"[axis], degrees)
 
     def _joined(self, target: ProgramNode, name: str, amount: float) -> tuple[Edit, ...] | None:
@@ -264,7 +264,7 @@ _APPROXIMATIONS = {"c_ptp": "C_DIS", "c_dis": "C_PTP"}
 
 
 def _is_form(node: ProgramNode) -> bool:
-    """Whether a node is of what inline forms write before a motion."""
+    """Return whether a node is of what inline forms write before a motion."""
     if node.kind == "assign":
         return node.parts[0].name in _FORMS
     return node.kind == "call" and (node.name == "bas" or node.name.startswith("interrupt"))

@@ -20,7 +20,7 @@ class TextDifference(ActiveFault):
     is_of_text: ClassVar[bool] = True
 
     def prepare_process(self) -> None:
-        """From now on. Raises LanguageError if the file was run here before, as the original."""
+        """Activate the edits. Raises LanguageError if the file has already run here as the original."""
         edits = [Edit(*fields) for fields in self.data["edits"]]
         self._edits = ActiveEdits(self.data["file"], self.data["digest"], edits, self._reached)
         self._has_acted = False

@@ -77,7 +77,7 @@ def export(
 
 
 def mutant_id(plan: PlannedText) -> str:
-    """The id that campaigns give it."""
+    """Return the id of the mutant in campaigns."""
     variant = variant_of(plan.difference)
     return f"{plan.site.id}:{plan.difference.operator}{f'={variant}' if variant else ''}"
 

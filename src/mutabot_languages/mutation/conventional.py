@@ -35,7 +35,7 @@ class ConventionalOperators:
         self._named: dict[int, dict[str, str]] = {}
 
     def differences(self) -> Iterator[TextChange]:
-        """All of the file."""
+        """Yield all differences in the file."""
         for node, parents in self.rewriter.nodes():
             yield from self._of_node(node, parents)
 
@@ -81,7 +81,7 @@ class ConventionalOperators:
         operands: bool = False,
         truth: bool = False,
     ) -> Iterator[TextChange]:
-        """Other operators in the place of one, its operands alone, and what always or never holds."""
+        """Yield other operators in place of one, its operands alone, and constant conditions."""
         left, right = node.parts
         put = self.rewriter.put
         at = self.rewriter.text[left.end : right.start].lower().find(node.name)
@@ -122,7 +122,7 @@ class ConventionalOperators:
             yield TextChange("insert-unary", node, rewriter.put(node, text), "neg")
 
     def _is_amount(self, node: ProgramNode, parents: _Parents) -> bool:
-        """Whether a literal says how much, and is another one with a sign."""
+        """Return whether a literal says how much, and is another one with a sign."""
         is_other = node.kind == "constant" or (node.kind == "number" and 0 < node.value < _NO_NUMBER)
         return is_other and self.rewriter.is_amount(node, parents)
 
@@ -137,7 +137,7 @@ class ConventionalOperators:
             yield TextChange("absolute-value", node, put(node, text), "failOnZero")
 
     def _variables(self, node: ProgramNode, parents: _Parents) -> Iterator[TextChange]:
-        """The variables of the same type that the routine names as well, the next ones first."""
+        """Yield the variables of the same type that the routine names as well, the next ones first."""
         rewriter = self.rewriter
         routines = [outer for outer in parents if outer.kind == "routine"]
         scope = routines[-1] if routines else rewriter.program.parsed.tree
@@ -174,7 +174,7 @@ class ConventionalOperators:
 
 
 def _is_read(node: ProgramNode, parents: _Parents) -> bool:
-    """Whether a node is not what an assignment or a declaration gives a value."""
+    """Return whether a node is not what an assignment or a declaration gives a value."""
     path = zip(parents, (*parents[1:], node), strict=True)
     return parents[-1].kind != "signal" and not any(
         outer.kind == "assign" and outer.parts[0] is inner for outer, inner in path
@@ -182,7 +182,7 @@ def _is_read(node: ProgramNode, parents: _Parents) -> bool:
 
 
 def _in_groups(node: ProgramNode, parents: _Parents) -> tuple[ProgramNode, ProgramNode]:
-    """A node with all parentheses around it, and what these stand in."""
+    """Return a node with all parentheses around it, and what these stand in."""
     for outer in reversed(parents):
         if outer.kind != "group":
             return node, outer

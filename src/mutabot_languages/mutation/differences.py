@@ -70,7 +70,7 @@ class ProgramFile:
     _mistakes: dict[tuple[int, int], int] = field(default_factory=dict)
 
     def shown(self, difference: TextChange) -> str:
-        """How the difference reads: ``Offs(p,0,0,100) → Offs(p,0,0,-100)``, the statement in short."""
+        """Return how the difference reads: ``Offs(p,0,0,100) → Offs(p,0,0,-100)``, the statement in short."""
         before, after = self._statement(difference)
         first, node = difference.edits[0], difference.node
         if first.text in MISSING and (first.start, first.end) == (node.start, node.end):
@@ -85,21 +85,21 @@ class ProgramFile:
         return " ".join(before.split()), " ".join(after.split())
 
     def _part(self, start: int, end: int, difference: TextChange) -> tuple[str, str]:
-        """A part of the text, as it is and as a mutant."""
+        """Return a part of the text, as it is and as a mutant."""
         inside = [Edit(edit.start - start, edit.end - start, edit.text) for edit in difference.edits]
         return self.text[start:end], applied(self.text[start:end], inside)
 
     def changed(self, difference: TextChange) -> str:
-        """The text of the file as a mutant."""
+        """Return the text of the file as a mutant."""
         return applied(self.text, difference.edits)
 
     def diff(self, difference: TextChange) -> list[str]:
-        """The difference as a unified diff without context: lines without line feeds, else as in the file."""
+        """Return the lines of a unified diff without context, without line feeds, else as in the file."""
         old, new = (text.split("\n") for text in (self.text, self.changed(difference)))
         return [*difflib.unified_diff(old, new, f"a/{self.file}", f"b/{self.file}", n=0, lineterm="")]
 
     def is_sound(self, difference: TextChange) -> bool:
-        """Whether the changed text differs and still reads as well as the original does."""
+        """Return whether the changed text differs and still reads as well as the original does."""
         start, end = self._around(difference)
         before, after = self._part(start, end, difference)
         if (start, end) not in self._mistakes:
@@ -108,7 +108,7 @@ class ProgramFile:
         return is_changed and len(self.language.read("", after).diagnostics) <= self._mistakes[start, end]
 
     def _around(self, difference: TextChange) -> tuple[int, int]:
-        """The smallest routine, or statement of the file, that holds all edits."""
+        """Return the smallest routine, or statement of the file, that holds all edits."""
         first = min(edit.start for edit in difference.edits)
         last = max(edit.end for edit in difference.edits)
         for node in outer_nodes(self.parsed.tree):
@@ -118,7 +118,7 @@ class ProgramFile:
 
 
 def outer_nodes(tree: ProgramNode) -> Iterator[ProgramNode]:
-    """The routines and statements that stand in no routine."""
+    """Yield the routines and statements that stand in no routine."""
     for node in tree.bodies[0] if tree.bodies else ():
         if node.kind == "module":
             yield from outer_nodes(node)
@@ -127,7 +127,7 @@ def outer_nodes(tree: ProgramNode) -> Iterator[ProgramNode]:
 
 
 def _shorter(before: str, after: str, most: int = 70) -> tuple[str, str]:
-    """Both texts without the most of what they have in common, if they are long."""
+    """Return both texts without most of their common parts, if they are long."""
     if len(before) <= most and len(after) <= most:
         return before, after
     start = 0

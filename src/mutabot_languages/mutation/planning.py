@@ -56,7 +56,7 @@ def read_program(
 
 
 def mutants_of(program: ProgramFile, sizes: Sizes | None = None) -> Iterator[PlannedText]:
-    """The mutants of a file, in the order of its text."""
+    """Yield the mutants of a file, in the order of its text."""
     occurrences = occurrences_in(program.parsed.tree, program.text)
     rewriter = rewriter_of(program.language)(program, sizes)
     made = [*rewriter.differences(), *ConventionalOperators(rewriter).differences()]
@@ -73,7 +73,7 @@ def mutants_of(program: ProgramFile, sizes: Sizes | None = None) -> Iterator[Pla
 
 
 def planned_texts(root: Path, files: list[str]) -> Iterator[PlannedText]:
-    """All mutants of a program's files."""
+    """Yield all mutants of a program's files."""
     for program in read_program(root, files):
         yield from mutants_of(program)
 

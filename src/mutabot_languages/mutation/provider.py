@@ -46,20 +46,20 @@ class LanguageFaults(FaultProvider):
         self._files: list[str] = []
 
     def rules(self) -> Sequence[Rule]:
-        """All operators on these texts."""
+        """Return all operators on these texts."""
         return RULES
 
     def is_monotone(self, operator: str) -> bool:
-        """False: a point that is shifted far may be out of reach where a nearer one does harm unseen."""
+        """Return False: a point shifted far may be out of reach where a nearer one does harm unseen."""
         return False
 
     def texts(self, project: Project, first: int, notify: Callable[[str], None]) -> Sequence[ProgramText]:
-        """No Python text is looked at; what cannot be read of the program is said here."""
+        """Return nothing, as no Python text is needed, but report what cannot be read of the program."""
         read_program(project.root, project.program_files(), notify)
         return ()
 
     def plan(self, project: Project, original: Original) -> Planned:
-        """The mutants of all files of the program that are of these languages."""
+        """Return the mutants of all files of the program that are of these languages."""
         self._root, self._files = project.root, project.program_files()
         planned = Planned()
         is_early = _is_run_early(original)
@@ -77,7 +77,7 @@ class LanguageFaults(FaultProvider):
         return planned
 
     def at_magnitude(self, planned: PlannedMutant, magnitude: float) -> PlannedMutant:
-        """The same fault by another magnitude."""
+        """Return the same fault by another magnitude."""
         mutant = planned.mutant
         for program in read_program(self._root, self._files):
             if program.file != mutant.site.span.file:
@@ -113,7 +113,7 @@ class LanguageFaults(FaultProvider):
 
 
 def _is_run_early(original: Original) -> bool:
-    """Whether a program of these languages has called the cell before any test."""
+    """Return whether a program of these languages has called the cell before any test."""
     from mutabot_languages.registry import language_for  # noqa: PLC0415
 
     return any(
@@ -123,7 +123,7 @@ def _is_run_early(original: Original) -> bool:
 
 
 def variant_of(difference: TextChange) -> str:
-    """The variant of its mutant."""
+    """Return the variant of its mutant."""
     if difference.magnitude is None:
         return difference.variant
     return f"{difference.variant}{difference.magnitude:g}{difference.unit}"

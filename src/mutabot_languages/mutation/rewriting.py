@@ -41,7 +41,7 @@ class Sizes:
 
     @classmethod
     def only(cls, size: float) -> Sizes:
-        """This magnitude alone."""
+        """Return this magnitude alone."""
         return cls((size,), (size,))
 
 
@@ -87,7 +87,7 @@ class Rewriter:
         self.types[name] = type if self.types.get(name, type) == type else ""
 
     def kind_of(self, node: ProgramNode) -> str:
-        """The type of an expression, as ``types`` has it; empty if the program does not say."""
+        """Return the type of an expression, as ``types`` has it; empty if the program does not say."""
         kind, name = node.kind, node.name
         if kind in ("number", "text"):
             return kind
@@ -108,25 +108,25 @@ class Rewriter:
         return self.types.get(f"{name}()" if kind == "call" else name, "") if kind in ("name", "call") else ""
 
     def has_value(self, name: str, node: ProgramNode) -> bool:
-        """Whether a variable that a routine names has a value at a node."""
+        """Return whether a variable that a routine names has a value at a node."""
         return True
 
     def is_amount(self, node: ProgramNode, parents: tuple[ProgramNode, ...]) -> bool:
-        """Whether a number says how much, how far or where, rather than which."""
+        """Return whether a number says how much, how far or where, rather than which."""
         return True
 
     def differences(self) -> Iterator[TextChange]:
-        """Those of robot operators in the file."""
+        """Yield the differences of robot operators in the file."""
         for node, parents in self.nodes():
             yield from self.of_node(node, parents)
 
     def all_nodes(self) -> Iterator[ProgramNode]:
-        """The nodes of all files of the program, this one's last."""
+        """Yield the nodes of all files of the program, this one's last."""
         for file in (*self.program.others, self.program):
             yield from file.parsed.tree.walk()
 
     def nodes(self) -> Iterator[tuple[ProgramNode, tuple[ProgramNode, ...]]]:
-        """The nodes of the file that no tool has written, and those around each, in the order of the text."""
+        """Yield the nodes that no tool has written, and those around each, in the order of the text."""
         waiting: list[tuple[ProgramNode, tuple[ProgramNode, ...]]] = [(self.program.parsed.tree, ())]
         while waiting:
             node, parents = waiting.pop()
@@ -139,29 +139,29 @@ class Rewriter:
     # what a language says
 
     def is_generated(self, node: ProgramNode, parents: tuple[ProgramNode, ...]) -> bool:
-        """Whether a node stands in a part of the file that a tool has written."""
+        """Return whether a node stands in a part of the file that a tool has written."""
         return False
 
     def of_node(self, node: ProgramNode, parents: tuple[ProgramNode, ...]) -> Iterator[TextChange]:
-        """The differences of robot operators that are about a node."""
+        """Return the differences of robot operators that are about a node."""
         raise NotImplementedError
 
     def shifted(self, target: ProgramNode, axis: int, metres: float) -> tuple[Edit, ...] | None:
-        """The edits that shift a pose along an axis; None if that is unknown."""
+        """Return the edits that shift a pose along an axis; None if that is unknown."""
         raise NotImplementedError
 
     def turned(self, target: ProgramNode, axis: int, degrees: float) -> tuple[Edit, ...] | None:
-        """The edits that turn a pose about an axis of its own; None if that is unknown."""
+        """Return the edits that turn a pose about an axis of its own; None if that is unknown."""
         raise NotImplementedError
 
     # what they share
 
     def written(self, node: ProgramNode) -> str:
-        """A node as it stands in the text."""
+        """Return a node as it stands in the text."""
         return self.text[node.start : node.end]
 
     def put(self, node: ProgramNode, text: str) -> tuple[Edit, ...]:
-        """The edit that puts a text in the place of a node."""
+        """Return the edit that puts a text in the place of a node."""
         return (Edit(node.start, node.end, text),)
 
     def next_number(self, number: ProgramNode, alike: Iterable[ProgramNode]) -> Iterator[str]:
@@ -174,13 +174,13 @@ class Rewriter:
         yield from map(str, others[:1])
 
     def without(self, node: ProgramNode) -> tuple[Edit, ...]:
-        """The edit that takes a statement out."""
+        """Return the edit that takes a statement out."""
         return (Edit(node.start, node.end, self.nothing),)
 
     def sized(
         self, operator: str, node: ProgramNode, subject: ProgramNode, change: _PoseChange
     ) -> Iterator[TextChange]:
-        """A fault with sizes, along or about each axis, both ways."""
+        """Yield a fault with sizes, along or about each axis, both ways."""
         is_turn = operator == "turn-target"
         sizes, unit = (self.sizes.turns, "deg") if is_turn else (self.sizes.shifts, "mm")
         for axis, name in enumerate(AXES):
@@ -191,19 +191,19 @@ class Rewriter:
                         yield TextChange(operator, node, edits, f"{name}{sign}", size, unit)
 
     def moved(self, node: ProgramNode, target: ProgramNode) -> Iterator[TextChange]:
-        """The differences of a motion's target."""
+        """Yield the differences of a motion's target."""
         yield from self.sized("shift-target", node, target, self.shifted)
         yield from self.sized("turn-target", node, target, self.turned)
 
     def reversed(self, node: ProgramNode, amounts: Sequence[ProgramNode]) -> Iterator[TextChange]:
-        """Offsets along x, y and z that go the other way."""
+        """Yield offsets along x, y and z with the other sign."""
         for axis, amount in zip(AXES, amounts, strict=False):
             value = signed_number(amount)
             if value:
                 yield TextChange("reverse-offset", node, self.put(amount, named_number(-value)), axis)
 
     def opposite(self, operator: str, node: ProgramNode, value: ProgramNode) -> Iterator[TextChange]:
-        """The other value of a signal, if it is written out."""
+        """Yield the other value of a signal, if it is written out."""
         text = self.opposites.get(self.written(value).lower())
         if text is not None:
             yield TextChange(operator, node, self.put(value, text))
@@ -211,7 +211,7 @@ class Rewriter:
     def scaled(
         self, operator: str, node: ProgramNode, number: ProgramNode, factors: Sequence[float]
     ) -> Iterator[TextChange]:
-        """A number that is multiplied."""
+        """Yield a number that is multiplied."""
         if number.kind != "number" or not number.value:
             return
         for factor in factors:
@@ -219,22 +219,22 @@ class Rewriter:
             yield TextChange(operator, node, self.put(number, text), f"×{factor:g}")
 
     def is_statement(self, node: ProgramNode, parents: tuple[ProgramNode, ...]) -> bool:
-        """Whether a node stands by itself."""
+        """Return whether a node stands by itself."""
         if parents[-1].kind == "if" and parents[-1].name == "compact":  # it has to have one
             return False
         return any(statement is node for body in parents[-1].bodies for statement in body)
 
     def is_of_robot(self, node: ProgramNode) -> bool:
-        """Whether the robot or its signals take part in a statement: an operator of its own drops these."""
+        """Return whether the robot or its signals take part in a statement: another operator drops these."""
         return False
 
     def is_plain_number(self, node: ProgramNode, parents: tuple[ProgramNode, ...]) -> bool:
-        """Whether a number is one of a calculation, a comparison or an assignment."""
+        """Return whether a number is one of a calculation, a comparison or an assignment."""
         return parents[-1].kind in ("binary", "assign", "for")
 
 
 def signed_number(node: ProgramNode) -> float | None:
-    """The value of a number with or without a sign; None for anything else."""
+    """Return the value of a number with or without a sign; None for anything else."""
     if node.kind == "number":
         return float(node.value)
     if node.kind == "unary" and node.name in "+-" and node.parts[0].kind == "number":
@@ -243,6 +243,6 @@ def signed_number(node: ProgramNode) -> float | None:
 
 
 def named_number(value: float) -> str:
-    """A number as programs write it, without a tail of zeros."""
+    """Return a number as programs write it, without a tail of zeros."""
     text = f"{value:.6f}".rstrip("0").rstrip(".")
     return "0" if text in ("-0", "") else text

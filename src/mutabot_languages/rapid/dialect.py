@@ -55,7 +55,7 @@ class RapidDialect(Dialect):
         return scope.unit.names if node.value["scope"] == "local" else task.machine.globals
 
     def name(self, task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Any:
-        """Data that every program has, or a signal."""
+        """Return the value of a signal, or of data that every program has."""
         found = predefined(node.name, self.structures)
         if found is not None:
             return found
@@ -65,7 +65,7 @@ class RapidDialect(Dialect):
         return station.read(task.site(node, scope), node.name)
 
     def binary(self, operator: str, left: Any, right: Any) -> Any:
-        """The value of a binary operation."""
+        """Return the value of a binary operation."""
         if operator in ("=", "<>"):
             return _equal(left, right) == (operator == "=")
         if operator in OF_VALUES:
@@ -78,23 +78,23 @@ class RapidDialect(Dialect):
         return _of_numbers(operator, left, right)
 
     def literal(self, task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
-        """The value of an aggregate, which gets its type where it is stored."""
+        """Return the value of an aggregate, which gets its type where it is stored."""
         if node.kind != "list":
             raise task.unsupported(node, scope, node.name or node.kind)
         values = yield from task.values(node.parts, scope)
         return values
 
     def assigned(self, variable: Variable, value: Any) -> Any:
-        """What data of a type gets."""
+        """Return what data of a type gets."""
         type = variable.type or getattr(variable.value, "type", "")
         return shaped(value, type, self.structures)
 
     def matches(self, subject: Any, label: Any) -> bool:
-        """Whether a case of TEST is meant."""
+        """Return whether a case of TEST is meant."""
         return _equal(subject, label)
 
     def is_reference(self, parameter: ProgramNode) -> bool:
-        """INOUT, VAR and PERS are the caller's own data."""
+        """Return whether a parameter is the caller's own data: INOUT, VAR or PERS."""
         return bool(parameter.value["mode"])
 
 
@@ -166,7 +166,7 @@ class RapidTask(ProgramTask):
             del self.machine.running[id(inner)]
 
     def value(self, node: ProgramNode, scope: RoutineScope) -> Steps:
-        """The value of an expression; an argument that is left out has none."""
+        """Return the value of an expression; an argument that is left out has none."""
         return None if node.kind == "omitted" else (yield from super().value(node, scope))
 
 
@@ -174,7 +174,7 @@ _RETRIES = 50
 
 
 def predefined(name: str, structures: Mapping[str, Components]) -> Any:
-    """Data that every RAPID program has; None if there is none of this name."""
+    """Return data that every RAPID program has; None if there is none of this name."""
     speed, zone = _SPEED.fullmatch(name), _ZONE.fullmatch(name)
     if speed is not None:
         return shaped([int(speed[1]), 500, 5000, 1000], "speeddata", structures)

@@ -35,12 +35,12 @@ _TIMEOUT = "err_wait_maxtime"
 
 
 def structures(task: ProgramTask) -> Any:
-    """The structures of the program."""
+    """Return the structures of the program."""
     return getattr(task.dialect, "structures", STRUCTURES)
 
 
 def _base(task: ProgramTask, named: dict[str, Any]) -> Frame:
-    """The frame of a work object among arguments on the robot's base, with the program's displacement."""
+    """Return the displaced frame, on the robot's base, of a work object among arguments."""
     frame = IDENTITY
     if named.get("wobj") is not None:
         wobj = _target(task, named["wobj"], "wobjdata")
@@ -57,7 +57,7 @@ def _target(task: ProgramTask, value: Any, type: str) -> Any:
 
 
 def _move(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-    """MoveJ, MoveL, MoveC, MoveAbsJ and those that set an output or call a routine at their end."""
+    """Carry out MoveJ, MoveL, MoveC, MoveAbsJ, and those that set an output or call a routine at the end."""
     values, named = yield from _given(task, node, scope)
     name = node.name
     is_circle, is_joint = name.startswith(("movec", "triggc")), name.startswith("moveabsj")
@@ -102,7 +102,7 @@ def _move(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
 
 
 def _seventh(task: ProgramTask, target: Any) -> list[float]:
-    """The first external axis is the seventh joint of an arm that has one."""
+    """Return the angle of the seventh joint, which is the first external axis; empty for arms without one."""
     value = float(target["extax"]["eax_a"])
     return [value] if task.station.joints > 6 and abs(value) < 1e8 else []
 
@@ -117,7 +117,7 @@ def _at_end(task: ProgramTask, node: ProgramNode, scope: RoutineScope, name: str
 
 
 def _given(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Any:
-    """The arguments of a motion; signals are not read."""
+    """Return the arguments of a motion; signals are not read."""
     values, named = list[Any](), dict[str, Any]()
     plain = node.plain
     skipped = plain[-2:-1] if node.name.endswith(("do", "ao", "go")) and len(plain) > 5 else []
@@ -137,7 +137,7 @@ def _given(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Any:
 
 
 def _signal(task: ProgramTask, node: ProgramNode, scope: RoutineScope, part: ProgramNode) -> str:
-    """The name of a signal: of an alias, or of a parameter, that of its signal."""
+    """Return the name of the signal that a name, an alias or a parameter stands for."""
     found = task.find(part.name, scope) if part.kind == "name" else None
     if found is not None and isinstance(found.value, str):
         return found.value
@@ -152,7 +152,7 @@ def _set(value: int) -> Callable[..., Any]:
 
 
 def _set_to(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-    """SetDO, SetGO, SetAO, with a delay."""
+    """Carry out SetDO, SetGO, SetAO, with a delay."""
     parts = node.plain
     value = yield from task.value(parts[1], scope)
     for option in node.parts:
@@ -259,7 +259,7 @@ def _rel_tool(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Step
 
 
 def _here(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-    """CRobT and CPos: where the tool is, in a work object."""
+    """Carry out CRobT and CPos: where the tool is, in a work object."""
     _, named = yield from task.arguments(node, scope)
     station = task.station
     if named.get("tool"):
@@ -313,7 +313,7 @@ def _calc_target(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> S
 
 
 def _displace(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-    """PDispSet, and PDispOff without arguments."""
+    """Carry out PDispSet, and PDispOff without arguments."""
     values, _ = yield from task.arguments(node, scope)
     shift = frame_of(_target(task, values[0], "pose")) if values else None
     task.machine.displacement = shift  # type: ignore[attr-defined]
@@ -339,7 +339,7 @@ def _pose_record(task: ProgramTask, frame: Frame) -> Structure:
 
 
 def _of_poses(function: Callable[..., Frame]) -> Callable[..., Steps]:
-    """PoseMult and PoseInv."""
+    """Return the function for PoseMult or PoseInv."""
 
     def call(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
         values, _ = yield from task.arguments(node, scope)
@@ -357,7 +357,7 @@ def _pose_vect(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Ste
 
 
 def _def_frame(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-    """DefFrame of three points: the first is the origin, the second on x,
+    """Carry out DefFrame of three points: the first is the origin, the second on x,
     the third in the plane of x and y."""
     values, _ = yield from task.arguments(node, scope)
     places = [frame_of(_target(task, value, "robtarget")).position for value in values[:3]]
@@ -380,7 +380,7 @@ def _unit(vector: Any) -> Any:
 
 
 def _late(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-    """``%"name"%`` calls a routine by its name."""
+    """Carry out ``%"name"%``, which calls a routine by its name."""
     name = yield from task.value(node.parts[0], scope)
     return (yield from _call_by_name(task, node, scope, str(name).lower(), node.parts[1:]))
 
@@ -404,7 +404,7 @@ def _present(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> bool:
 
 
 def _change(change: Callable[[float, float], float]) -> Callable[..., Steps]:
-    """Incr, Decr, Add and Clear."""
+    """Return the function for Incr, Decr, Add or Clear."""
 
     def call(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
         now = yield from task.value(node.parts[0], scope)
@@ -415,7 +415,7 @@ def _change(change: Callable[[float, float], float]) -> Callable[..., Steps]:
 
 
 def _clock(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Any:
-    """ClkReset, ClkStart, ClkStop and ClkRead of a clock."""
+    """Carry out ClkReset, ClkStart, ClkStop or ClkRead of a clock."""
     variable: Variable | None = task.find(node.parts[0].name, scope)
     if variable is None:
         raise task.error(node, scope, f"there is no clock {node.parts[0].name}")
@@ -450,12 +450,12 @@ def _trunc(value: float, dec: int = 0, **_: Any) -> float:
 
 
 def number_text(value: float, decimals: int, **_: Any) -> str:
-    """NumToStr."""
+    """Return the text that NumToStr gives."""
     return f"{value:.{int(decimals)}f}"
 
 
 def value_text(value: Any, **_: Any) -> str:
-    """ValToStr: a value as RAPID writes it."""
+    """Return a value as RAPID writes it, as ValToStr does."""
     if isinstance(value, bool):
         return "TRUE" if value else "FALSE"
     if isinstance(value, (dict, list)):
@@ -470,7 +470,7 @@ def _distance(first: Any, second: Any) -> float:
 
 
 def _str_to_val(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-    """StrToVal of numbers and truth values; returns whether it could be read."""
+    """Carry out StrToVal of numbers and truth values; its value is whether the text could be read."""
     text = yield from task.value(node.parts[0], scope)
     known = {"true": True, "false": False}
     try:

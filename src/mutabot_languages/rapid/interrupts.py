@@ -58,7 +58,7 @@ def _order(
 
 
 def _on_signal(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-    """ISignalDI and ISignalDO: when a signal becomes 0 or 1, or changes."""
+    """Carry out ISignalDI and ISignalDO: when a signal becomes 0 or 1, or changes."""
     parts = node.plain
     station, name, site = task.station, parts[0].name, task.site(node, scope)
     wanted = float((yield from task.value(parts[1], scope)))
@@ -89,7 +89,7 @@ def _timer(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
 
 
 def _change(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> None:
-    """IDelete, ISleep and IWatch of an interrupt; IDisable and IEnable of all."""
+    """Carry out IDelete, ISleep and IWatch of an interrupt, or IDisable and IEnable of all."""
     interrupts = task.machine.interrupts
     if node.name in ("idisable", "ienable"):
         interrupts.are_enabled = node.name == "ienable"
@@ -105,7 +105,7 @@ def _change(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> None:
 
 
 def _stop_move(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> None:
-    """In a trap it stops a motion, which is not carried out; anywhere else there is none to stop."""
+    """Refuse StopMove in a trap, where it stops a motion; anywhere else there is none to stop."""
     if task.name == HANDLERS:
         raise task.unsupported(node, scope, f"{node.name} in a trap")
     task.note_without_effect(node, scope)
@@ -127,7 +127,7 @@ class TriggerPoint:
 
 
 def _trigger(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps:
-    """TriggIO and TriggEquip: what a later motion does where."""
+    """Carry out TriggIO and TriggEquip: what a later motion does where."""
     parts, options = node.plain, node.options
     distance = float((yield from task.value(parts[1], scope))) / 1000
     variable = task.find(parts[0].name, scope)
@@ -142,7 +142,7 @@ def _trigger(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps
 
 
 def trigger_watch(task: ProgramTask, points: list[Any], end: Frame) -> Callable[..., None]:
-    """Does what is due: called in every tick of a motion to ``end``, and once after it."""
+    """Return a function to call in every tick of a motion to ``end``, and once after it, that does what is due."""
     station = task.station
 
     def here() -> Frame:

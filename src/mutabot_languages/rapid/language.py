@@ -14,7 +14,7 @@ from .parser import RapidParser
 
 
 def _prepare(machine: Machine, task: ProgramTask) -> Steps:
-    """Routines, structures and data of all modules are known, whatever their order."""
+    """Declare routines, structures and data of all modules, whatever their order."""
     waiting: list[tuple[ProgramNode, RoutineScope]] = []
     for unit in machine.units:
         unit.tree.value = {}
@@ -50,7 +50,7 @@ def _structure(dialect: Dialect, node: ProgramNode) -> None:
 
 
 def _main(machine: Machine, task: ProgramTask, routine: str) -> Steps:
-    """The routine ``main``, or the first of the first file that takes no arguments."""
+    """Carry out the routine ``main``, or the first of the first file that takes no arguments."""
     members = _members(machine.units[0])
     own = [member for member in members if member.kind == "routine" and member.value["kind"] == "proc"]
     own.sort(key=lambda node: bool(node.parts))
@@ -58,7 +58,7 @@ def _main(machine: Machine, task: ProgramTask, routine: str) -> Steps:
 
 
 def _share(first: Machine, other: Machine) -> None:
-    """Tasks have the PERS data in common that both declare, and here their interrupts."""
+    """Share between tasks the PERS data that both declare, and their interrupts."""
     other.tasks, other.interrupts = first.tasks, first.interrupts
     for node in (member for unit in other.units for member in _members(unit) if member.kind == "declare"):
         is_shared = (node.value["kind"], node.value["scope"]) == ("pers", "")

@@ -55,7 +55,7 @@ class RapidParser(StatementParser):
     brackets: ClassVar = ("{", "}")
 
     def begins_statement(self) -> bool:
-        """Whether a routine begins here and may: it does not stand in another one."""
+        """Return whether a routine begins here and may: it does not stand in another one."""
         return self.words[self.at] in _ROUTINES and not self.within.startswith(("PROC", "FUNC", "TRAP"))
 
     def statement(self) -> ProgramNode | None:
@@ -233,7 +233,7 @@ class RapidParser(StatementParser):
         return node
 
     def _simple(self, start: int) -> ProgramNode:
-        """An assignment or an instruction."""
+        """Parse an assignment or an instruction."""
         word = self.words[self.at]
         follows = self.words[self.at + 1]
         if follows in (":=", ".", "{") and self.kinds[self.at + 1] == "sign":
@@ -306,7 +306,7 @@ class RapidParser(StatementParser):
         return self._star() if self.words[self.at] == "*" else self.expression()
 
     def number_of(self, word: str) -> int | float:
-        """The value of a number, which may be of hexadecimal, binary or octal digits."""
+        """Return the value of a number, which may be of hexadecimal, binary or octal digits."""
         return int(word, 0) if word[1:2] in ("x", "b", "o") else super().number_of(word)
 
 

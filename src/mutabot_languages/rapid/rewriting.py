@@ -45,11 +45,11 @@ class RapidRewriter(Rewriter):
     }  # fmt: skip
 
     def is_of_robot(self, node: ProgramNode) -> bool:
-        """Motions, outputs, waits and displacements."""
+        """Return whether a statement is a motion, output, wait or displacement."""
         return node.kind == "call" and (node.name in _OF_ROBOT or bool(_MOTION.fullmatch(node.name)))
 
     def is_amount(self, node: ProgramNode, parents: tuple[ProgramNode, ...]) -> bool:
-        """Of literals of points, what says where they are; nothing of tools, work objects and the like."""
+        """Return whether a literal of a point says where it is; False for tools, work objects etc."""
         lists = [outer for outer in parents if outer.kind == "list"]
         if len(lists) < 2:
             return not lists or node.kind != "constant"
@@ -57,12 +57,12 @@ class RapidRewriter(Rewriter):
         return len(first.parts) == 2 or (len(first.parts) == 4 and second in first.parts[:2])
 
     def is_plain_number(self, node: ProgramNode, parents: tuple[ProgramNode, ...]) -> bool:
-        """Numbers of declarations count as well, but not those of structures."""
+        """Return whether a number is plain; those of declarations count, but not those of structures."""
         is_number = parents[-1].kind == "declare" and parents[-1].value["type"] in ("num", "dnum")
         return is_number or super().is_plain_number(node, parents)
 
     def of_node(self, node: ProgramNode, parents: tuple[ProgramNode, ...]) -> Iterator[TextChange]:
-        """The differences that are about an instruction, a function of a signal, or a declaration."""
+        """Yield the differences that are about an instruction, a function of a signal, or a declaration."""
         if node.kind == "call":
             if self.is_of_robot(node) and self.is_statement(node, parents):
                 yield TextChange("drop-statement", node, self.without(node))
@@ -96,7 +96,7 @@ class RapidRewriter(Rewriter):
             yield TextChange("forget-wait", node, self.put(node, "WaitTime 0"))
 
     def _compared(self, node: ProgramNode) -> Iterator[TextChange]:
-        """A signal that is compared with 0 or 1: a name without a declaration, or DInput."""
+        """Yield a signal that is compared with 0 or 1: a name without a declaration, or DInput."""
         signal, value = node.parts
         is_name = signal.kind == "name" and signal.name not in self.types
         is_function = signal.kind == "call" and signal.name in ("dinput", "doutput")
@@ -159,7 +159,7 @@ class RapidRewriter(Rewriter):
         return self.kind_of(target) == "robtarget"
 
     def shifted(self, target: ProgramNode, axis: int, metres: float) -> tuple[Edit, ...] | None:
-        """A number of a literal or of Offs, or an Offs around the target."""
+        """Return the edits of a number of a literal or of Offs, or an Offs around the target."""
         if not self._is_pose(target):
             return None
         if target.kind == "list":
@@ -174,7 +174,7 @@ class RapidRewriter(Rewriter):
         return self.put(target, f"Offs({self.written(target)},{','.join(amounts)})")
 
     def turned(self, target: ProgramNode, axis: int, degrees: float) -> tuple[Edit, ...] | None:
-        """A RelTool around the target: a number of a quaternion is no rotation."""
+        """Return a RelTool around the target: a number of a quaternion is no rotation."""
         if not self._is_pose(target):
             return None
         name = ("Rx", "Ry", "Rz")[axis]

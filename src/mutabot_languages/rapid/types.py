@@ -47,7 +47,7 @@ class RapidArray(list[Any]):
 
 
 def initial(type: str, structures: Mapping[str, Components], sizes: list[int] | None = None) -> Any:
-    """The value that data of a type begins with."""
+    """Return the value that data of a type begins with."""
     if sizes:
         made = RapidArray(initial(type, structures, sizes[1:]) for _ in range(sizes[0]))
         made.type = type
@@ -61,7 +61,7 @@ def initial(type: str, structures: Mapping[str, Components], sizes: list[int] | 
 
 
 def shaped(value: Any, type: str, structures: Mapping[str, Components]) -> Any:
-    """A value as data of a type has it: literals become structures. Raises ValueError if it does not fit."""
+    """Return a value with literals made structures of a type. Raises ValueError if it does not fit."""
     if isinstance(value, Structure):
         return copy.deepcopy(value)
     if isinstance(value, list) and type in structures:
@@ -78,14 +78,14 @@ def shaped(value: Any, type: str, structures: Mapping[str, Components]) -> Any:
 
 
 def frame_of(value: Any) -> Frame:
-    """The frame of a pose or a target, which is in mm. Raises TypeError."""
+    """Return the frame of a pose or a target, which is in mm. Raises TypeError."""
     if not (isinstance(value, dict) and "trans" in value and "rot" in value):
         raise TypeError(f"expected a pose or a robtarget, found {value!r}")
     return Frame.of_quaternion([mm / 1000 for mm in value["trans"].values()], list(value["rot"].values()))
 
 
 def put_frame(value: Structure, frame: Frame) -> Structure:
-    """A copy of a pose or a target with this frame."""
+    """Return a copy of a pose or a target with this frame."""
     made = copy.deepcopy(value)
     made["trans"] = Structure.of("pos", dict(zip("xyz", (m * 1000 for m in frame.position), strict=True)))
     made["rot"] = Structure.of("orient", dict(zip(("q1", "q2", "q3", "q4"), frame.rotation, strict=True)))

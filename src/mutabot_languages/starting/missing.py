@@ -13,7 +13,7 @@ from . import texts
 
 
 def missing_data(files: Sequence[ParsedFile], language: str) -> tuple[str, str, list[str]] | None:
-    """A file for what these files lack: its name, its text, and the names that it declares.
+    """Return a file for what these files lack: its name, its text, and the names that it declares.
 
     Of RAPID, tools and work objects of motions; of KRL, what every controller's ``$config.dat`` has. None if
     nothing of the kind is missing.

@@ -24,7 +24,7 @@ _MOST_LEFT = 6
 
 
 def project(root: Path, files: Sequence[Path]) -> tuple[dict[str, str], list[str]] | None:
-    """The files of a project by their names, and lines that say what was found out.
+    """Return the files of a project by their names, and lines that say what was found out.
 
     Args:
         root: the project's folder.
@@ -79,7 +79,7 @@ def _read(file: Path) -> ParsedFile:
 
 
 def _main(trees: dict[Path, ProgramNode]) -> Path | None:
-    """The file with a routine ``main``, else the first with a routine of its name that no other calls.
+    """Return the file with a routine ``main``, else the first with a routine of its name that no other calls.
 
     None if nothing in these files can be carried out.
     """
@@ -96,7 +96,7 @@ def _main(trees: dict[Path, ProgramNode]) -> Path | None:
 
 
 def _needed(main: Path, language: RobotLanguage, trees: dict[Path, ProgramNode]) -> list[Path]:
-    """The file, and those that have what it names and does not have itself, the nearest first."""
+    """Return the file, and those that have what it names and does not have itself, the nearest first."""
     dialect, found, waiting = language.dialect(), [main], [main]
     has = {file: _names(tree, "routine", *_data(file)) for file, tree in trees.items()}
     near = sorted(trees, key=lambda path: (os.path.relpath(path, main.parent).count(os.sep), path))
@@ -113,12 +113,12 @@ def _needed(main: Path, language: RobotLanguage, trees: dict[Path, ProgramNode])
 
 
 def _data(file: Path) -> list[str]:
-    """Which data of a file others may name: of KRL, that of ``$config.dat`` alone."""
+    """Return which data of a file others may name: of KRL, that of ``$config.dat`` alone."""
     return [] if file.suffix.lower() in (".src", ".sub", ".dat") and file.name[0] != "$" else ["declare"]
 
 
 def _names(tree: ProgramNode, *kinds: str) -> set[str]:
-    """The names of nodes, and the texts: RAPID may call by them."""
+    """Return the names of nodes, and the texts: RAPID may call by them."""
     found = (node.value if node.kind == "text" else node.name for node in tree.walk() if node.kind in kinds)
     return {str(item).lower() for item in found}
 

@@ -44,7 +44,7 @@ class NamedSignal:
 
 
 def signals_of(files: Sequence[ParsedFile], language: str) -> list[NamedSignal]:
-    """The signals that files in a language name, in the order of their names; each once, as it is written."""
+    """Return the signals that files in a language name, in the order of their names, each once."""
     reader = {"rapid": _of_rapid, "krl": _of_krl, "urscript": _of_urscript}[language]
     found: dict[tuple[bool, str], NamedSignal] = {}
     for signal in reader([node for file in files for node in file.tree.walk()]):
@@ -62,7 +62,7 @@ def _written(name: str, files: Sequence[ParsedFile]) -> str:
 
 
 def cell_map_text(name: str, signals: list[NamedSignal]) -> str:
-    """The cell map of a program. It asks the user for what is unknown."""
+    """Return the cell map of a program. It asks the user for what is unknown."""
     outputs = [named_signal for named_signal in signals if named_signal.is_output]
     lines = [_HEAD.format(name=name)]
     for signal in signals:
@@ -128,7 +128,7 @@ def _of_krl(nodes: list[ProgramNode]) -> Iterator[NamedSignal]:
 
 
 def _indexed(node: ProgramNode) -> str:
-    """``$IN[25]`` of such a node; its name of any other, and nothing of another expression."""
+    """Return ``$IN[25]`` for such a node, the name of another, and nothing for other expressions."""
     if node.kind == "index" and node.parts[0].kind == "name" and node.parts[1].kind == "number":
         return f"{node.parts[0].name.upper()}[{node.parts[1].value}]"
     return node.name if node.kind == "name" else ""
@@ -145,5 +145,5 @@ def _of_urscript(nodes: list[ProgramNode]) -> Iterator[NamedSignal]:
 
 
 def _wanted(parts: Sequence[ProgramNode]) -> bool:
-    """Whether a signal is compared with something else than 0 and FALSE."""
+    """Return whether a signal is compared with something else than 0 and FALSE."""
     return not any(part.kind in ("number", "constant") and not part.value for part in parts[:1])

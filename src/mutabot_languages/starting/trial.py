@@ -84,7 +84,7 @@ def tried(
 
 
 def is_of_the_arm(problem: str) -> bool:
-    """Whether another arm may carry out what stopped the program."""
+    """Return whether another arm may carry out what stopped the program."""
     return any(name in problem for name in ("unreachable", "MotionRefused", "ProtectiveStop"))
 
 

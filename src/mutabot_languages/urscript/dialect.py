@@ -24,14 +24,14 @@ class UrPose(list[float]):
 
 
 def frame_of(value: Any) -> Frame:
-    """The frame of a pose. Raises TypeError for anything else."""
+    """Return the frame of a pose. Raises TypeError for anything else."""
     if not isinstance(value, UrPose) or len(value) != 6:
         raise TypeError(f"expected a pose p[…], found {value!r}")
     return Frame.of_vector(value[:3], value[3:])
 
 
 def pose_of(frame: Frame) -> UrPose:
-    """The pose of a frame."""
+    """Return the pose of a frame."""
     return UrPose([*frame.position, *frame.vector()])
 
 
@@ -65,7 +65,7 @@ class UrDialect(Dialect):
         super().__init__(FUNCTIONS, IGNORED)
 
     def binary(self, operator: str, left: Any, right: Any) -> Any:
-        """The value of a binary operation."""
+        """Return the value of a binary operation."""
         if operator in OF_VALUES:
             return OF_VALUES[operator](left, right)
         if operator in "+-*/" and (isinstance(left, list) or isinstance(right, list)):
@@ -75,7 +75,7 @@ class UrDialect(Dialect):
         return arithmetic(operator, left, right)
 
     def literal(self, task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
-        """The value of a list, a pose, or a method of something."""
+        """Return the value of a list, a pose, or a method of something."""
         if node.kind == "method":
             raise task.unsupported(node, scope, f".{node.name}()")
         if node.kind == "option":
@@ -84,7 +84,7 @@ class UrDialect(Dialect):
         return UrPose(float(value) for value in values) if node.kind == "pose" else values
 
     def assigned(self, variable: Any, value: Any) -> Any:
-        """Lists are copied."""
+        """Return what a variable gets; lists are copied."""
         if not isinstance(value, list):
             return value
         return type(value)(self.assigned(variable, element) for element in value)
@@ -103,7 +103,7 @@ def _elementwise(operator: str, left: Any, right: Any) -> Any:
 
 
 def arithmetic(operator: str, left: Any, right: Any) -> Any:
-    """A binary operation of numbers. Raises TypeError for anything else."""
+    """Return the result of a binary operation of numbers. Raises TypeError for anything else."""
     is_compared = operator in ("<", ">", "<=", ">=")
     if not _are_numbers(left, right) or (bool in (type(left), type(right)) and not is_compared):
         raise TypeError("only numbers can be calculated with")
@@ -118,7 +118,7 @@ def _are_numbers(*values: Any) -> bool:
 
 
 def text_of(value: Any) -> str:
-    """A value as URScript prints it."""
+    """Return a value as URScript prints it."""
     if isinstance(value, bool):
         return "True" if value else "False"
     if isinstance(value, UrPose):
@@ -129,7 +129,7 @@ def text_of(value: Any) -> str:
 def _given(
     task: Evaluation, node: ProgramNode, scope: RoutineScope, names: str
 ) -> Generator[Any, Any, dict[str, Any]]:
-    """The arguments of a call by their names; those that are not given are missing."""
+    """Return the arguments of a call by their names; those that are not given are missing."""
     values, named = yield from task.arguments(node, scope)
     order = names.split()
     if len(values) > len(order) or set(named) - set(order):
@@ -138,7 +138,7 @@ def _given(
 
 
 def _move(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
-    """movej, movel, movep: to a pose, or to joint angles."""
+    """Carry out movej, movel and movep: to a pose, or to joint angles."""
     given = yield from _given(task, node, scope, "pose a v t r")
     target = next((given.pop(name) for name in ("pose", "q") if name in given), None)
     yield from move_to(task, node, scope, target, given)
@@ -220,7 +220,7 @@ def _forward(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
 
 
 def _run(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
-    """``run thread()`` starts a task and gives its number."""
+    """Carry out ``run thread()``, which starts a task and gives its number."""
     call = node.parts[0]
     routine = task.find_routine(call.name, scope)
     if routine is None:
@@ -255,7 +255,7 @@ def _join(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
 
 
 def _signal(use: Callable[..., Any], name: str) -> Callable[..., Steps]:
-    """A function that does something with a signal ``name[n]``."""
+    """Return a function that does something with a signal ``name[n]``."""
 
     def call(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
         (number, *values), _ = yield from task.arguments(node, scope)
@@ -288,7 +288,7 @@ def _wrench(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Any:
 
 
 def _struct(task: Evaluation, node: ProgramNode, scope: RoutineScope) -> Steps:
-    """``struct(a=1)``: its components by name."""
+    """Carry out ``struct(a=1)``: its components by name."""
     _, named = yield from task.arguments(node, scope)
     return Structure.of("struct", named)
 

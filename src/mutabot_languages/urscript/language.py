@@ -13,7 +13,7 @@ from .parser import URScriptParser
 
 
 def _prepare(machine: Machine, task: ProgramTask) -> Steps:
-    """Routines of all files are known; other statements at the top are the program itself."""
+    """Declare the routines of all files; other statements at the top are the program itself."""
     for unit in machine.units:
         scope = RoutineScope(unit, "<module>")
         for node in unit.tree.bodies[0]:
@@ -23,7 +23,7 @@ def _prepare(machine: Machine, task: ProgramTask) -> Steps:
 
 
 def _main(machine: Machine, task: ProgramTask, routine: str) -> Steps:
-    """Statements at the top run as they stand; a file of functions alone runs its last without arguments."""
+    """Carry out the statements at the top; a file of functions alone runs its last without arguments."""
     if routine:
         yield from call_main(task, routine, [])
         return

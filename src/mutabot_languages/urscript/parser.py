@@ -209,5 +209,5 @@ class URScriptParser(StatementParser):
         return self.after(self.node("name", word, start), start)
 
     def number_of(self, word: str) -> int | float:
-        """The value of a number, which may be of hexadecimal or binary digits."""
+        """Return the value of a number, which may be of hexadecimal or binary digits."""
         return int(word, 0) if word[:2].lower() in ("0x", "0b") else super().number_of(word)

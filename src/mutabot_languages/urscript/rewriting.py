@@ -37,13 +37,13 @@ class UrRewriter(Rewriter):
     )
 
     def note_type(self, node: ProgramNode) -> None:
-        """A variable has the type of what it is assigned."""
+        """Give a variable the type of what it is assigned."""
         if node.kind == "assign" and node.parts[0].kind == "name":
             self.add_type(node.parts[0].name, self.kind_of(node.parts[1]))
         super().note_type(node)
 
     def kind_of(self, node: ProgramNode) -> str:
-        """A list of numbers is an array."""
+        """Return the type of an expression; a list of numbers is an array."""
         if node.kind == "pose" or (node.kind == "call" and node.name in _POSES):
             return "pose"
         if node.kind == "list" and node.parts and all(self.kind_of(part) == "number" for part in node.parts):
@@ -51,12 +51,12 @@ class UrRewriter(Rewriter):
         return super().kind_of(node)
 
     def is_amount(self, node: ProgramNode, parents: tuple[ProgramNode, ...]) -> bool:
-        """The first argument for a signal says which."""
+        """Return whether a number is an amount; the first argument for a signal says which."""
         call = parents[-1]
         return not (_SIGNAL.fullmatch(call.name) and call.parts[0] is node)
 
     def has_value(self, name: str, node: ProgramNode) -> bool:
-        """Whether an assignment stands before a node."""
+        """Return whether an assignment stands before a node."""
         return self._first_assigned.get(name, -1) < node.start
 
     @cached_property
@@ -71,20 +71,20 @@ class UrRewriter(Rewriter):
         return min((node.start for node in nodes if (node.kind, node.name) == ("empty", "label")), default=-1)
 
     def is_generated(self, node: ProgramNode, parents: tuple[ProgramNode, ...]) -> bool:
-        """Functions of URCaps, and what PolyScope writes before the program."""
+        """Return whether a node is a function of a URCap, or what PolyScope writes before the program."""
         if any(outer.kind == "routine" and outer.name.startswith(("rq_", "$")) for outer in (*parents, node)):
             return True
         return node.start < self._first_label and node.kind != "routine"
 
     def is_of_robot(self, node: ProgramNode) -> bool:
-        """Motions, outputs, pauses and settings."""
+        """Return whether a statement is a motion, output, pause or setting."""
         return node.kind == "call" and (
             node.name in _MOTIONS or bool(_OUTPUT.match(node.name)) or node.name in ("sleep", "set_tcp")
             or node.name.startswith(("rq_", "set_standard_analog", "set_tool_analog"))
         )  # fmt: skip
 
     def of_node(self, node: ProgramNode, parents: tuple[ProgramNode, ...]) -> Iterator[TextChange]:
-        """The differences that are about a call, an assignment of a pose, or a loop that waits."""
+        """Yield the differences that are about a call, an assignment of a pose, or a loop that waits."""
         if node.kind == "call":
             if self.is_of_robot(node) and self.is_statement(node, parents):
                 yield TextChange("drop-statement", node, self.without(node))
@@ -132,7 +132,7 @@ class UrRewriter(Rewriter):
             yield TextChange("change-blend", node, edits)
 
     def _swapped(self, node: ProgramNode) -> Iterator[TextChange]:
-        """The other motion, without acceleration and speed, whose units are others."""
+        """Yield the other motion, without acceleration and speed, whose units are others."""
         other = {"movej": "movel", "movel": "movej"}[node.name]
         kept = [node.parts[0], *(option for name, option in node.options.items() if name in ("r", "t"))]
         edits = (
@@ -164,13 +164,13 @@ class UrRewriter(Rewriter):
                 yield TextChange("other-input", node, self.put(number, other))
 
     def shifted(self, target: ProgramNode, axis: int, metres: float) -> tuple[Edit, ...] | None:
-        """A number of a literal, or a pose_trans around the target."""
+        """Return the edits of a number of a literal, or a pose_trans around the target."""
         if target.kind == "pose":
             return self._literal(target, axis, metres)
         return self._wrapped(target, axis, metres)
 
     def turned(self, target: ProgramNode, axis: int, degrees: float) -> tuple[Edit, ...] | None:
-        """A pose_trans around the target: a number of a rotation vector is no rotation."""
+        """Return a pose_trans around the target: a number of a rotation vector is no rotation."""
         return self._wrapped(target, axis + 3, math.radians(degrees))
 
     def _wrapped(self, target: ProgramNode, place: int, amount: float) -> tuple[Edit, ...] | None:

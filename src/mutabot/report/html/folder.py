@@ -99,7 +99,7 @@ def campaign_data(campaign: Results, name: str) -> dict[str, Any]:
 
 
 def sources_data(campaign: Results) -> list[Any]:
-    """The mutated files: name, text, and what is marked in it."""
+    """Return the mutated files: name, text, and what is marked in it."""
     return [[file, text, highlighting_of(file)] for file, text in campaign.sources.items()]
 
 

@@ -181,7 +181,7 @@ def _sentences(diverged: Diverged) -> Iterator[str]:
 
 
 def _checks(result: MutantResult, *, everything: bool) -> Iterator[Section]:
-    """The checks that let a survivor through in the most telling round and test, nearest to fail first."""
+    """Yield the checks that let a survivor through in its most informative test, nearest to fail first."""
     number, diverged = most_informative(result) or (0, None)
     outcome = result.rounds[number]
     if outcome is None or not result.is_survivor:
