@@ -142,7 +142,7 @@ def _trigger(task: ProgramTask, node: ProgramNode, scope: RoutineScope) -> Steps
 
 
 def trigger_watch(task: ProgramTask, points: list[Any], end: Frame) -> Callable[..., None]:
-    """Return a function that does what is due, to call in each tick of a motion to ``end``, and once after it."""
+    """Return a function that does what is due, to call in each tick of a motion to ``end``, and after it."""
     station = task.station
 
     def here() -> Frame:
