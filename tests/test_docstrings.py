@@ -1,4 +1,4 @@
-"""What docstrings list exists: a parameter or an attribute that is renamed takes its description along."""
+"""What docstrings list exists, and the first line of a function's says what it does."""
 
 from __future__ import annotations
 
@@ -16,6 +16,31 @@ SOURCE = Path(__file__).parents[1] / "src"
 #: a section, and each name in it: what stands four columns in, before a colon
 _SECTION = re.compile(r"^(?:Args|Attributes):\n((?:    .*\n?|\n)+)", re.MULTILINE)
 _NAMES = re.compile(r"^    (\*{0,2}\w+(?:, \*{0,2}\w+)*):", re.MULTILINE)
+
+#: words with which a noun phrase or a clause begins
+_NO_VERBS = {
+    "A", "All", "An", "Each", "How", "Its", "The", "These", "Those", "What", "When", "Where", "Whether", "Which",
+    "Who", "Why",
+}  # fmt: skip
+
+
+def test_the_first_line_of_a_function_says_what_it_does() -> None:
+    """Properties are values, so theirs say what they are."""
+    found = [
+        f"{file.relative_to(SOURCE)}:{node.lineno} {node.name}: {first}"
+        for file in sorted(SOURCE.rglob("*.py"))
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8")))
+        if isinstance(node, _Function) and not _is_value(node)
+        for first in (ast.get_docstring(node) or "").splitlines()[:1]
+        if first.partition(" ")[0] in _NO_VERBS
+    ]
+    assert found == []
+
+
+def _is_value(function: _Function) -> bool:
+    """Return whether a function is a property or sets one."""
+    names = [ast.unparse(decorator) for decorator in function.decorator_list]
+    return any("property" in name or name.endswith(".setter") for name in names)
 
 
 def test_docstrings_list_arguments_and_attributes_that_exist() -> None:
