@@ -19,8 +19,8 @@ _NAMES = re.compile(r"^    (\*{0,2}\w+(?:, \*{0,2}\w+)*):", re.MULTILINE)
 
 #: words with which a noun phrase or a clause begins
 _NO_VERBS = {
-    "A", "All", "An", "Each", "How", "Its", "The", "These", "Those", "What", "When", "Where", "Whether", "Which",
-    "Who", "Why",
+    "A", "All", "An", "Each", "How", "Its", "The", "These", "Those", "What", "When", "Where", "Whether",
+    "Which", "Who", "Why",
 }  # fmt: skip
 
 
