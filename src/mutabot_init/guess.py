@@ -156,7 +156,7 @@ def guess_argument(name: str, setting: NameContext) -> Guess:
     along = words[-1] if len(words) > 1 and words[-1] in ("x", "y", "z") else None
     if motion is not None:
         return _moved(motion[0], motion[1] or along, motion[2], unit, name, setting)
-    subject, is_only = noun_of(setting.words), len(setting.names - _HOW) <= 1
+    subject, is_only = _subject(setting), len(setting.names - _HOW) <= 1
     if noun in ("generic", "place", "") and subject in KINDS and is_only:
         noun = subject
     if noun in KINDS:
@@ -165,9 +165,15 @@ def guess_argument(name: str, setting: NameContext) -> Guess:
     return Guess()
 
 
+def _subject(setting: NameContext) -> str:
+    """Return what a callable is about, by the last word of its name: a time scaling is no time."""
+    words, _ = _without_unit(setting.words)
+    return noun_of(words) if words and words[-1] in NOUNS else ""
+
+
 def _by_verb(noun: str, stem: str, setting: NameContext) -> MotionMeaning | None:
     """Return kind, axis and mode if the callable's verb alone decides, whatever its only number is called."""
-    verb, subject = first(VERBS, setting.words), noun_of(setting.words)
+    verb, subject = first(VERBS, setting.words), _subject(setting)
     is_axis = _AXIS.fullmatch(stem) is not None
     is_vector = len({"x", "y", "z", "dx", "dy", "dz"} & setting.names) > 1
     if (noun in ("generic", "") or is_axis) and subject in SUBJECTS and verb is None:
@@ -240,7 +246,8 @@ def measured(table: TomlTable, dimension: str, unit: str | None, name: str, sett
     if dimension in _SCALED and "percent" in units_in(about, "ratio"):
         asked = [f"the unit: {', '.join(units)}, or a ratio in percent?"] if units else []
         return Guess({**table, "unit": units[0]} if units else {"kind": "ratio", "unit": "percent"}, asked)
-    if dimension == "time" and _COUNT.search(about):
+    is_letter = name == "t" and not units and first(VERBS, setting.words) != "duration"
+    if dimension == "time" and (_COUNT.search(about) or is_letter):
         return Guess({**table, "unit": "s"}, ["a time, in which unit (s, ms), or a number of steps?"])
     limits = _documented_range(about, setting) if dimension in _SCALED else None
     if limits is not None and limits[1] in _TOPS[1:]:

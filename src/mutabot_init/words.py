@@ -75,7 +75,7 @@ SETUP = _words(
 #: what lets a simulation go on, and what has such a clock
 STEPS = _words("step tick advance stepSimulation step_simulation")
 SIMULATORS = _words("sim simulation simulator world physics scene engine")
-TALK = _words("log comment print say show info warn warning debug error display event")
+TALK = _words("log logging comment print say show info warn warning debug error display event")
 #: what a connection, or what runs beside the program, is told and asked
 CONNECTION = _words("open close closed opened")
 RUNNING = _words("start stop")
@@ -90,7 +90,9 @@ SETTINGS = _words("max maximum min minimum default initial limit limits")
 #: what else than a participle tells a state
 STATES = _words("in at found held lost stuck contact ready busy")
 #: predicates of replies and of connections, which no sensor reads
-HOUSEKEEPING = _words("error ok success connected alive valid failed exception setup installed")
+HOUSEKEEPING = _words(
+    "error ok success connected alive valid failed exception setup installed reply response zero nan finite"
+)
 REPLIES = _words("response reply result error exception future pdu packet message status")
 #: what a person moves, and not the robot
 INPUTS = _words("joystick gamepad stick xbox keyboard mouse")

@@ -145,7 +145,7 @@ def test_degrees_are_a_unit_unless_they_are_of_freedom(text: str, expected: list
     [
         ("t: time in seconds", True),
         ("t: number of seconds to move", True),
-        ("", True),
+        ("", False),
         ("t: time vector or number of steps", False),
         ("t: number of points", False),
     ],

@@ -231,6 +231,23 @@ def test_a_truth_value_is_a_reading_where_its_name_is_a_state(name: str, is_stat
     assert (guess_reading(name, setting).table == {"kind": "flag"}) is is_state
 
 
+@pytest.mark.parametrize(
+    ("call", "expected"),
+    [
+        ("set_time_scaling", {}),
+        ("set_temperature_limit", {}),
+        ("set_temperature", {"kind": "temperature", "unit": "degC"}),
+    ],
+)
+def test_a_callable_is_about_the_last_word_of_its_name(call: str, expected: dict[str, str]) -> None:
+    assert guess_argument("p", NameContext(words_of(call), values=[1])).table == expected
+
+
+def test_a_letter_shows_a_time_only_beside_a_verb_that_waits() -> None:
+    assert guess_argument("t", NameContext(words_of("wait"), values=[1])).is_sure
+    assert not guess_argument("t", NameContext(words_of("set_rtc"), values=[1])).is_sure
+
+
 def test_what_may_be_a_text_is_no_quantity() -> None:
     assert guess_reading("voltage", NameContext(values=[1.5])).table == {"kind": "voltage", "unit": "V"}
     assert guess_reading("voltage", NameContext(values=["MIN", 1.5])).table == {}
