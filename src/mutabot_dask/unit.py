@@ -145,7 +145,7 @@ def _read(line: bytes, kinds: Mapping[str, tuple[type, ...]]) -> dict[str, Any]:
     try:
         found = json.loads(line.decode("utf-8"))
     except (ValueError, RecursionError) as error:
-        raise InvalidData(f"no JSON ({type(error).__name__}: {error})"[:_SHOWN]) from None
+        raise InvalidData(f"not JSON ({type(error).__name__}: {error})"[:_SHOWN]) from None
     if not isinstance(found, dict) or found.keys() != kinds.keys():
         raise InvalidData(f"an object with {', '.join(kinds)} was expected")
     for name, item in found.items():

@@ -20,7 +20,7 @@ def init(
     context: CommandContext,
     program: Annotated[
         list[Path] | None,
-        typer.Argument(metavar="[PROGRAM]...", help="Files or folders of the robot program."),
+        typer.Argument(metavar="PROGRAM", help="Files or folders of the robot program."),
     ] = None,
     template: tuple[str, Mapping[str, str]] | None = None,
 ) -> None:

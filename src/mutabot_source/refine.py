@@ -94,5 +94,5 @@ def _reason(alternative: Alternative, kinds: Iterable[str]) -> str | None:
     """Return why an alternative does not fit a place with values of these kinds; None if it does."""
     if alternative.fits(kinds):
         return None
-    text = " or ".join(kinds)
+    text = " or ".join(kind.removeprefix("builtins:") for kind in kinds)
     return f"its value is {text}, never {alternative.needs}" if text else "the type of its value was not seen"

@@ -26,7 +26,7 @@ from mutabot.results.results import MutantResult, Results
 
 _MUTANTS = "Numbers (3,16-20), ids, or unique parts of ids. Without any, list what is accepted."
 _WHY = "Why these may survive. It is written beside each of them."
-_Mutants = Annotated[list[str] | None, typer.Argument(metavar="[MUTANT]...", help=_MUTANTS)]
+_Mutants = Annotated[list[str] | None, typer.Argument(metavar="MUTANT", help=_MUTANTS)]
 _Why = Annotated[str, Option("--why", metavar="TEXT", help=_WHY)]
 
 

@@ -106,7 +106,7 @@ def _wanted(names: Sequence[str], files: Sequence[Path]) -> Iterator[tuple[Forma
     if len(files) > len(names) or (len(names) > 1 and len(files) < len(names)):
         raise UsageError(
             f"{len(names)} formats and {len(files)} files: each --format takes one --output, in the same "
-            "order; a single format goes to standard output without"
+            "order; without --output, a single format goes to standard output"
         )
     for name, given in zip_longest(names, files, fillvalue=_STANDARD):
         file = Path(given)

@@ -53,7 +53,7 @@ class Activity:
 
     @property
     def refusal(self) -> str | None:
-        """The robot's text of refusing a mutated call; None if it refused none."""
+        """The robot's message where it refused a mutated call; None if it refused none."""
         return self.refusals[-1].text if self.refusals else self.refusing_answer
 
 

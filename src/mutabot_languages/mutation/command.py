@@ -20,7 +20,7 @@ from .rules import BY_NAME, FAMILY
 _Words = Annotated[
     list[str] | None,
     typer.Argument(
-        metavar="[WORD]...", help="Only mutants in whose id all these words stand, such as a file's name."
+        metavar="WORD", help="Only mutants in whose id all these words stand, such as a file's name."
     ),
 ]
 _Folder = Annotated[Path, typer.Argument(metavar="DIR", help="The folder to write to; it must be empty.")]

@@ -589,3 +589,44 @@ def test_a_page_without_recordings_says_whether_the_campaign_has_any(
     assert page.get_by_text("Its recordings were not kept.").is_visible() == (not is_recorded)
     assert visit.wrong == []
     page.close()
+
+
+def headings(visit: Visit, mutant: int) -> list[str]:
+    """The headings of a mutant's page."""
+    visit.open(f"#/mutant/{mutant}")
+    return visit.page.locator("main h2").all_inner_texts()
+
+
+def test_a_mutant_that_no_test_reaches_is_told_so_once(browser: Any, tmp_path: Path) -> None:
+    ends = tuple(Outcome(samples.REVERSE.id, number, Verdict.NOT_COVERED) for number in range(2))
+    page = browser.new_page()
+    visit = Visit(page, reports.plain(tmp_path, outcomes=ends))
+    assert not {"What the robot did", "Checks that ran"} & {*headings(visit, samples.REVERSE.number)}
+    assert "What to do" in headings(visit, samples.REVERSE.number)
+    assert visit.wrong == []
+    page.close()
+
+
+def test_a_project_without_a_robot_has_no_view_of_what_it_did(browser: Any, tmp_path: Path) -> None:
+    mutants = tuple(
+        replace(mutant, operation="", family="conventional") for mutant in (samples.SKIP, samples.REVERSE)
+    )
+    ends = tuple(Outcome(mutant.id, number, Verdict.SURVIVED) for mutant in mutants for number in range(2))
+    page = browser.new_page()
+    visit = Visit(page, reports.plain(tmp_path, mutants=mutants, outcomes=ends))
+    assert "What the robot did" not in headings(visit, samples.REVERSE.number)
+    assert "rounds" in page.locator("p.under").inner_text()
+    assert visit.wrong == []
+    page.close()
+
+
+def test_code_in_what_an_operator_does_stands_as_code(browser: Any, tmp_path: Path) -> None:
+    page = browser.new_page()
+    operators = {"skip": "A command such as `lift/5` is not carried out."}
+    visit = Visit(page, reports.plain(tmp_path, operators=operators))
+    for address in ("#/operators", f"#/mutant/{samples.SKIP.number}"):
+        visit.open(address)
+        assert page.locator("small code").first.inner_text() == "lift/5"
+        assert "`" not in page.locator("main").inner_text()
+    assert visit.wrong == []
+    page.close()

@@ -106,11 +106,13 @@ const mutabot = (() => {
     return found;
   }
 
+  /** A text in which code stands between backticks, as in the terminal. */
+  const coded = (text) => text.split("`").map((part, index) => index % 2 ? h("code", null, part) : part);
   /** A name that may break after the signs that join its words. */
   const breakable = (name) => legible(name).split(/(?<=[_:/.])(?=[^_:/.])/).flatMap((part) => [part, h("wbr")]);
 
   /** What a page says where there is nothing to show. */
   const empty = (title, ...children) => h("div", { class: "empty" }, h("p", { class: "empty-title" }, title), h("p", null, children));
 
-  return { take, load, forget, taken: (name) => taken.get(name), h, svg, add, address, here, percent, between, count, number, amount, duration, say, ink, empty, legible, breakable, views };
+  return { take, load, forget, taken: (name) => taken.get(name), h, svg, add, address, here, percent, between, count, number, amount, duration, say, ink, empty, legible, breakable, coded, views };
 })();

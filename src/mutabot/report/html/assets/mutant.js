@@ -24,7 +24,7 @@
         upper || lower ? h("nav", { "aria-label": "Survivors beside this one in the source" }, h("span", null, "Survivors in the source:"),
           step(upper, upper && `↑ ${upper.number} in ${upper.place}`, "Shift+P"), step(lower, lower && `↓ ${lower.number} in ${lower.place}`, "Shift+N")) : null),
       h("h1", { tabindex: "-1" }, h("span", { class: "number" }, `${one.number} `), one.description),
-      h("p", { class: "under" }, marks.status(one.status), one.ends.length > 1 ? marks.ends(one.ends) : null, h("span", { class: "place" }, one.place, one.function ? ` in ${one.function}` : ""), h("span", null, `${one.operator} (${one.family}, ${one.role})`)),
+      h("p", { class: "under" }, marks.status(one.status), one.ends.length > 1 ? h("span", null, "rounds ", marks.ends(one.ends)) : null, h("span", { class: "place" }, one.place, one.function ? ` in ${one.function}` : ""), h("span", null, `${one.operator} (${one.family}, ${one.role})`)),
       h("p", { class: "story big" }, mutabot.breakable(one.why)));
     const holder = h("div", null, h("p", { class: "wait" }, "The mutant is being read …"));
     body.append(holder);
@@ -98,7 +98,7 @@
     const rows = [["id", h("code", null, page.id)],
       one.operation ? ["operation", one.operation + (page.pattern ? `, command ${mutabot.command(page.pattern)}` : "")] : null,
       one.operation ? ["quantity", one.quantity ? `${one.quantity}${page.meaning ? `: ${["kind", "axis", "unit", "frame"].map((name) => page.meaning[name]).filter(Boolean).join(", ")}` : ""}` : "the call as a whole"] : null,
-      ["operator", h("span", null, `${one.operator}${one.variant ? ` (${one.variant})` : ""}`, mutabot.campaign.operators[one.operator] ? h("small", null, mutabot.campaign.operators[one.operator]) : null)],
+      ["operator", h("span", null, `${one.operator}${one.variant ? ` (${one.variant})` : ""}`, mutabot.campaign.operators[one.operator] ? h("small", null, mutabot.coded(mutabot.campaign.operators[one.operator])) : null)],
       ["killed", `in ${one.killed} of ${count(one.valid, "valid round")}${page.kill_rate.interval ? `; 95 % interval ${between(page.kill_rate.interval)}` : ""}`],
       ["reached by", one.reach.length ? h("ul", { class: "plain" }, one.reach.slice(0, 6).map((test) => h("li", null, h("code", null, mutabot.breakable(mutabot.campaign.tests[test])))), one.reach.length > 6 ? h("li", null, `and ${one.reach.length - 6} more tests`) : null) : "no test"],
       one.earlier || one.outdated ? ["note", "some of these results are from an earlier campaign"] : null];
@@ -113,6 +113,8 @@
     const head = h("div", { class: "head" }, h("h2", { id: "robot" }, "What the robot did"));
     const section = h("section", { class: "robot", "aria-labelledby": "robot" }, head);
     if (!page.recordings.length) {
+      const isRobot = mutabot.campaign.mutants.some((each) => each.operation) || page.withoutRecordings || page.rounds.some((outcome) => outcome && outcome.diverged.length);
+      if (one.status === "not covered" || !isRobot) return { seen: "", events: "" };
       section.append(nothingRecorded(one, page));
       return { seen: section, events: "" };
     }
@@ -154,7 +156,6 @@
     if (page.rounds.some((outcome) => outcome && outcome.diverged.length)) return empty("Its recordings were not kept.", "There was no room for them (", h("code", null, "evidence"), " in the configuration sets it), or their file was deleted. ", h("code", null, `mutabot show ${one.number}`), " prints what they recorded.");
     if (one.indistinguishable) return empty("The robot did the same as in the original.", "Nothing that was recorded, read or returned differs; there are no two paths to show.");
     if (!one.valid && !["refused", "guarded"].includes(one.status)) return empty("Nothing to show.", `This mutant was not counted: ${marks.MEANING[one.status]}.`);
-    if (one.status === "not covered") return empty("No test runs this line.", "The fault was never executed. Add a test that runs this line.");
     const where = page.rounds.some((outcome) => outcome && outcome.divergence.length) ? "What differs otherwise is listed below, by round. " : "";
     if (!mutabot.campaign.recorded) return empty("Nothing was recorded in this campaign.", where, "Recording is off (", h("code", null, "evidence = 0"), " in the configuration), or the file of recordings was deleted.");
     return empty("No recorded command, reading or movement differs.", where, feed());
@@ -255,10 +256,9 @@
   function looked(one, page) {
     const section = h("section", { "aria-labelledby": "looked" }, h("h2", { id: "looked" }, "Checks that ran"));
     const outcome = page.rounds.find((each) => each && each.looked.length);
-    if (!one.survives && one.status !== "accepted") return "";
+    if ((!one.survives && one.status !== "accepted") || one.status === "not covered") return "";
     if (!outcome) {
-      section.append(one.status === "not covered" ? empty("No test ran it.", "Add a test that runs this line first.")
-        : empty("It is not known what the tests checked.", "Checks are seen where pytest rewrites assertions; this journal holds none for this mutant."));
+      section.append(empty("It is not known what the tests checked.", "Checks are seen where pytest rewrites assertions; this journal holds none for this mutant."));
       return section;
     }
     section.append(h("p", { class: "hint" }, `Round ${outcome.round}: each check, the values that it compared or was passed, and by how much it held. Checks that ran before the tests' process reached the fault are not listed.`));
@@ -286,10 +286,7 @@
   function suggestion(page) {
     const found = page.suggestion;
     if (!found && !page.next) return "";
-    if (!found) { // commands stand between backticks, as in the terminal
-      const parts = page.next.split("`").map((part, index) => index % 2 ? h("code", null, part) : part);
-      return h("section", { "aria-labelledby": "suggestion" }, h("h2", { id: "suggestion" }, "What to do"), h("p", null, parts));
-    }
+    if (!found) return h("section", { "aria-labelledby": "suggestion" }, h("h2", { id: "suggestion" }, "What to do"), h("p", null, mutabot.coded(page.next)));
     return h("section", { class: "suggestion", "aria-labelledby": "suggestion" }, h("h2", { id: "suggestion" }, "A check that would catch it"), found.test ? h("p", null, "In ", h("code", null, found.test), ":") : null,
       h("pre", { tabindex: "0" }, h("code", null, found.code)), h("ul", { class: "plain" }, (found.notes || []).map((note) => h("li", null, note))));
   }

@@ -30,7 +30,7 @@
     const killed = ["C", "X", "T"].reduce((sum, letter) => sum + (row.letters[letter] || 0), 0);
     const valid = killed + ["S", "N"].reduce((sum, letter) => sum + (row.letters[letter] || 0), 0);
     return h("tr", null,
-      h("th", { scope: "row" }, h("a", { href: address(["mutants"], { operator: row.operator, role: row.role }) }, row.operator), h("small", null, `${row.family}${campaign.operators[row.operator] ? `: ${campaign.operators[row.operator]}` : ""}`)),
+      h("th", { scope: "row" }, h("a", { href: address(["mutants"], { operator: row.operator, role: row.role }) }, row.operator), h("small", null, row.family, campaign.operators[row.operator] ? [": ", mutabot.coded(campaign.operators[row.operator])] : null)),
       h("td", null, row.role), h("td", { class: "n" }, row.mutants), h("td", { class: "n" }, valid ? percent(killed / valid, 0) : "–"),
       used.map((letter) => {
         const found = row.letters[letter] || 0;
