@@ -376,19 +376,18 @@ def _summary(found: _Findings, questions: int) -> list[str]:
     if names:
         how = "as what they stand for, or by name for any object that has it"
         lines.append(f"seen on mocks or fakes, proposed {how}: {', '.join(names)}")
+    written = " and ".join([CONFIGURATION, *([VOCABULARY] if found.needs_vocabulary else [])])
+    again = f"If another file is the program, remove {written}, and run `mutabot init FILE…`"
     if found.layout.guessed and found.makes_no_call and found.calls:
-        written = " and ".join([CONFIGURATION, *([VOCABULARY] if found.needs_vocabulary else [])])
-        return [
-            *lines,
-            "next: no test runs a call of the guessed program. If another file is the program, remove "
-            f"{written}, and run `mutabot init FILE…`",
-        ]
+        return [*lines, f"next: no test runs a call of the guessed program. {again}"]
     if not found.is_empty:
         answer = f"answer the questions in {VOCABULARY}, then " if questions else ""
         return [*lines, f"next: {answer}`mutabot check`, `mutabot list`, `mutabot run`"]
     by_hand = "describe the robot by hand (docs/vocabulary.md)"
     if not found.makes_no_call:
-        return [*lines, f"next: none of these calls looks like one of a robot or a device: {by_hand}"]
+        none = "none of these calls looks like one of a robot or a device"
+        other = f". {again}; else {by_hand}" if found.layout.guessed else f": {by_hand}"
+        return [*lines, f"next: {none}{other}"]
     tests = " ".join(found.run.tests) or "tests"
     return [
         *lines,
