@@ -196,3 +196,51 @@ def test_functions_that_tests_replace_are_not_those_that_tell_of_them(tmp_path: 
     folder = write_project(tmp_path, mission, REPLACING.format(names=REPLACED))
     found = run(folder, engine=engine, only=("skip", "repeat"))
     assert {outcome.verdict for outcome in found.values()} == {Verdict.SURVIVED}
+
+
+PLACEHOLDERS = """
+    from unittest import mock
+
+    import mission
+    from robot import Arm
+
+    def test_that_hands_on_what_nobody_looks_into():
+        arm = mock.create_autospec(Arm, instance=True)
+        arm.where.return_value = mock.sentinel.there
+        assert mission.go(arm, mock.sentinel.pose, "fast") is mock.sentinel.there
+        arm.go_to.assert_called_once_with(mock.sentinel.pose, mode="fast")
+
+    def test_a_text_in_the_place_of_a_pose():
+        arm = mock.Mock(spec=Arm)
+        mission.go(arm, "POSE", object())
+        assert arm.mock_calls[0].args == ("POSE",)
+"""
+
+
+def test_a_mock_may_be_given_what_the_vocabulary_does_not_describe(tmp_path: Path) -> None:
+    robot = """
+        class Arm:
+            def go_to(self, pose, mode="by"):
+                self.x = pose.x
+
+            def where(self):
+                return self
+    """
+    mission = """
+        def go(arm, pose, mode):
+            arm.go_to(pose, mode=mode)
+            return arm.where()
+    """
+    vocabulary = """
+        [[operation]]
+        call = "robot:Arm.go_to"
+        arguments."pose.x" = { kind = "translation", axis = "x", unit = "m", mode = \
+{ argument = "mode", by = "by", to = "to" } }
+
+        [[operation]]
+        call = "robot:Arm.where"
+        result.".x" = { kind = "position", axis = "x", unit = "m" }
+    """
+    project = write_project(tmp_path, mission, PLACEHOLDERS, robot=robot, vocabulary=vocabulary)
+    found = {result.mutant.rpartition(":")[2]: result.verdict for result in run(project).values()}
+    assert found == {"repeat": Verdict.KILLED, "skip": Verdict.KILLED}

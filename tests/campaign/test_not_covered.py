@@ -239,3 +239,55 @@ def test_where_another_text_runs_it_is_not_said_that_no_test_reaches_a_call(tmp_
     assert {call.doubt for call in results.untested.doubtful_calls} == {
         "the code that runs is not compiled from this file's text"
     }
+
+
+def test_a_call_that_is_none_of_the_commands_is_reached_all_the_same(tmp_path: Path) -> None:
+    robot = """
+        class Gripper:
+            def __init__(self, name):
+                self.name, self.told = name, []
+
+            def close(self):
+                self.told.append("close")
+
+            def send(self, command):
+                self.told.append(command)
+    """
+    mission = """
+        def run(left, right):
+            left.close()
+            right.close()
+            for word in ("lift 1", "status"):
+                left.send(word)
+            right.send("status" if right.told else "lift 2")
+
+        def first(hand):
+            hand.close()
+
+        def second(hand):
+            hand.close()
+    """
+    tests = """
+        import mission
+        from robot import Gripper
+
+        def test_run():
+            left, right = Gripper("left"), Gripper("right")
+            mission.run(left, right)
+            assert right.told == ["close", "status"]
+            mission.first(left)
+            mission.second(right)
+    """
+    vocabulary = """
+        [[operation]]
+        call = "robot:Gripper.close"
+        when = { argument = "self.name", value = "left" }
+
+        [[operation]]
+        call = "robot:Gripper.send"
+        message = "command"
+        patterns = [{ text = "lift {height:g}", kind = "translation", axis = "z", unit = "cm", mode = "by" }]
+    """
+    folder = write_project(tmp_path, mission, tests, robot=robot, vocabulary=vocabulary)
+    untested = check(request_for(folder), Quiet()).data["untested"]
+    assert (untested["unreached_calls"], untested["doubtful_calls"]) == ([], [])

@@ -257,10 +257,12 @@ class CallsAsked(Event):
     Attributes:
         files: files whose calls of an operation's name are asked about, relative to the root.
         alone: of these calls, where something stood that is no operation.
+        unmeant: where an operation's callable was called for none of its commands.
     """
 
     files: tuple[str, ...]
     alone: tuple[Span, ...] = ()
+    unmeant: tuple[Span, ...] = ()
 
 
 @frozen

@@ -445,7 +445,8 @@ class Session:
     def intercepted_calls(self) -> CallsAsked:
         """Return which calls were intercepted until now, and which replacements were called."""
         files = sorted(map(self.locator.relative, self.call_sites.asked))
-        return CallsAsked(tuple(files), tuple(sorted(self.call_targets.alone)))
+        alone, unmeant = sorted(self.call_targets.alone), sorted(self.dispatcher.unmeant)
+        return CallsAsked(tuple(files), tuple(alone), tuple(unmeant))
 
     def inspect_targets(self) -> None:
         """Check every target of the vocabulary, including those that no test has reached."""

@@ -41,7 +41,7 @@ class _OriginalCode:
     """The code that the runs of the original have shown: executed units, imported files and sites.
 
     Attributes:
-        sites: where calls of operations were made.
+        sites: where calls of operations were made, or of their callables for no command of theirs.
         alone: where something else stood that has an operation's name.
         asked: files in which all calls of such names are asked about.
         imported: files that were imported, as far as that is known.
@@ -59,6 +59,7 @@ class _OriginalCode:
         results = list(results)
         sites = [site.span for result in results for site in result.sites]
         asked = [event for result in results for event in result.asked]
+        sites += [span for event in asked for span in event.unmeant]
         executed = together(end.executed for result in results for end in result.ends)
         imported = {file for result in results if result.seen for file in result.seen.imported}
         files = {file for event in asked for file in event.files}

@@ -251,7 +251,7 @@ class Adapter:
         try:
             invocation.message = path.get(start) if start is not None else None
         except PathError as error:
-            self.on_problem("message", error)
+            self._does_not_fit("message", error, invocation.where)
             return
         if invocation.message is not None:
             invocation.text = _text(invocation.message)
@@ -297,12 +297,14 @@ class Adapter:
 
     def _values(self, quantities: tuple[Quantity, ...], invocation: Invocation) -> dict[str, Value]:
         starts = [(quantity, invocation.get(quantity.path.root or "")) for quantity in quantities]
-        return self._read([pair for pair in starts if pair[1] is not None], "arguments")
+        return self._read([pair for pair in starts if pair[1] is not None], "arguments", invocation.where)
 
-    def _read_result(self, quantities: tuple[Quantity, ...], result: Any) -> dict[str, Value]:
-        return self._read([(quantity, result) for quantity in quantities], "result")
+    def _read_result(
+        self, quantities: tuple[Quantity, ...], result: Any, where: Where = NOWHERE
+    ) -> dict[str, Value]:
+        return self._read([(quantity, result) for quantity in quantities], "result", where)
 
-    def _read(self, quantities: list[tuple[Quantity, Any]], key: str) -> dict[str, Value]:
+    def _read(self, quantities: list[tuple[Quantity, Any]], key: str, where: Where) -> dict[str, Value]:
         """Read quantities, each from the object at which its path begins."""
         values: dict[str, Value] = {}
         for quantity, start in quantities:
@@ -312,7 +314,7 @@ class Adapter:
                     continue  # it is no value, and to look at it would be to call it
                 value = quantity.of(found)
             except Exception as error:  # objects of the user's may do anything when they are looked at
-                self.on_problem(f"{key}.{quantity.name}", _unread(quantity, error))
+                self._does_not_fit(f"{key}.{quantity.name}", _unread(quantity, error), where)
                 continue
             if value is UNKNOWN:
                 self.on_problem(f"{key}.{quantity.name}", _strange_value_error(quantity, found))
@@ -338,7 +340,13 @@ class Adapter:
             found = _names(invocation, argument)
             if not set(found) & set(known):
                 text = f"{argument} is {found[-1]}, which `mode` does not list; it lists {', '.join(known)}"
-                self._report_problem("mode", text)
+                self._does_not_fit("mode", PathError(text), invocation.where)
+
+    def _does_not_fit(self, key: str, error: PathError, where: Where) -> None:
+        """Report what the vocabulary does not describe; a mock or a fake may be given anything."""
+        if where.stands_in:
+            error = StrangeValueError(f"{error}; a mock or a fake got it, so it is left as it is")
+        self.on_problem(key, error)
 
     def _report_problem(self, key: str, text: str) -> None:
         self.on_problem(key, PathError(text))
@@ -388,7 +396,7 @@ class Adapter:
         """Return the reply as operators see it."""
         self._check_result(call.payload, result)
         meant = call.pattern if call.pattern is not None else self.operation
-        values = self._read_result(meant.result, result)
+        values = self._read_result(meant.result, result, call.payload.where)
         if self.remembers and call.is_command:
             self._remember(call, result)
         if self.operation.named is not None:

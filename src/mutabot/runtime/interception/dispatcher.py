@@ -107,6 +107,8 @@ class Dispatcher:
         refused: the calls of the running test that the robot refuses in the original.
         given: where functions of the robot were handed on, for calls that no frame shows.
         calls: how often each site has been called in the running test, by operation and pattern.
+        unmeant: where a callable was called that is an operation, but for none of its commands; noted only
+            in the baseline.
     """
 
     locator: Locator
@@ -124,6 +126,7 @@ class Dispatcher:
     refused: RefusedCalls = field(default_factory=RefusedCalls)
     given: dict[Adapter, CallPlace | None] = field(default_factory=dict)
     calls: Counter[tuple[Span, str, str | None]] = field(default_factory=Counter)
+    unmeant: set[Span] = field(default_factory=set)
 
     def handler(self, adapter: Adapter) -> Handler:
         """Return the handler for an operation."""
@@ -237,6 +240,8 @@ class Dispatcher:
             # 1. The adapter reads which command it is, and the values it writes.
             call = adapter.to_call(invocation)
             if call.pattern is None and adapter.operation.is_partial:  # none of the calls that are meant
+                if self.recorder.answers is not None:
+                    self.unmeant.add(site[0])
                 if invocation.values is None and adapter.operation.signature is not None:  # or not known
                     return (await self._perform(adapter, SiteCall(site, call, 0, is_async))).payload
                 if adapter.guard is not None:
