@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import vision
-from station import BIN, STAND, STAND_TOP, TRAY_TOP
+from station import BIN, STAND, STAND_TOP, TRAY_TOP, TRAYS
 from vision import Face
 
 from mutabot_cell import Cell, MotionRefused, Pose
@@ -23,8 +23,6 @@ OVER_BIN, ASIDE = (0, 15, 180, -95, 0, -70, 90), (60, 15, 180, -95, 0, -70, 90)
 """Joint angles, degrees: the cup looks down above the bin; and beside it, out of the camera's sight."""
 HIGH = 0.25
 """At this height of the cup no part that it holds touches anything, m."""
-TRAYS = {"plate": (0.45, -0.36), "cube": (0.21, -0.36), "nut": (0.21, 0.36)}
-"""The middle of the tray of each shape; base frame, m."""
 COLUMNS, ROWS, ACROSS, ALONG = 2, 3, 0.09, 0.075
 """Of the places in a tray: how many, and how far apart, m."""
 PRESS = (0.004, 0.008)
@@ -104,25 +102,30 @@ def grasp(cell: Cell, face: Face) -> bool:
     place, axis = np.array([face.x, face.y, face.z - BASE_HEIGHT]), face.normal
     turn = orientation(axis)
     above = place + APPROACH * axis
+    way = Pose(above[0], above[1], HIGH, *DOWN), Pose(*above.tolist(), *turn)
     held = False
     cell.arm.move_joints(OVER_BIN)
     cell.suction.on()
     try:
-        cell.arm.move_to(Pose(above[0], above[1], HIGH, *DOWN))
-        cell.arm.move_to(Pose(*above.tolist(), *turn))
+        for pose in way:
+            cell.arm.move_to(pose)
         for depth in PRESS:
             cell.arm.move_to(Pose(*(place - depth * axis).tolist(), *turn))
             held = wait_until(cell, cell.suction.holding, VACUUM_WITHIN)
             if held:
                 break
+        if held:
+            cell.arm.move_by(z=TRIAL_LIFT)
+            held = cell.suction.holding()
     except MotionRefused:
         held = False
-    if held:
-        cell.arm.move_by(z=TRIAL_LIFT)
-        held = cell.suction.holding()
     if not held:
         cell.suction.off()
-    cell.arm.move_by(z=HIGH - cell.arm.commanded_pose().z)
+    try:
+        cell.arm.move_by(z=HIGH - cell.arm.commanded_pose().z)
+    except MotionRefused:  # so tilted it does not get up there: back the way that it came
+        for pose in reversed(way):
+            cell.arm.move_to(pose)
     return held and cell.suction.holding()
 
 
@@ -204,8 +207,7 @@ def lower(cell: Cell, x: float, y: float, top: float) -> float | None:
     cell.arm.move_to(Pose(x, y, HIGH, *DOWN))
     cell.force_sensor.zero()
     cell.arm.move_to(Pose(x, y, TABLE + top + LONGEST, *DOWN))
-    held = cell.suction.holding()
-    if not (held and cell.arm.move_until_contact(z=-SEARCH, force=TOUCH, speed=SPEED)):
+    if not (cell.suction.holding() and cell.arm.move_until_contact(z=-SEARCH, force=TOUCH, speed=SPEED)):
         return None
     return cell.arm.commanded_pose().z - TABLE - top + YIELD
 

@@ -14,6 +14,8 @@ BASE_HEIGHT, TABLE_TOP = 0.9, 1.0
 """Of the robot's base and of the table above the floor, m."""
 BIN, BIN_SIZE, BIN_DEPTH, SHEET = (0.43, 0.0), (0.26, 0.36), 0.07, 0.01
 """Where the middle of the bin is, its inner size and its depth, and the thickness of its sheets, m."""
+BOTTOM, RIM = TABLE_TOP + SHEET, TABLE_TOP + BIN_DEPTH
+"""Heights of its bottom and its rim above the floor, m."""
 TRAYS = {"plate": (0.45, -0.36), "cube": (0.21, -0.36), "nut": (0.21, 0.36)}
 """The middle of the tray of each shape, m."""
 TRAY_SIZE, TRAY_TOP = (0.22, 0.24), 0.01

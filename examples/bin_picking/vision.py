@@ -10,20 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from station import (
-    BIN,
-    BIN_DEPTH,
-    BIN_SIZE,
-    CUBE,
-    CUP,
-    NUT,
-    PLATE,
-    SHEET,
-    STAND,
-    STAND_SIZE,
-    STAND_TOP,
-    TABLE_TOP,
-)
+from station import BIN, BIN_SIZE, BOTTOM, CUBE, CUP, NUT, PLATE, RIM, STAND, STAND_SIZE, STAND_TOP, TABLE_TOP
 
 from mutabot_cell.depth_camera import DepthPicture
 from mutabot_cell.geometry import Array
@@ -133,18 +120,18 @@ def order(face: Face) -> tuple[bool, bool, bool, float]:
 
 
 def locate_on_stand(picture: DepthPicture) -> Face | None:
-    """The face of the part on the stand; None if nothing lies there."""
+    """The face on top of the part on the stand, beside which nothing is higher; None if there is none."""
     off = np.abs(picture.points[..., :2] - STAND).max(axis=-1)
     high = picture.points[..., 2] - TABLE_TOP - STAND_TOP
     found = faces(picture.points, (off < STAND_SIZE / 2) & (high > BOTTOM_WITHIN))
-    return max(found, key=lambda face: face.z, default=None)
+    return max(found, key=lambda face: (face.is_clear, face.shape != "unknown", face.z), default=None)
 
 
 def in_bin(points: Array) -> Array:
     """Which points of a picture, shape (rows, columns, 3), lie in the bin and above its bottom."""
     off = np.abs(points[..., :2] - BIN)
     inside: Array = (off < np.array(BIN_SIZE) / 2 - 0.001).all(axis=-1)
-    return inside & (points[..., 2] > TABLE_TOP + SHEET + BOTTOM_WITHIN)
+    return inside & (points[..., 2] > BOTTOM + BOTTOM_WITHIN)
 
 
 def faces(points: Array, chosen: Array) -> Iterator[Face]:
@@ -266,7 +253,7 @@ def is_free(face: Face, points: Array) -> bool:
     for up in np.arange(0.0, 0.12, 0.01):
         x, y, z = place + up * axis
         radius = (STEM if up < SHORT else HOUSING) + CLEARANCE
-        low = z - radius * math.hypot(*axis[:2]) < TABLE_TOP + BIN_DEPTH + CLEARANCE
+        low = z - radius * math.hypot(*axis[:2]) < RIM + CLEARANCE
         if low and (np.abs((x - BIN[0], y - BIN[1])) + radius > np.array(BIN_SIZE) / 2).any():
             return False
     return True
