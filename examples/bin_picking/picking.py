@@ -70,10 +70,11 @@ def run(cell: Cell) -> Report:
     presses = 0
     while not report.result:
         picture = look(cell)
-        face = vision.locate(picture, avoided)
-        if vision.is_empty(picture):
+        face = vision.locate_on_stand(picture) or vision.locate(picture, avoided)
+        nothing_in_bin = vision.is_empty(picture)
+        if face is None and nothing_in_bin:
             report.result = "empty"
-        elif (face is None or len(avoided) == MOST_FAILURES) and presses == MOST_PRESSES:
+        elif (face is None or len(avoided) == MOST_FAILURES) and (presses == MOST_PRESSES or nothing_in_bin):
             report.result = "nothing graspable"
         elif face is None or len(avoided) == MOST_FAILURES:
             press(cell, *vision.highest(picture))

@@ -106,10 +106,10 @@ def locate(picture: DepthPicture, avoided: Sequence[tuple[float, float]] = ()) -
 
 
 def highest(picture: DepthPicture) -> tuple[float, float, float]:
-    """The highest place in the bin, but where the cup would touch a wall there, beside it; world frame, m."""
+    """The highest place in the bin, but where the tool would touch a wall, beside it; world frame, m."""
     points = picture.points[in_bin(picture.points)]
     x, y, z = points[np.argmax(points[:, 2])].tolist()
-    reach = [edge / 2 - STEM - 2 * CLEARANCE for edge in BIN_SIZE]
+    reach = [edge / 2 - HOUSING - 2 * CLEARANCE for edge in BIN_SIZE]
     x, y = (min(max(at, mid - far), mid + far) for at, mid, far in zip((x, y), BIN, reach, strict=True))
     return x, y, z
 
