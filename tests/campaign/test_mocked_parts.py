@@ -244,3 +244,41 @@ def test_a_mock_may_be_given_what_the_vocabulary_does_not_describe(tmp_path: Pat
     project = write_project(tmp_path, mission, PLACEHOLDERS, robot=robot, vocabulary=vocabulary)
     found = {result.mutant.rpartition(":")[2]: result.verdict for result in run(project).values()}
     assert found == {"repeat": Verdict.KILLED, "skip": Verdict.KILLED}
+
+
+ITEMS_OF_MOCKS = """
+    from unittest import mock
+
+    import mission
+    from robot import Arm
+
+    def test_that_looks_at_all_calls_of_a_mock():
+        arm, path = mock.MagicMock(spec=Arm), mock.MagicMock()
+        mission.go(arm, path)
+        assert arm.mock_calls == [mock.call.follow(path), mock.call.log("done")]
+        assert path.mock_calls == []
+"""
+
+
+def test_a_path_asks_a_mock_for_no_item_which_would_be_a_call_of_it(tmp_path: Path) -> None:
+    robot = """
+        class Arm:
+            def follow(self, path):
+                self.x = path[-1]
+
+            def log(self, text):
+                return text
+    """
+    mission = """
+        def go(arm, path):
+            arm.follow(path)
+            arm.log("done")
+    """
+    vocabulary = """
+        [[operation]]
+        call = "robot:Arm.follow"
+        arguments."path[-1]" = { kind = "translation", axis = "x", unit = "m", mode = "to" }
+    """
+    project = write_project(tmp_path, mission, ITEMS_OF_MOCKS, robot=robot, vocabulary=vocabulary)
+    found = {result.mutant.rpartition(":")[2]: result.verdict for result in run(project).values()}
+    assert found == {"repeat": Verdict.KILLED, "skip": Verdict.KILLED}

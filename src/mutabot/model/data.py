@@ -1,9 +1,8 @@
 """Read values of the user's program as plain data, without running any of its code.
 
 What is looked at is recognized by its class alone: the plain ones of Python and of its standard library,
-    arrays and
-numbers of numpy, and subclasses of these by what they are made of. What else an object may be, such as a
-quantity with a unit, a proxy or a mock, is not looked into: to ask it may do anything.
+arrays and numbers of numpy, and subclasses of these by what they are made of. What else an object may be,
+such as a quantity with a unit, a proxy or a mock, is not looked into: to ask it may do anything.
 """
 
 from __future__ import annotations
@@ -50,6 +49,12 @@ def is_of_numpy(value: Any) -> bool:
 def is_scalar_of_numpy(value: Any) -> bool:
     """Return whether a value is a scalar of numpy, which cannot be changed, without importing numpy."""
     return is_of_numpy(value) and type(value).__name__ != "ndarray"
+
+
+def is_mock(value: Any, kind: str = "NonCallableMock") -> bool:
+    """Return whether a value is a mock of a class of ``unittest.mock``, whatever class it claims to have."""
+    module = sys.modules.get("unittest.mock")
+    return module is not None and issubclass(type(value), getattr(module, kind))
 
 
 def is_textual(value: Any) -> bool:

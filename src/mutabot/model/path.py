@@ -22,7 +22,7 @@ from typing import Any
 
 from mutabot.errors import PathError, error_text, nearest_name, text_of
 from mutabot.frozen import frozen
-from mutabot.model.data import is_scalar_of_numpy, is_unchangeable
+from mutabot.model.data import is_mock, is_scalar_of_numpy, is_unchangeable
 from mutabot.model.enumeration import is_member
 
 _STEP = re.compile(r"\.(?P<attribute>[^\W\d]\w*)|\[(?P<item>[^\[\]]*)\]")
@@ -94,9 +94,12 @@ class Path:
     def get(self, value: Any) -> Any:
         """Return the value at the end of the steps, starting at ``value``.
 
+        A mock on the way is returned itself if the next step is an item: to read that is a call of the mock.
         Raises PathError if a step does not fit.
         """
         for step in self.steps:
+            if step.attribute is None and is_mock(value):
+                return value
             value = self._advance(value, step)
         return value
 

@@ -23,7 +23,7 @@ from typing import Any, Protocol
 from mutabot.errors import PathError, StrangeValueError, error_text
 from mutabot.model import Call, Operation, Path, Pattern, Quantity, Reply, Unchanged, Vocabulary
 from mutabot.model.answer import keep, restore
-from mutabot.model.data import UNKNOWN, is_of_numpy, is_textual
+from mutabot.model.data import UNKNOWN, is_mock, is_of_numpy, is_textual
 from mutabot.model.enumeration import is_member, name_of
 from mutabot.model.notation import Notation
 from mutabot.model.operation import Form
@@ -310,7 +310,7 @@ class Adapter:
         for quantity, start in quantities:
             try:
                 found = quantity.path.get(start)
-                if "unittest.mock" in sys.modules and is_mock(found):
+                if is_mock(found):
                     continue  # it is no value, and to look at it would be to call it
                 value = quantity.of(found)
             except Exception as error:  # objects of the user's may do anything when they are looked at
@@ -598,9 +598,3 @@ def _strange_value_error(quantity: Quantity, found: Any) -> StrangeValueError:
     what = f"{path or 'the result'} is of {kind}, which is not plain data, so its value is left as it is"
     part = next((name for name in ("x", "y", "z") if hasattr(type(found), name)), "magnitude")
     return StrangeValueError(f"{what}; describe the part of it that is a number, such as {path}.{part}")
-
-
-def is_mock(value: Any, kind: str = "NonCallableMock") -> bool:
-    """Return whether a value is a mock of a class of ``unittest.mock``, whatever class it claims to have."""
-    module = sys.modules.get("unittest.mock")
-    return module is not None and issubclass(type(value), getattr(module, kind))

@@ -10,11 +10,14 @@ import inspect
 from collections.abc import Callable, Coroutine, Generator
 from contextvars import ContextVar
 from types import FunctionType, coroutine
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from mutabot.runtime.interception.adapter import Caller, is_mock
+from mutabot.model.data import is_mock
 from mutabot.runtime.interception.frames import from_here
 from mutabot.runtime.targets.wrapper import unbound
+
+if TYPE_CHECKING:
+    from mutabot.runtime.interception.adapter import Caller
 
 #: the class of mocks of coroutine functions, and what runs when one is called
 ASYNC_MOCK, _MOCKS_CALL = "AsyncMockMixin", "_execute_mock_call"

@@ -23,11 +23,12 @@ from typing import TYPE_CHECKING, Any
 from mutabot.extensions import packages
 from mutabot.model import Call, Reply, Role, Span
 from mutabot.model.activation import Activation, Key
+from mutabot.model.data import is_mock
 from mutabot.model.operation import Form
 from mutabot.model.quantity import Value
 from mutabot.operators.middleware import Carried, run
 from mutabot.runtime.interception.active_mutant import MutatedSite, RefusedCalls
-from mutabot.runtime.interception.adapter import Adapter, Caller, Invocation, SiteCall, is_mock
+from mutabot.runtime.interception.adapter import Adapter, Caller, Invocation, SiteCall
 from mutabot.runtime.interception.coroutines import (
     ASYNC_MOCK,
     called,

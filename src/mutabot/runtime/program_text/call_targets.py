@@ -44,10 +44,11 @@ import wrapt
 
 from mutabot.languages.python import function_of
 from mutabot.model import ANY, Operation, Role, Span
+from mutabot.model.data import is_mock
 from mutabot.model.path import class_name
 from mutabot.model.signature import signature_of
 from mutabot.runtime.executed_text import file_of
-from mutabot.runtime.interception.adapter import Adapter, is_mock
+from mutabot.runtime.interception.adapter import Adapter
 from mutabot.runtime.interception.dispatcher import is_coroutine_function, is_untracked
 from mutabot.runtime.interception.frames import ModuleCache, borders
 from mutabot.runtime.interception.trace import Locator
