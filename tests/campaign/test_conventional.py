@@ -501,3 +501,46 @@ def test_text_whose_tests_fail_while_it_is_looked_at_is_named_and_not_mutated(
     assert {mutant.family for mutant in mutants} == {"robot"}
     reasons = {omission.reason for omission in left_out if "mission.py" in omission.id}
     assert "tests fail while mutabot looks which values its text has" in reasons
+
+
+def test_functions_of_the_robot_are_no_variables_whether_or_not_a_vocabulary_names_them(
+    tmp_path: Path,
+) -> None:
+    robot = """
+        def close():
+            return 1
+
+        def open():
+            return 2
+
+        def unnamed():
+            return 3
+    """
+    mission = """
+        from robot import close, open, unnamed
+
+        def call(function):
+            return function()
+
+        def work(first, second):
+            third = unnamed
+            result = call(first) + call(second) + call(third)
+            return result
+    """
+    tests = """
+        import mission
+        import robot
+
+        def test_work():
+            assert mission.work(robot.close, robot.open) == 6
+    """
+    vocabulary = "".join(f'[[operation]]\ncall = "robot:{name}"\n' for name in ("close", "open"))
+    found = []
+    for number, described in enumerate((vocabulary, '[[operation]]\ncall = "robot:unnamed"\n')):
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        project = write_project(folder, mission, tests, robot=robot, vocabulary=described)
+        planned = plan_only(request_for(project, families=("conventional",)), Quiet())
+        found.append(sorted(mutant.id for mutant in planned.mutants))
+    assert found[0] == found[1]
+    assert not any(":SVR:" in name or "→ second" in name for name in found[0])

@@ -283,12 +283,20 @@ def kind_of(value: Any) -> str:
         return "integer"
     if issubclass(kind, numbers.Number):
         return "number"
-    return class_name(kind)
+    return class_name(types.FunctionType if _wraps_function(kind) else kind)
 
 
 def is_variable(value: Any) -> bool:
     """Return whether a name with this value is a variable, not a module, function or class."""
-    return not issubclass(type(value), _NO_VARIABLE)
+    kind = type(value)
+    return not (issubclass(kind, _NO_VARIABLE) or _wraps_function(kind))
+
+
+def _wraps_function(kind: type[Any]) -> bool:
+    """Return whether a class is of wrapt's function wrappers, which operations are; wrapt is not imported."""
+    wrapt = sys.modules.get("wrapt")
+    wrappers = getattr(wrapt, "FunctionWrapper", ()), getattr(wrapt, "BoundFunctionWrapper", ())
+    return issubclass(kind, wrappers)
 
 
 #: evaluations per test at which a place is looked at
