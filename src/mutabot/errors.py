@@ -160,7 +160,7 @@ class PathError(MutabotError):
 
 
 class StrangeValueError(PathError):
-    """A value of the user's program is no plain data, so that mutabot neither reads nor changes it."""
+    """A value of the user's program is missing or no plain data, so mutabot neither reads nor changes it."""
 
 
 class ExtensionError(MutabotError):

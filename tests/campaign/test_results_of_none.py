@@ -1,4 +1,4 @@
-"""Readings that return None: there was nothing to read, as where a camera sees no part."""
+"""Values that are None: a camera sees no part, or an optional part of a message is left out."""
 
 from __future__ import annotations
 
@@ -63,10 +63,54 @@ def test_a_reading_that_returns_none_in_all_tests_is_noted_and_the_others_are_ju
     found, lines = verdicts(tmp_path, TESTS)
     assert found["arm.home#1:call:skip"] is Verdict.SURVIVED
     assert not any(name.startswith("arm.locate") and ".x" in name for name in found)
-    assert any("the result is None, which has no .x" in line for line in lines)
+    assert any("NoneType has no .x" in line for line in lines)
 
 
 def test_a_reading_that_returns_none_in_one_test_has_the_mutants_of_another(tmp_path: Path) -> None:
     found, lines = verdicts(tmp_path, TESTS + SEEN)
     assert Verdict.KILLED in {verdict for name, verdict in found.items() if name.startswith("arm.locate")}
-    assert not any("the result is None" in line for line in lines)
+    assert not any("NoneType" in line for line in lines)
+
+
+def test_a_part_of_an_argument_that_is_left_out_has_no_mutants_and_the_others_are_judged(
+    tmp_path: Path,
+) -> None:
+    robot = """
+        from dataclasses import dataclass
+
+        @dataclass
+        class Target:
+            pose: tuple | None = None
+            joint: float = 0.0
+
+        class Arm:
+            def go_to(self, target):
+                self.joint = target.joint
+    """
+    mission = """
+        from robot import Target
+
+        def work(arm):
+            arm.go_to(Target(joint=0.5))
+            return arm.joint
+    """
+    tests = """
+        import mission
+        from robot import Arm
+
+        def test_work():
+            assert mission.work(Arm()) == 0.5
+    """
+    vocabulary = """
+        [[operation]]
+        call = "robot:Arm.go_to"
+        arguments."target.pose[0]" = { kind = "translation", axis = "x", unit = "m", mode = "to" }
+        arguments."target.joint" = { kind = "rotation", unit = "rad", mode = "to" }
+    """
+    project = write_project(tmp_path, mission, tests, robot=robot, vocabulary=vocabulary)
+    progress = Quiet()
+    path = run_campaign(request_for(project), progress)
+    found = {outcome.mutant.partition(":work:")[2]: outcome.verdict for outcome in outcomes(path)}
+    assert found["arm.go_to#1:target.joint:reverse"] is Verdict.KILLED
+    assert not any("pose" in name for name in found)
+    assert any("NoneType has no [0]" in line for line in progress.lines)

@@ -20,7 +20,7 @@ from dataclasses import fields as dataclass_fields
 from dataclasses import is_dataclass
 from typing import Any
 
-from mutabot.errors import PathError, error_text, nearest_name, text_of
+from mutabot.errors import PathError, StrangeValueError, error_text, nearest_name, text_of
 from mutabot.frozen import frozen
 from mutabot.model.data import is_mock, is_scalar_of_numpy, is_unchangeable
 from mutabot.model.enumeration import is_member
@@ -141,6 +141,11 @@ class Path:
                 return getattr(value, step.attribute)
             return value[step.key]
         except (AttributeError, KeyError, IndexError, TypeError) as error:
+            if value is None:  # an answer to "nothing there", or an optional part that is left out
+                text = (
+                    f"{str(self) or 'the value'}: NoneType has no {step}, so nothing is read or changed there"
+                )
+                raise StrangeValueError(text, step=str(step)) from error
             known = known_steps(value)
             wanted = step.attribute if step.attribute is not None else str(step)
             near = nearest_name(wanted, known) or nearest_name(str(step), known)
