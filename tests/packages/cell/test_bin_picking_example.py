@@ -25,8 +25,7 @@ def test_the_examples_own_suite_passes(project: Path) -> None:
 EDITS = {
     "the ejector is never started": ("    cell.suction.on()\n", "", ("weak", "medium", "strong")),
     "plates and cubes go into each other's tray": (
-        '"plate": (0.45, -0.36), "cube": (0.21, -0.36)', '"plate": (0.21, -0.36), "cube": (0.45, -0.36)',
-        ("medium", "strong"),
+        "TRAYS[shape]", 'TRAYS[{"plate": "cube", "cube": "plate"}.get(shape, shape)]', ("medium", "strong"),
     ),
     "the robot does not go home": ("    cell.arm.home()\n", "", ("strong",)),
 }  # fmt: skip
