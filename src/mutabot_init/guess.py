@@ -345,7 +345,7 @@ def guess_reading(name: str, setting: NameContext) -> Guess:
     if noun == "none" or INPUTS & set(setting.owner) or is_reply or SETTINGS & set(words):
         return Guess()
     if _are_truth(setting) or (is_predicate and all(value in (0, 1) for value in setting.values)):
-        return Guess({"kind": "flag"} if is_predicate or _tells_state(words, setting) else {})
+        return Guess({"kind": "flag"} if is_predicate or _names_a_state(words, setting) else {})
     is_read = bool(READERS & about) or noun == "switch"
     if (
         noun == "label"
@@ -372,7 +372,7 @@ def guess_reading(name: str, setting: NameContext) -> Guess:
     return Guess()
 
 
-def _tells_state(words: Sequence[str], setting: NameContext) -> bool:
+def _names_a_state(words: Sequence[str], setting: NameContext) -> bool:
     """Return whether a truth value with such a name is a state that is read, and not a setting."""
     if words and NOUNS.get(words[-1]) in ("switch", "opening", "label"):
         return True

@@ -51,7 +51,7 @@ _MADE = frozenset(
 _NUMBERS = frozenset({"int", "float", "bool"})
 #: readings of where something is that a motion of this kind moves, and their kinds
 _MOVED = {"translation": "position", "rotation": "orientation"}
-_TOLD = {"position": "position", "orientation": "orientation", "angle": "orientation"}
+_SHOWN_BY = {"position": "position", "orientation": "orientation", "angle": "orientation"}
 
 
 @dataclass
@@ -292,7 +292,7 @@ def _find_current(proposal: Proposal, found: dict[str, Proposal]) -> None:
         if reading.target.rpartition(".")[0] != owner or not reading.is_reading or is_other:
             continue
         are_sure = all(guess.is_sure for guess in reading.result.values())
-        if are_sure and wanted <= _with_axes(reading.result, _TOLD):
+        if are_sure and wanted <= _with_axes(reading.result, _SHOWN_BY):
             proposal.current = reading.target
             return
 

@@ -176,7 +176,7 @@ def _arguments(proposal: Proposal) -> Iterator[str]:
     if call.positional.times:
         parts = sorted(call.positional.parts.values(), key=lambda part: part.path)
         shown = ", ".join(short(part.values[0]) if part.values else part.type for part in parts)
-        yield f'# signature = "(…)"  # unknown are its arguments\' names; seen: ({shown})'
+        yield f'# signature = "(…)"  # the names of its arguments are unknown; seen: ({shown})'
 
 
 def _lines(table: str, part: WatchedPart, guesses: dict[str, Guess]) -> Iterator[str]:

@@ -76,7 +76,7 @@ SETUP = _words(
 STEPS = _words("step tick advance stepSimulation step_simulation")
 SIMULATORS = _words("sim simulation simulator world physics scene engine")
 TALK = _words("log logging comment print say show info warn warning debug error display event")
-#: what a connection, or what runs beside the program, is told and asked
+#: commands to a connection, or to what runs beside the program, and questions about them
 CONNECTION = _words("open close closed opened")
 RUNNING = _words("start stop")
 #: what runs beside the program, and what it is connected by: beginning or ending them moves nothing
@@ -87,7 +87,7 @@ HELPERS = _words(
 SIZES = _words("length width")
 #: words of settings, which no sensor reads
 SETTINGS = _words("max maximum min minimum default initial limit limits")
-#: what else than a participle tells a state
+#: words for a state that are no participles
 STATES = _words("in at found held lost stuck contact ready busy")
 #: predicates of replies and of connections, which no sensor reads
 HOUSEKEEPING = _words(

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from mutabot.errors import UnknownNameError
 from mutabot.model import Verdict
 from tests.campaign.project import REPLAY, run, write_project
 
@@ -282,3 +283,42 @@ def test_a_path_asks_a_mock_for_no_item_which_would_be_a_call_of_it(tmp_path: Pa
     project = write_project(tmp_path, mission, ITEMS_OF_MOCKS, robot=robot, vocabulary=vocabulary)
     found = {result.mutant.rpartition(":")[2]: result.verdict for result in run(project).values()}
     assert found == {"repeat": Verdict.KILLED, "skip": Verdict.KILLED}
+
+
+def test_a_misspelt_step_is_refused_where_tests_have_fakes_alone(tmp_path: Path) -> None:
+    robot = """
+        from dataclasses import dataclass
+
+        @dataclass
+        class Pose:
+            x: float
+
+        class Arm:
+            def go_to(self, pose):
+                self.x = pose.x
+    """
+    mission = """
+        from robot import Pose
+
+        def go(arm):
+            arm.go_to(Pose(0.5))
+    """
+    tests = """
+        from unittest import mock
+
+        import mission
+        from robot import Arm
+
+        def test_go():
+            arm = mock.create_autospec(Arm, instance=True)
+            mission.go(arm)
+            assert arm.go_to.call_count == 1
+    """
+    vocabulary = """
+        [[operation]]
+        call = "robot:Arm.go_to"
+        arguments."pose.xx" = { kind = "translation", axis = "x", unit = "m", mode = "to" }
+    """
+    project = write_project(tmp_path, mission, tests, robot=robot, vocabulary=vocabulary)
+    with pytest.raises(UnknownNameError, match=r"did you mean '\.x'"):
+        run(project)

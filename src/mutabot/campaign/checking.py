@@ -80,8 +80,8 @@ class _HeldNotes(Progress):
     def note(self, text: str) -> None:
         self._notes[text] = None
 
-    def tell(self, reported: str) -> None:
-        """Tell the notes that are not in a report."""
+    def release(self, reported: str) -> None:
+        """Show the notes that are not in a report."""
         for text in self._notes:
             if text not in reported:
                 self._progress.note(text)
@@ -94,7 +94,7 @@ def check(request: Request, progress: Progress) -> CheckReport:
         report = _check(request, notes)
         reported = "\n".join(report.lines)
     finally:
-        notes.tell(reported)
+        notes.release(reported)
     return report
 
 

@@ -53,8 +53,7 @@ def is_scalar_of_numpy(value: Any) -> bool:
 
 def is_mock(value: Any, kind: str = "NonCallableMock") -> bool:
     """Return whether a value is a mock of a class of ``unittest.mock``, whatever class it claims to have."""
-    module = sys.modules.get("unittest.mock")
-    return module is not None and issubclass(type(value), getattr(module, kind))
+    return issubclass(type(value), getattr(sys.modules.get("unittest.mock"), kind, ()))
 
 
 def is_textual(value: Any) -> bool:

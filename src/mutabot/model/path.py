@@ -142,9 +142,7 @@ class Path:
             return value[step.key]
         except (AttributeError, KeyError, IndexError, TypeError) as error:
             if value is None:  # an answer to "nothing there", or an optional part that is left out
-                text = (
-                    f"{str(self) or 'the value'}: NoneType has no {step}, so nothing is read or changed there"
-                )
+                text = f"{str(self) or 'the value'}: NoneType has no {step}, so it is left as it is"
                 raise StrangeValueError(text, step=str(step)) from error
             known = known_steps(value)
             wanted = step.attribute if step.attribute is not None else str(step)

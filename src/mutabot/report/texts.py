@@ -31,7 +31,7 @@ _ABSOLUTE = re.compile(
     r"__w|Users|private|Volumes|Library)(?:/[^\s/:;,'\"<>()\[\]{}|]+)*/(?=[^\s/:;,'\"<>()\[\]{}|])"
 )
 
-#: the step where no probe told how the world ended
+#: the step where no probe shows how the world ended
 _PROBE = "Add a [[probe]] that reads how the world ends to the vocabulary"
 #: what a mutant changed, as results say it before its effect
 _CHANGE = re.compile(r"(?:sent|read|had) (.+?) instead of (.+?); ")

@@ -133,7 +133,7 @@ class MutantResult:
 
     @property
     def is_unmeasured(self) -> bool:
-        """Whether calls of the robot may end differently, and neither a probe nor a recording tells how."""
+        """Whether calls of the robot may end differently, and neither a probe nor a recording shows how."""
         if any(outcome.deviation is not None or outcome.diverged for outcome in self.survived):
             return False
         calls = sum(outcome.compared.calls for outcome in self.survived if outcome.compared is not None)
@@ -390,7 +390,7 @@ def _several(name: str, found: Sequence[MutantResult]) -> str:
 
 
 #: what a campaign says about itself under the name that it has in ``Results``
-_TOLD = {field.name for field in fields(Results)} & (records.FACTS.keys() - records.PLAIN.keys())
+_READ = {field.name for field in fields(Results)} & (records.FACTS.keys() - records.PLAIN.keys())
 
 
 def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
@@ -401,7 +401,7 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
     rounds = _number_of_rounds(meta, outcomes)
     outcomes = [outcome for outcome in outcomes if outcome.round < rounds]
     vocabulary = journal.vocabulary
-    facts = {key: meta[key] for key in _TOLD if key in meta}
+    facts = {key: meta[key] for key in _READ if key in meta}
     accepting: Accepted = meta.get(records.ACCEPTED) or Accepted()
     drawing, shard = facts.get(records.DRAWING), facts.get(records.SHARD)
     accepted = _accepted(accepting, outcomes)

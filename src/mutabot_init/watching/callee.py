@@ -52,15 +52,15 @@ class Callee:
     @functools.cached_property
     def signature(self) -> inspect.Signature | None:
         """The parameters without ``self``; None if they are unknown."""
-        return self._parameters[0]
+        return self._signature[0]
 
     @property
     def is_documented(self) -> bool:
         """Whether only a docstring documents the parameters, as pybind11's docstrings do."""
-        return self._parameters[1]
+        return self._signature[1]
 
     @functools.cached_property
-    def _parameters(self) -> tuple[inspect.Signature | None, bool]:
+    def _signature(self) -> tuple[inspect.Signature | None, bool]:
         try:
             signature = inspect.signature(self.function)
         except (TypeError, ValueError):

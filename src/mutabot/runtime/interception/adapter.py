@@ -20,7 +20,7 @@ from inspect import Parameter, Signature
 from types import CoroutineType
 from typing import Any, Protocol
 
-from mutabot.errors import PathError, StrangeValueError, error_text
+from mutabot.errors import PathError, StrangeValueError, error_text, nearest_name
 from mutabot.model import Call, Operation, Path, Pattern, Quantity, Reply, Unchanged, Vocabulary
 from mutabot.model.answer import keep, restore
 from mutabot.model.data import UNKNOWN, is_mock, is_of_numpy, is_textual
@@ -343,8 +343,11 @@ class Adapter:
                 self._does_not_fit("mode", PathError(text), invocation.where)
 
     def _does_not_fit(self, key: str, error: PathError, where: Where) -> None:
-        """Report what the vocabulary does not describe; a mock or a fake may be given anything."""
-        if where.stands_in:
+        """Report what the vocabulary does not describe; a mock or a fake may be given anything.
+
+        Not so a step that looks misspelt: another one of the value is nearly called so.
+        """
+        if where.stands_in and nearest_name(error.step or "", error.known) is None:
             error = StrangeValueError(f"{error}; a mock or a fake got it, so it is left as it is")
         self.on_problem(key, error)
 

@@ -36,7 +36,7 @@ _LOOPS = frozenset({"asyncio.events", "asyncio.base_events", "asyncio.runners", 
 #: stands for the definition of a function, beside the numbers of its instructions
 _DEFINITION = -2
 #: of the calls of a trace, how many are recorded with their times
-_TOLD = 2000
+_KEPT = 2000
 
 
 @dataclass(slots=True)
@@ -106,7 +106,7 @@ class Recorder:
         """Return the recorded calls of the running test with their times."""
         return [
             self.recorded_call(index, written, read, began, ended)
-            for (index, written, read, _), (began, ended) in zip(self.trace[:_TOLD], self.when, strict=False)
+            for (index, written, read, _), (began, ended) in zip(self.trace[:_KEPT], self.when, strict=False)
         ]
 
     def recorded_call(

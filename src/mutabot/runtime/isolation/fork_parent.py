@@ -453,8 +453,7 @@ class ForkParent:
         _, status = os.waitpid(child.pids.fork, 0)
         namespaces.end_first(child.pids.first)
         code, slot = os.waitstatus_to_exitcode(status), self._slots.get(child.mutant, -1)
-        # at the end of the session the exit code is the suite's own; a control that reported nothing is
-        # missed
+        # at the end of the session the exit code is the suite's own; a silent control is missed
         is_reported = (
             code in (DECIDED, STOPPED) or child.is_test_control or (code >= 0 and self._finished[slot])
         )

@@ -108,7 +108,7 @@ class TextOnly:
 
 
 #: events of a session that are written down as they are
-_TOLD = (
+_AS_THEY_ARE = (
     events.Acted, events.NotInstrumented, events.Problem, events.Remark, events.SiteSeen, events.TextsSeen,
 )  # fmt: skip
 #: the member that this process is; None in all others
@@ -246,7 +246,7 @@ class Member:
                 self.poll()
             case events.PlacesReached():
                 self._reached(line.places)
-            case _ if isinstance(line, _TOLD):  # the test process reports its tests itself
+            case _ if isinstance(line, _AS_THEY_ARE):  # the test process reports its tests itself
                 self.event_file.send(line)
 
     def poll(self) -> None:
