@@ -174,10 +174,8 @@ class Session:
 
     def _report_replacements(self) -> None:
         """Report what the baseline observed at the sites of the job's mutants."""
-        mutants = self._mutants_of_job()
-        self.call_targets.known = dict(self.job.known) | {
-            mutant.site.span: mutant.operation for mutant in mutants
-        }
+        of_mutants = {m.site.span: m.operation for m in self._mutants_of_job() if m.operation}
+        self.call_targets.known = of_mutants | dict(self.job.known)  # what the baseline counted, counts
         if self.job.inspect:
             self.call_targets.noted = CallFindings(lambda: self.test, self.locator.relative)
 
