@@ -10,6 +10,7 @@ import ast
 import math
 import tomllib
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -468,8 +469,13 @@ def text_edit(source: Source, mutant: Mapping[str, Any]) -> Edit:
         raise CannotWriteError("the description is shortened")
     elif " ".join(before.split()) != told:
         raise CannotWriteError("the text there is not what the description says")
-    after = after.replace("failOnZero(", f"{PLANTED}.fail_on_zero(")
-    return Edit(source.name, start, end, after if isinstance(node, ast.stmt) else f"({after})")
+    written = after if isinstance(node, ast.stmt) else f"({after})"
+    for quoted in (PLANTED, PLANTED.replace('"', "'")):  # in an f-string, one of them may end it
+        edit = Edit(source.name, start, end, written.replace("failOnZero(", f"{quoted}.fail_on_zero("))
+        with suppress(SyntaxError):
+            ast.parse(edit.applied(source.bytes))
+            return edit
+    raise CannotWriteError("the text with it cannot be parsed")
 
 
 def _node_at(source: Source, start: int, end: int) -> ast.AST:

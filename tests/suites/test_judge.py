@@ -218,6 +218,20 @@ def test_a_mutant_of_the_text_is_what_its_description_says(
     assert edit.applied(source.encode()).decode() == f"{expected}\n"
 
 
+@pytest.mark.parametrize(("outer", "inner"), ["\"'", "'\""])
+def test_a_mutant_inside_an_f_string_is_written_in_the_other_quotation_marks(
+    tmp_path: Path, outer: str, inner: str
+) -> None:
+    source = f"x = f{outer}at {{y:.2f}}{outer}\n"
+    found = mutant(
+        "y", source, family="conventional", operator="ABS", variant="failOnZero", operation="",
+        description="y → failOnZero(y)",
+    )  # fmt: skip
+    (edit,) = edits_for(Facts.of(project(tmp_path, source)), found)
+    planted = f"(__import__({inner}_planted{inner}).fail_on_zero(y))"
+    assert edit.applied(source.encode()).decode() == source.replace("y", planted)
+
+
 @pytest.mark.parametrize("description", ["a + c → a - c", "a + b + a very long… → a - b"])
 def test_a_mutant_that_cannot_be_written_is_said_to_be_so(tmp_path: Path, description: str) -> None:
     facts = Facts.of(project(tmp_path, "x = a + b\n"))
