@@ -75,16 +75,6 @@ class Python:
 FRONT_END = Python()
 
 
-def unused_calls(source: str) -> frozenset[Extent]:
-    """Return the calls whose result is discarded: each is a statement by itself, or is awaited in one.
-
-    Raises SyntaxError or ValueError for a file that cannot be read.
-    """
-    statements = (node.value for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Expr))
-    values = (statement.value if isinstance(statement, ast.Await) else statement for statement in statements)
-    return frozenset(extent_of(value) for value in values if isinstance(value, ast.Call))
-
-
 def extent_of(node: ast.expr | ast.stmt) -> Extent:
     """Return the extent of a node in the source."""
     return (node.lineno, node.col_offset, node.end_lineno or node.lineno, node.end_col_offset or 0)

@@ -18,7 +18,7 @@ from tests.campaign.project import ROBOT, VOCABULARY, Quiet, by_forks, outcomes,
 
 MISSION = """
     def run(arm):
-        _ = arm.position()
+        str(arm.position())
         arm.move_by(0.25)
         arm.move_to(0.5)
 """

@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from mutabot.campaign.baseline.baseline import Sources
-from mutabot.languages.python import extent_of, unused_calls
+from mutabot.languages.python import extent_of
+from mutabot.languages.read_parts import read_parts
 from mutabot.model import Span
 from mutabot.model.events import SiteSeen
 
@@ -40,10 +41,5 @@ def test_calls_are_named_and_counted_whatever_the_text_is_written_in(tmp_path: P
     sites = [place.site for place in sources.places(seen).values()]
     names = [(site.text, site.occurrence) for site in sites]
     assert names == [("arm.move", 1), ("arm.move", 2), ("arm.grip", 1), ("arm.pos", 1), ("arm.pos", 2)]
-    assert [sources.is_among(sighting.span, unused_calls) for sighting in seen] == [
-        True,
-        True,
-        True,
-        False,
-        False,
-    ]
+    unused = [sources.found_at(sighting.span, read_parts) == frozenset() for sighting in seen]
+    assert unused == [True, True, True, False, False]

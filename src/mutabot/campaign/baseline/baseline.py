@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from mutabot.campaign.comparison import Observation, ProbeSpread, TraceCall, as_steady
 from mutabot.families import CALLS, CONTROL, MESSAGES
@@ -29,6 +29,8 @@ from mutabot.original import Original
 if TYPE_CHECKING:
     from mutabot.execution.task import Result
     from mutabot.model import Probe, Vocabulary
+
+_T = TypeVar("_T")
 
 
 @dataclass(slots=True)
@@ -111,6 +113,12 @@ class Sources:
         """Return whether ``find`` finds an expression in the text of its file, if that is Python."""
         is_python = front_end_of(span.file) is PYTHON
         return is_python and _extent(span) in (self.found_in(span.file, find) or ())
+
+    def found_at(self, span: Span, find: Callable[[str], Mapping[Extent, _T]]) -> _T | None:
+        """Return what ``find`` finds of an expression in the text of its file; None if it finds nothing."""
+        is_python = front_end_of(span.file) is PYTHON
+        found: Mapping[Extent, _T] = self.found_in(span.file, find) or {} if is_python else {}
+        return found.get(_extent(span))
 
     def found_in(self, file: str, find: Callable[[str], Any]) -> Any:
         """Return what ``find`` finds in the text of a file; None if the file cannot be read."""

@@ -19,7 +19,7 @@ from mutabot.config.mistakes import problem_error
 from mutabot.errors import BaselineError, NothingToDoError, in_short, plural
 from mutabot.execution.task import ABNORMAL, Result, Task, tail_of
 from mutabot.families import OF_CALLS
-from mutabot.languages.python import unused_calls
+from mutabot.languages.read_parts import read_parts
 from mutabot.languages.registry import program_files
 from mutabot.model import Instrumentation, Span
 from mutabot.model.call import CAMPAIGN_SEED_VARIABLE, DEFAULT_SEED, ROUND_VARIABLE, derive
@@ -428,8 +428,9 @@ def _add_hits(
     }
     for seen in result.sites:
         place = places[seen.index]
-        is_unused = seen.direct and sources.is_among(seen.span, unused_calls)
-        baseline.unread[place] = is_unused and baseline.unread.get(place, True)
+        parts = sources.found_at(seen.span, read_parts) if seen.direct else None
+        before = baseline.read_parts.get(place, frozenset())
+        baseline.read_parts[place] = None if parts is None or before is None else before | parts
         if seen.stands_in:
             baseline.stand_ins.add(place)
     reaching: dict[Place, set[str]] = {}

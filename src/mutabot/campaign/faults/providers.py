@@ -28,6 +28,7 @@ from mutabot.original import Hit, NoAnswerError, Original, RecordedAnswers, idle
 
 if TYPE_CHECKING:
     from mutabot.model.mutant import Place
+    from mutabot.model.path import Step
 
 #: why a speed or ratio is not reversed
 NO_SIGN = (
@@ -117,8 +118,8 @@ def _at_places(
             later = (unmet.get(need) for need in (Need.CLOCK, Need.WAIT, Need.SIGN))
             reasons = (unmet.get(Need.ERROR), unmet.get(Need.PLACE), predicted, *later)
             reason = next(filter(None, reasons), None)
-            if reason is None and original.unread.get(place, False) and only_reads:
-                reason = "the result of the call is not used: it is a statement by itself"
+            if reason is None and only_reads:
+                reason = _why_unread(rule, subject, hits, original.read_parts.get(place))
             is_read_alone = subject.quantity in subject.read and subject.quantity not in subject.written
             if place in original.written_through and is_read_alone:
                 reason = _LOST_WRITE
@@ -126,8 +127,8 @@ def _at_places(
                 try:
                     answers = _answers(original, place, of_any=Need.ERROR in rule.needs)
                     mutant = replace(mutant, idle=idle_of(operation, subject.pattern, answers))
-                except NoAnswerError as error:  # a statement by itself needs none
-                    reason = None if original.unread.get(place, False) else str(error)
+                except NoAnswerError as error:  # a call of whose result nothing is read needs none
+                    reason = None if original.read_parts.get(place) == frozenset() else str(error)
             yield PlannedMutant(mutant, reason, (0, index, ranks[rule.name]), active=active)
 
 
@@ -239,17 +240,10 @@ def _predict(rule: Operator, subject: Subject, hits: list[Hit]) -> tuple[_Predic
     if rule.is_chance(subject):
         return (_value(subject, hits[0]), None), None
     last: _Predicted = (None, None)
-    middleware = rule.middleware(subject, Random(1))
     away = ""
-    where = None
-    for hit in hits[:TRIED]:
+    for hit, passage in _rehearsals(rule, subject, hits):
         before = _value(subject, hit)
-        if Need.MEMORY not in rule.needs or hit.where != where:
-            where = hit.where
-            middleware = rule.middleware(subject, Random(1))
-        try:
-            passage = _rehearsal(rule, subject, hit, middleware)
-        except LookupError:  # it asks where the robot is, which only the run shows
+        if passage is None:
             return (before, None), None
         if passage.acted:
             return (before, _changed(subject, passage)), None
@@ -295,6 +289,50 @@ def _has_reading(subject: Subject, vocabulary: Vocabulary) -> bool:
     if reading is None or subject.quantity is None:
         return False
     return any(is_reading_of(part, subject.quantity) for part in reading.readings)
+
+
+def _why_unread(
+    rule: Operator, subject: Subject, hits: list[Hit], parts: frozenset[Step] | None
+) -> str | None:
+    """Return why a mutant changes nothing that is read of results, of which these parts are; None if it may.
+
+    What is read must be described itself: anything else, such as a property, may depend on what is changed.
+    """
+    if not parts:
+        return None if parts is None else "the result of the call is not used"
+    steps = {quantity.name: quantity.path.steps[:1] for quantity in subject.read}
+    described = {step for hit in hits for name in hit.read for step in steps.get(name, ())}
+    if any(map(_is_relative, described)) or not parts <= described:
+        return None
+    changed = {subject.required_quantity}
+    for hit, passage in _rehearsals(rule, subject, hits):
+        if passage is None or passage.received is None:
+            return None
+        before, after = hit.read, passage.received.values
+        changed |= {
+            part for part in subject.read if not part.is_same(after.get(part.name), before.get(part.name))
+        }
+    if any(not part.path.steps or part.path.steps[0] in parts for part in changed):
+        return None
+    return f"of the result the program reads only {', '.join(sorted(map(str, parts)))}"
+
+
+def _is_relative(step: Step) -> bool:
+    """Return whether a step may lead to the same part as another one: a slice, or an index from the end."""
+    return step.bounds is not None or (isinstance(step.item, int) and step.item < 0)
+
+
+def _rehearsals(rule: Operator, subject: Subject, hits: list[Hit]) -> Iterator[tuple[Hit, CallRecord | None]]:
+    """Yield recorded calls with what the mutant makes of them; at last None where only a run shows it."""
+    middleware, where = rule.middleware(subject, Random(1)), None
+    for hit in hits[:TRIED]:
+        if Need.MEMORY not in rule.needs or hit.where != where:
+            where, middleware = hit.where, rule.middleware(subject, Random(1))
+        try:
+            yield hit, _rehearsal(rule, subject, hit, middleware)
+        except LookupError:  # it asks where the robot is
+            yield hit, None
+            return
 
 
 def _rehearsal(rule: Operator, subject: Subject, hit: Hit, middleware: Middleware) -> CallRecord:
