@@ -308,7 +308,7 @@ def _re_runs(what: str, found: Estimate | None, kinds: Sequence[tuple[str, Repea
             parts.append(f"{repeat.repeated} of {of_kind} re-run, {ended}")
         elif parts and repeat.outcomes:
             parts.append(f"{of_kind} not re-run (--verify N re-runs some)")
-    if parts and found is not None:
+    if parts and found is not None and found.high:  # else all of which it speaks were re-run
         interval = f"(95 % interval {found.low}–{found.high})"
         parts.append(f"estimated wrong {what} among {found.known}: {found.expected:.1f} {interval}")
     if parts:

@@ -176,6 +176,14 @@ def test_re_runs_that_all_end_the_same_are_told_without_a_count_of_others(tmp_pa
     assert "Kills: 1 of 2 kills that might be a coincidence re-run, with the same result; estimated" in text
 
 
+def test_nothing_is_estimated_where_all_were_run_again(tmp_path: Path) -> None:
+    repeats = {"doubted": {"outcomes": 2, "repeated": 2, "changed": 0}, "others": {"outcomes": 30}}
+    with Journal.open(samples.write_journal(tmp_path / "journal.sqlite", repeats=repeats)) as journal:
+        text = " ".join(report(read_results(journal)).split())
+    assert "Kills: 2 of 2 kills that might be a coincidence re-run, with the same result; 30 other" in text
+    assert "estimated wrong" not in text
+
+
 @WIDTHS
 def test_errors_come_first_one_line_per_message(tmp_path: Path, width: int) -> None:
     outcomes = [Outcome(mutant.id, 0, Verdict.ERROR, message="NaN\nmore") for mutant in samples.MUTANTS]
