@@ -13,7 +13,7 @@ from tests.campaign.project import run, write_project
 MISSION = """
     def run(arm):
         arm.move_by(0.25)
-        where = arm.position()
+        str(arm.position())
     """
 #: the reading is that of a sensor: each look takes a number that the next one does not find
 START = """
