@@ -314,7 +314,7 @@ def _why_unread(
         }
     if any(not part.path.steps or part.path.steps[0] in parts for part in changed):
         return None
-    return f"of the result the program reads only {', '.join(sorted(map(str, parts)))}"
+    return f"only these parts of the result are read: {', '.join(sorted(map(str, parts)))}"
 
 
 def _is_relative(step: Step) -> bool:
