@@ -14,7 +14,7 @@ from mutabot.model.codec import is_plain
 from mutabot.model.events import TestEnd
 from mutabot.model.job import Idle
 from mutabot.model.mutant import Place
-from mutabot.model.path import Step
+from mutabot.model.path import PathSteps
 from mutabot.model.source_units import ExecutedByTests
 
 
@@ -129,7 +129,7 @@ class Original:
         text: what was seen of this, by round.
         hits: recorded calls by place, in the order in which places were first reached.
         answers: what these calls returned.
-        read_parts: the first steps into the results of a place's calls that are read; None if unknown.
+        read_parts: the paths into the results of a place's calls that are read; None if unknown.
         stand_ins: places at which a mock or a fake of the project gets calls.
         written_through: places that return the robot's own memory, to which the program writes.
         unreached: places of calls that no test reaches, found by the names of operations: a mutant there is
@@ -143,7 +143,7 @@ class Original:
     text: dict[int, TextSeen] = field(default_factory=dict)
     hits: dict[Place, list[Hit]] = field(default_factory=dict)
     answers: dict[Place, RecordedAnswers] = field(default_factory=dict)
-    read_parts: dict[Place, frozenset[Step] | None] = field(default_factory=dict)
+    read_parts: dict[Place, frozenset[PathSteps] | None] = field(default_factory=dict)
     stand_ins: set[Place] = field(default_factory=set)
     written_through: set[Place] = field(default_factory=set)
     unreached: tuple[Place, ...] = ()

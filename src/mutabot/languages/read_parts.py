@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from mutabot.languages.python import extent_of
-from mutabot.model.path import Step
+from mutabot.model.path import PathSteps, Step
 from mutabot.model.source_units import FunctionNode
 
 if TYPE_CHECKING:
@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 _READ_ALL = frozenset({"locals", "vars", "dir", "eval", "exec"})
 
 
-def read_parts(source: str) -> Mapping[Extent, frozenset[Step]]:
-    """Return the first steps into the results of calls, by the extents of the calls; without those unknown.
+def read_parts(source: str) -> Mapping[Extent, frozenset[PathSteps]]:
+    """Return the paths into the results of calls, by the extents of the calls; without those unknown.
 
-    A result of which nothing is read has no steps. Raises SyntaxError or ValueError for a file that cannot be
+    A result of which nothing is read has none. Raises SyntaxError or ValueError for a file that cannot be
     read.
     """
     tree = ast.parse(source)
@@ -37,29 +37,32 @@ def read_parts(source: str) -> Mapping[Extent, frozenset[Step]]:
     return {extent: parts for extent, parts in found if parts is not None}
 
 
-def _parts_of(call: ast.expr) -> frozenset[Step] | None:
-    """Return the steps into the value of a call; None if they are not known."""
+def _parts_of(call: ast.expr) -> frozenset[PathSteps] | None:
+    """Return the paths into the value of a call; None if they are not known."""
     match _parent(call):
         case ast.Await() as awaited:
             return _parts_of(awaited)
         case ast.Expr():
             return frozenset()
         case ast.Assign(targets=[ast.Name(id=name)]) as statement:
-            return _steps(_reads(name, statement))
+            return _paths(_reads(name, statement))
         case ast.AnnAssign(target=ast.Name(id=name), value=value) as statement if value is call:
-            return _steps(_reads(name, statement))
+            return _paths(_reads(name, statement))
         case ast.Assign(targets=[ast.Tuple(elts=targets) | ast.List(elts=targets)]) as statement:
             return _elements(targets, statement)
         case _:
-            return _steps([call])
+            return _paths([call])
 
 
-def _elements(targets: list[ast.expr], statement: ast.stmt) -> frozenset[Step] | None:
-    """Return the indexes of the elements that are read of a result that is unpacked into names."""
-    reads = [_reads(target.id, statement) if isinstance(target, ast.Name) else [target] for target in targets]
-    is_plain = not any(isinstance(target, ast.Starred) for target in targets)
-    # of a result of which no element is read, one is still taken apart: another one might not be
-    return frozenset(Step(item=index) for index, own in enumerate(reads) if own) or None if is_plain else None
+def _elements(targets: list[ast.expr], statement: ast.stmt) -> frozenset[PathSteps] | None:
+    """Return the paths into a result that is unpacked into names."""
+    if any(isinstance(target, ast.Starred) for target in targets):
+        return None
+    found: set[PathSteps] = set()
+    for index, target in enumerate(targets):
+        paths = _paths(_reads(target.id, statement)) if isinstance(target, ast.Name) else None
+        found |= {(Step(item=index), *path) for path in ({()} if paths is None else paths)}
+    return frozenset(found) or None  # if no element is read, one that cannot be unpacked would still fail
 
 
 def _reads(name: str, statement: ast.stmt) -> list[ast.expr]:
@@ -96,25 +99,25 @@ def _function(node: ast.AST) -> ast.AST | None:
     return around if isinstance(around, FunctionNode) else None
 
 
-def _steps(values: list[ast.expr]) -> frozenset[Step] | None:
-    """Return the first steps that are read of these expressions; None if one is used in another way."""
-    steps = [_step(value) for value in values]
-    return frozenset(filter(None, steps)) if None not in steps else None
+def _paths(values: list[ast.expr]) -> frozenset[PathSteps] | None:
+    """Return the paths that lead on from these expressions; None if one is used as it is."""
+    paths = frozenset(map(_path, values))
+    return None if () in paths else paths
 
 
-def _step(value: ast.expr) -> Step | None:
-    """Return the step that the expression around a value takes into it; None if it does something else."""
+def _path(value: ast.expr) -> PathSteps:
+    """Return the steps that the text around an expression takes into its value; none if it takes it whole."""
     around = _parent(value)
     call = _parent(around)
     if isinstance(call, ast.Call) and call.func is around:
-        return None  # a method sees the whole object
+        return ()  # a method sees the whole object
     match around:
         case ast.Attribute(attr=name, ctx=ast.Load()):
-            return Step(attribute=name)
+            return (Step(attribute=name), *_path(around))
         case ast.Subscript(slice=ast.Constant(value=str() | int() as item), ctx=ast.Load(), value=inner):
-            return Step(item=item) if inner is value else None
+            return (Step(item=item), *_path(around)) if inner is value else ()
         case _:
-            return None
+            return ()
 
 
 def _parent(node: ast.AST | None) -> ast.AST | None:

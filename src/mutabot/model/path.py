@@ -52,6 +52,10 @@ class Step:
         return slice(*self.bounds) if self.bounds is not None else self.item
 
 
+#: the steps of a path, from an object on
+PathSteps = tuple[Step, ...]
+
+
 @frozen
 class Path:
     """The location of a value inside an object; without steps, the object itself.
@@ -62,7 +66,7 @@ class Path:
     """
 
     root: str | None = None
-    steps: tuple[Step, ...] = ()
+    steps: PathSteps = ()
 
     def __str__(self) -> str:
         return (self.root or "") + "".join(str(step) for step in self.steps)

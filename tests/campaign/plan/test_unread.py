@@ -7,7 +7,7 @@ from textwrap import indent
 
 import pytest
 
-from mutabot.campaign.checking import plan_only
+from mutabot.campaign.checking import PlannedCampaign, plan_only
 from mutabot.families import CATALOGUE, GRADED, ROBOT
 from tests.campaign.project import CONFIGURATION, Quiet, request_for, write_project
 
@@ -117,6 +117,13 @@ def test_readings_of_calls_whose_result_is_not_used_are_left_out(tmp_path: Path)
     assert [mutant.operator for mutant in mutants if mutant.site.text == "arm.look"] == ["dropout"]
 
 
+def planned_for(folder: Path, body: str, robot: str, vocabulary: str) -> PlannedCampaign:
+    mission = "def run(arm):\n" + indent(body, "    ") + "\n"
+    tests = "import mission, robot\n\ndef test_it():\n    mission.run(robot.Arm())\n"
+    write_project(folder, mission, tests, robot=robot, vocabulary=vocabulary)
+    return plan_only(request_for(folder, rounds=1), Quiet())
+
+
 POSES = """
     from dataclasses import dataclass
 
@@ -152,6 +159,51 @@ OF_POSES = """
 """
 
 
+NESTED = """
+    class Arm:
+        def state(self):
+            return {"pose": ((1.0, 2.0), (3.0, 4.0)), "speed": [5.0, 6.0]}
+
+        def pair(self):
+            return [1.0, 2.0], [3.0, 4.0]
+"""
+OF_NESTED = """
+    [[operation]]
+    call = "robot:Arm.state"
+    result."['pose'][0][0]" = { kind = "position", axis = "x", unit = "m" }
+    result."['pose'][0][1]" = { kind = "position", axis = "y", unit = "m" }
+    result."['speed'][0]" = { kind = "distance", unit = "m", noise = 0.1 }
+
+    [[operation]]
+    call = "robot:Arm.pair"
+    result."[0][0]" = { kind = "position", axis = "x", unit = "m" }
+    result."[0][1]" = { kind = "position", axis = "y", unit = "m" }
+    result."[1][0]" = { kind = "distance", unit = "m", noise = 0.1 }
+"""
+
+
+@pytest.mark.parametrize(
+    ("body", "read"),
+    [
+        ("return arm.state()['pose'][0][1]", {"['pose'][0][1]"}),
+        ("state = arm.state()\nreturn state['pose'][0]", {"['pose'][0][0]", "['pose'][0][1]"}),
+        (
+            "state = arm.state()\nreturn state['pose'][1]",
+            {"['pose'][0][0]", "['pose'][0][1]", "['speed'][0]"},
+        ),
+        ("state = arm.state()\nreturn state['speed'].copy()", {"['speed'][0]"}),
+        ("place, _ = arm.pair()\nreturn place[1]", {"[0][1]"}),
+        ("place, speed = arm.pair()\nreturn place, speed[0]", {"[0][0]", "[0][1]", "[1][0]"}),
+        ("place, (vx, vy) = arm.pair()\nreturn place[0]", {"[0][0]", "[1][0]"}),
+    ],
+)
+def test_parts_of_parts_are_told_apart_as_far_as_the_text_shows_them(
+    tmp_path: Path, body: str, read: set[str]
+) -> None:
+    planned = planned_for(tmp_path, body, NESTED, OF_NESTED)
+    assert {mutant.quantity for mutant in planned.mutants if mutant.operator == "noise"} == read
+
+
 @pytest.mark.parametrize(
     ("body", "read"),
     [
@@ -180,13 +232,10 @@ OF_POSES = """
 def test_parts_of_a_result_that_the_function_does_not_read_have_no_reading_mutants(
     tmp_path: Path, body: str, read: str
 ) -> None:
-    mission = "def run(arm):\n" + indent(body, "    ") + "\n"
-    tests = "import mission, robot\n\ndef test_it():\n    mission.run(robot.Arm())\n"
-    folder = write_project(tmp_path, mission, tests, robot=POSES, vocabulary=OF_POSES)
-    planned = plan_only(request_for(folder, rounds=1), Quiet())
+    planned = planned_for(tmp_path, body, POSES, OF_POSES)
     axes = {".x": "x", ".y": "y", ".z": "z", "[0]": "x", "[1]": "y", "[2]": "z"}
-    kept = [mutant.id.split(":")[-2] for mutant in planned.mutants if mutant.operator == "negate"]
-    assert "".join(sorted(axes[part] for part in kept)) == read
+    kept = [mutant.quantity for mutant in planned.mutants if mutant.operator == "negate"]
+    assert "".join(sorted(axes[part or ""] for part in kept)) == read
     assert all(
         omission.reason.startswith("only these parts of the result are read: ")
         for omission in planned.left_out

@@ -10,6 +10,7 @@ from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from itertools import chain
 from random import Random
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -28,7 +29,7 @@ from mutabot.original import Hit, NoAnswerError, Original, RecordedAnswers, idle
 
 if TYPE_CHECKING:
     from mutabot.model.mutant import Place
-    from mutabot.model.path import Step
+    from mutabot.model.path import PathSteps, Step
 
 #: why a speed or ratio is not reversed
 NO_SIGN = (
@@ -292,7 +293,7 @@ def _has_reading(subject: Subject, vocabulary: Vocabulary) -> bool:
 
 
 def _why_unread(
-    rule: Operator, subject: Subject, hits: list[Hit], parts: frozenset[Step] | None
+    rule: Operator, subject: Subject, hits: list[Hit], parts: frozenset[PathSteps] | None
 ) -> str | None:
     """Return why a mutant changes nothing that is read of results, of which these parts are; None if it may.
 
@@ -300,9 +301,10 @@ def _why_unread(
     """
     if not parts:
         return None if parts is None else "the result of the call is not used"
-    steps = {quantity.name: quantity.path.steps[:1] for quantity in subject.read}
-    described = {step for hit in hits for name in hit.read for step in steps.get(name, ())}
-    if any(map(_is_relative, described)) or not parts <= described:
+    names = {name for hit in hits for name in hit.read}
+    described = [quantity.path.steps for quantity in subject.read if quantity.name in names]
+    is_clear = not any(map(_is_relative, chain(*described)))
+    if not is_clear or not all(any(_are_nested(part, other) for other in described) for part in parts):
         return None
     changed = {subject.required_quantity}
     for hit, passage in _rehearsals(rule, subject, hits):
@@ -312,9 +314,15 @@ def _why_unread(
         changed |= {
             part for part in subject.read if not part.is_same(after.get(part.name), before.get(part.name))
         }
-    if any(not part.path.steps or part.path.steps[0] in parts for part in changed):
+    if any(_are_nested(part, quantity.path.steps) for part in parts for quantity in changed):
         return None
-    return f"only these parts of the result are read: {', '.join(sorted(map(str, parts)))}"
+    shown = sorted("".join(map(str, part)) for part in parts)
+    return f"only these parts of the result are read: {', '.join(shown)}"
+
+
+def _are_nested(first: PathSteps, second: PathSteps) -> bool:
+    """Return whether one of two parts of a result lies in the other, or is it."""
+    return all(one == other for one, other in zip(first, second, strict=False))
 
 
 def _is_relative(step: Step) -> bool:
