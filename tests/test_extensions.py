@@ -87,7 +87,7 @@ def test_two_parts_of_one_name_are_an_error_that_names_both_packages(tmp_path: P
     assert line == "error: 'cell' of package 'lab-robots' has the name of one of 'mutabot' (vocabularies)"
 
 
-def test_a_file_that_a_package_does_not_have_is_told_where_it_is_used(tmp_path: Path) -> None:
+def test_a_file_that_a_package_does_not_have_is_reported_where_it_is_used(tmp_path: Path) -> None:
     code = 'EXTENSION = Extension(interface=2, vocabularies={"arm": "mutabot_cell:arm.toml"})'
     installed(tmp_path, code)
     ask = ASK.replace("part.reference", "part.file")
@@ -101,7 +101,7 @@ def test_a_file_that_a_package_does_not_have_is_told_where_it_is_used(tmp_path: 
     assert "error: 'arm' of package 'lab-robots': there is no file mutabot_cell:arm.toml" in done.stdout
 
 
-def test_exceptions_that_a_package_names_tell_of_the_tools_in_processes_of_the_tests(
+def test_exceptions_that_a_package_names_are_those_of_the_tools_in_processes_of_the_tests(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     class UnsupportedError(RuntimeError):
@@ -118,7 +118,7 @@ def test_exceptions_that_a_package_names_tell_of_the_tools_in_processes_of_the_t
 
 
 @pytest.mark.needs("languages")
-def test_processes_of_the_tests_are_told_of_the_programs_own_languages_alone(
+def test_processes_of_the_tests_learn_the_programs_own_languages_alone(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(extensions._SentParts, "parts", None)

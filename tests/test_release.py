@@ -109,7 +109,7 @@ def test_what_installs_a_lock_file_demands_its_hashes() -> None:
     ]
 
 
-def test_nobody_is_told_to_install_a_name_that_nobody_owns() -> None:
+def test_nobody_is_advised_to_install_a_name_that_nobody_owns() -> None:
     """Until there is a release, mutabot is installed from a folder or a repository."""
     files = [*pages.ROOT.glob("ci/*"), *(pages.ROOT / "src").rglob("*.py"), pages.ROOT / "CONTRIBUTING.md"]
     files += [pages.ROOT / page for page in pages.pages()]

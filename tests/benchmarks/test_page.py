@@ -127,7 +127,7 @@ def test_a_family_that_was_not_run_says_nothing(data: Any) -> None:
     assert {finding(claim, data, "text").stance for claim in CLAIMS} == {Stance.UNKNOWN}
 
 
-def test_a_sample_does_not_tell_how_many_places_there_are(data: Any) -> None:
+def test_a_sample_does_not_show_how_many_places_there_are(data: Any) -> None:
     data["sample"] = {"size": "10%", "selected": 900}
     assert finding(PLACES, data, "conventional").stance is Stance.UNKNOWN
 

@@ -39,7 +39,7 @@ def test_alike_are_mutants_that_die_in_the_same_tests_rounds_and_messages() -> N
     assert found.dominators == (("three",),)
 
 
-def test_addresses_in_messages_do_not_tell_mutants_apart() -> None:
+def test_mutants_are_not_distinguished_by_addresses_in_messages() -> None:
     found = redundancy(
         killed("one", "a", message="<Arm at 0x7f00aa11>"), killed("two", "a", message="<Arm at 0x7f11bb22>")
     )

@@ -85,7 +85,7 @@ def test_each_acts_in_its_own_file(tmp_path: Path) -> None:
 
 
 @pytest.mark.whole
-def test_calls_of_equal_text_on_one_line_are_told_apart(tmp_path: Path) -> None:
+def test_calls_of_equal_text_on_one_line_are_distinguished(tmp_path: Path) -> None:
     """Python takes their code for equal: only the columns differ."""
     mission = """
         first, second = (lambda arm: arm.move_by(0.25)), (lambda arm: arm.move_by(0.25))

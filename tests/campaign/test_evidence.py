@@ -113,7 +113,7 @@ def recorded(
     return folder, ran(folder, request.param)
 
 
-def test_it_is_told_what_happened(recorded: tuple[Path, dict[str, Outcome]]) -> None:
+def test_what_happened_is_reported(recorded: tuple[Path, dict[str, Outcome]]) -> None:
     _, found = recorded
     dropped = found["arm.grip#2:call:skip"]
     assert dropped.verdict is Verdict.SURVIVED

@@ -395,7 +395,7 @@ def test_an_operator_that_is_to_do_nothing_and_reaches_the_robot_is_an_error(
     assert outcome.message == "operator lost is to do nothing, but would have made the call"
 
 
-def test_an_operator_that_asks_without_saying_so_is_told(
+def test_an_operator_that_asks_without_saying_so_is_reported(
     plug_in: Callable[[str], None], tmp_path: Path
 ) -> None:
     plug_in(UNDECLARED)

@@ -154,7 +154,7 @@ def test_all_rounds_and_samples_know_of_them(tmp_path: Path, script: Script) -> 
 
 
 @pytest.mark.parametrize("engine", ["fork", REPLAY])
-def test_the_text_of_a_real_project_tells(tmp_path: Path, engine: str) -> None:
+def test_the_text_of_a_real_project_is_enough(tmp_path: Path, engine: str) -> None:
     """``open`` is called where a test comes and where none does, and is no operation."""
     folder = project(tmp_path)
     results = ran(folder, engine=engine)
@@ -196,7 +196,7 @@ def test_of_a_call_in_a_branch_and_of_one_that_is_no_operation(tmp_path: Path) -
     assert results.untested.text == "1 of 2 robot calls is reached by no test"
 
 
-def test_a_file_that_no_test_imports_is_told_whatever_it_is_written_in(tmp_path: Path) -> None:
+def test_a_file_that_no_test_imports_is_reported_whatever_it_is_written_in(tmp_path: Path) -> None:
     folder = project(tmp_path)
     text = f'# coding: latin-1\n"""Größe."""\n{dedent(OTHER)}'
     (folder / "other.py").write_text(text, encoding="latin-1")

@@ -94,7 +94,7 @@ BY_NONE = ("*chosen:first*SVR=second",)
 
 @pytest.mark.parametrize("engine", ["fork", REPLAY])
 @pytest.mark.parametrize(("suite", "noticed"), [(STRICT, Verdict.KILLED), (LAX, Verdict.SURVIVED)])
-def test_what_a_mutant_changes_is_told_without_the_programs_operators(
+def test_what_a_mutant_changes_is_described_without_the_programs_operators(
     tmp_path: Path, suite: dict[str, str], noticed: Verdict, engine: str
 ) -> None:
     folder = write_project(tmp_path, dedent(MISSION), dedent(TESTS).format_map(suite))

@@ -243,7 +243,7 @@ def test_a_process_that_fails_before_the_mutant_acts_is_an_error(tmp_path: Path)
     assert all("ended before the mutant changed anything" in (outcome.message or "") for outcome in failed)
 
 
-def test_what_keeps_apart_from_the_campaign_is_told(tmp_path: Path) -> None:
+def test_what_keeps_apart_from_the_campaign_is_reported(tmp_path: Path) -> None:
     tests = """
         import os
         import subprocess
@@ -320,7 +320,7 @@ def test_a_script_sees_itself_as_ever_when_its_text_is_mutated(tmp_path: Path) -
 
 @pytest.mark.needs("source")
 @pytest.mark.parametrize("engine", ["fork", REPLAY])
-def test_a_process_that_goes_on_after_its_test_tells_of_no_change_where_no_value_changed(
+def test_a_process_that_goes_on_after_its_test_reports_no_change_where_no_value_changed(
     tmp_path: Path, engine: str
 ) -> None:
     mission = """

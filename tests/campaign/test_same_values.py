@@ -90,7 +90,7 @@ def project(folder: Path) -> Path:
     return write_project(folder, MISSION, TESTS, robot=ROBOT, vocabulary=VOCABULARY)
 
 
-def test_what_the_robot_cannot_tell_apart_is_not_planned(tmp_path: Path) -> None:
+def test_what_the_robot_cannot_distinguish_is_not_planned(tmp_path: Path) -> None:
     plan = plan_only(request_for(project(tmp_path)), Quiet())
     mutants, left_out = plan.mutants, plan.left_out
     planned = {mutant.id.split(":", 1)[1] for mutant in mutants if mutant.operator == "reverse"}

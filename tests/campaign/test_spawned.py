@@ -120,7 +120,7 @@ def test_a_fork_whose_processes_did_not_all_get_its_mutant_says_nothing(
     assert baseline.is_missed(0, MUTANT, end) == is_missed
 
 
-def test_it_is_told_in_processes_of_which_origin_calls_were_made_and_mutants_hit() -> None:
+def test_the_origin_of_processes_with_calls_and_hits_is_reported() -> None:
     site = events.SiteSeen(0, SITE.span, "robot:Arm.move", None, oracle=False)
     records = []
     for number, (is_forked, hits) in enumerate([(False, 1), (True, 0)]):

@@ -178,7 +178,7 @@ def test_a_survivor_in_one_of_several_rounds_is_accepted_in_all(project: Path, s
         ("[[acept]]\nwhy = 'x'\n", "'accept'"),
     ],
 )
-def test_a_mistake_in_the_file_is_told_before_anything_is_run(
+def test_a_mistake_in_the_file_is_reported_before_anything_is_run(
     project: Path, script: Script, text: str, words: str
 ) -> None:
     accept(project, text)
@@ -197,7 +197,7 @@ def test_a_mistake_in_the_file_is_told_before_anything_is_run(
         ("exclude skpi: why", "'skip'"),
     ],
 )
-def test_a_mistake_in_a_comment_is_told_before_anything_is_run(
+def test_a_mistake_in_a_comment_is_reported_before_anything_is_run(
     project: Path, script: Script, comment: str, words: str
 ) -> None:
     (project / "mission.py").write_text(f"def go(arm):\n    arm.move_by(0.1)  # mutabot: {comment}\n")

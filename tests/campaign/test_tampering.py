@@ -122,7 +122,7 @@ def test_recordings_that_are_spoiled_cost_no_outcome(tmp_path: Path, harmless: V
 
 @pytest.mark.whole
 @pytest.mark.parametrize("name", ["journal.sqlite", "journal-evidence.sqlite"])
-def test_processes_of_tests_are_not_told_where_the_journal_is(tmp_path: Path, name: str) -> None:
+def test_processes_of_tests_do_not_learn_where_the_journal_is(tmp_path: Path, name: str) -> None:
     look = f"""
         import os, sys
         told = [*os.environ.values(), *sys.argv, *sys.orig_argv]

@@ -327,7 +327,7 @@ def test_survivors_end_a_run_with_1_if_that_is_asked_for(
         (["--fail-on", "surv"], "not one of survivors, untested"),
     ],
 )
-def test_a_wrong_format_or_limit_is_told_before_anything_is_run(
+def test_a_wrong_format_or_limit_is_reported_before_anything_is_run(
     fake: Campaign, capsys: pytest.CaptureFixture[str], arguments: list[str], words: str
 ) -> None:
     assert main(["run", *arguments]) == 2
@@ -376,7 +376,7 @@ def test_time_outs_beyond_the_limit_are_5(fake: Campaign) -> None:
     assert main(["run"]) == 5
 
 
-def test_errors_are_4_and_told_first_unless_the_limit_allows_them(
+def test_errors_exit_with_4_and_are_named_first_unless_the_limit_allows_them(
     fake: Campaign, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["run"]) == 0  # one of the ten outcomes is an error, as the project allows
@@ -565,7 +565,7 @@ def test_help_is_quick() -> None:
     assert used() - before < 2.0  # seconds of the processor, of which it takes a fifth of one
 
 
-def test_another_system_than_linux_is_told_in_one_sentence(
+def test_another_system_than_linux_is_reported_in_one_sentence(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(sys, "platform", "darwin")

@@ -117,7 +117,7 @@ def configuration_refused(folder: Path, text: str) -> str:
 
 
 @pytest.mark.parametrize("key", keys(Settings))
-def test_a_setting_that_cannot_be_meant_is_told(tmp_path: Path, key: str) -> None:
+def test_a_setting_that_cannot_be_meant_is_reported(tmp_path: Path, key: str) -> None:
     (tmp_path / "mission.py").touch()
     (tmp_path / "tests").mkdir()
     lines = [f"{name} = {text}" for name, text in GOOD.items() if name != key]
@@ -136,7 +136,7 @@ BOUNDS = {
 
 
 @pytest.mark.parametrize("key", BOUNDS)
-def test_the_greatest_number_is_taken_and_the_next_is_told_with_it(tmp_path: Path, key: str) -> None:
+def test_the_greatest_number_is_taken_and_the_next_is_named_with_it(tmp_path: Path, key: str) -> None:
     (tmp_path / "mission.py").touch()
     (tmp_path / "tests").mkdir()
     lines = [f"{name} = {text}" for name, text in GOOD.items()]
@@ -174,7 +174,7 @@ TABLES = {
 
 
 @pytest.mark.parametrize("table", TABLES)
-def test_a_vocabulary_that_cannot_be_meant_is_told(tmp_path: Path, table: str) -> None:
+def test_a_vocabulary_that_cannot_be_meant_is_reported(tmp_path: Path, table: str) -> None:
     for value in VALUES:
         (tmp_path / "robot.toml").write_text(TABLES[table] % value)
         # a text, or a number that the vocabulary compares with nothing, may do
@@ -185,13 +185,13 @@ def test_a_vocabulary_that_cannot_be_meant_is_told(tmp_path: Path, table: str) -
 
 
 @pytest.mark.parametrize("key", ["program", "tests", "demand", "rounds"])
-def test_a_list_without_end_is_told_with_its_key(tmp_path: Path, key: str) -> None:
+def test_a_list_without_end_is_reported_with_its_key(tmp_path: Path, key: str) -> None:
     told = configuration_refused(tmp_path, f"{key} = {LONG}")
     assert told.startswith(f"mutabot.toml:1 · {key}: has 20000 entries; at most 10,000")
 
 
 @pytest.mark.parametrize("key", [key for key in keys(DemandTable) if key != "notice"])
-def test_a_demand_that_cannot_be_meant_is_told(tmp_path: Path, key: str) -> None:
+def test_a_demand_that_cannot_be_meant_is_reported(tmp_path: Path, key: str) -> None:
     (tmp_path / "mission.py").touch()
     (tmp_path / "tests").mkdir()
     good = "\n".join(f"{name} = {text}" for name, text in GOOD.items())
@@ -200,7 +200,7 @@ def test_a_demand_that_cannot_be_meant_is_told(tmp_path: Path, key: str) -> None
             configuration_refused(tmp_path, f'{good}\n[[demand]]\nnotice = "5 mm"\n{key} = {value}')
 
 
-def test_a_demanded_magnitude_that_cannot_be_meant_is_told(tmp_path: Path) -> None:
+def test_a_demanded_magnitude_that_cannot_be_meant_is_reported(tmp_path: Path) -> None:
     (tmp_path / "mission.py").touch()
     (tmp_path / "tests").mkdir()
     good = "\n".join(f"{name} = {text}" for name, text in GOOD.items())

@@ -43,7 +43,7 @@ def test_published_operators_name_the_rows_that_they_make(capsys: pytest.Capture
     assert found["repeat"]["where"]
 
 
-def test_an_unknown_family_is_told_with_the_nearest(capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_unknown_family_is_reported_with_the_nearest(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["operators", "--family", "catalog"]) == 2
     assert "did you mean 'catalogue'?" in capsys.readouterr().err
 

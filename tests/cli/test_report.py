@@ -96,7 +96,7 @@ def test_without_a_journal_it_is_2_and_names_run(tmp_path: Path, capsys: pytest.
     assert "mutabot run" in capsys.readouterr().err
 
 
-def test_an_interrupted_campaign_is_reported_and_told(
+def test_a_report_of_an_interrupted_campaign_names_how_many_outcomes_are_known(
     project: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (project / JOURNAL).unlink()

@@ -62,7 +62,9 @@ def test_a_plain_number_has_no_unit(tmp_path: Path, notice: str) -> None:
         ('notice = "5 mm"\nsite = ""', "site"),
     ],
 )
-def test_mistakes_are_told_with_their_line_and_what_is_right(tmp_path: Path, lines: str, words: str) -> None:
+def test_mistakes_are_reported_with_their_line_and_what_is_right(
+    tmp_path: Path, lines: str, words: str
+) -> None:
     with pytest.raises(ConfigurationError) as caught:
         demands(tmp_path, f"[[demand]]\n{lines}\n")
     assert words in str(caught.value)
@@ -70,6 +72,6 @@ def test_mistakes_are_told_with_their_line_and_what_is_right(tmp_path: Path, lin
     assert "demand" in str(caught.value)
 
 
-def test_single_brackets_are_told(tmp_path: Path) -> None:
+def test_single_brackets_are_reported(tmp_path: Path) -> None:
     with pytest.raises(ConfigurationError, match=r"write \[\[demand\]\] with double brackets"):
         demands(tmp_path, '[demand]\nnotice = "5 mm"\n')

@@ -38,7 +38,7 @@ def verdicts(mutants: list[dict[str, Any]]) -> Counter[str]:
     ("name", "test_file", "gap"),
     [("plc", "tests/test_press.py", "press.py:11"), ("toolbox", "tests/test_draw.py", "draw.py:15")],
 )
-def test_a_reader_of_a_recipe_gets_what_its_page_tells(
+def test_a_reader_of_a_recipe_gets_what_its_page_shows(
     name: str,
     test_file: str,
     gap: str,

@@ -51,7 +51,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.mark.whole
-def test_a_reader_sees_what_the_page_tells(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_reader_sees_what_the_page_shows(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     shown = []
     for what, text in steps():
         if not what.startswith("$ "):
@@ -69,7 +69,9 @@ def test_a_reader_sees_what_the_page_tells(folder: Path, capsys: pytest.CaptureF
     assert "round 1: C killed by a check" in after
 
 
-def test_a_reader_who_mistypes_a_name_is_told_so(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_reader_who_mistypes_a_name_gets_an_error_that_names_it(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     for what, text in steps():
         if not what.startswith("$ "):
             (folder / what).write_text(text.replace('Arm.move_by"', 'Arm.move_bye"'), encoding="utf-8")

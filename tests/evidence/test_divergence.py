@@ -45,7 +45,7 @@ def test_equal_recordings_do_not_differ() -> None:
     assert apart(ORIGINAL, recorded(CARRIED, BOX, held_until(41), ORIGINAL.calls)) is None  # type: ignore[arg-type]
 
 
-def test_a_box_that_slips_is_told() -> None:
+def test_a_box_that_slips_is_reported() -> None:
     fallen: Place = (0.5, 0.0, -2.0)
     over_shelf = WAY[:16]
     box = [*over_shelf, *line(over_shelf[-1], fallen, 1.0), *[fallen] * 60][: len(CARRIED)]
@@ -56,7 +56,7 @@ def test_a_box_that_slips_is_told() -> None:
     assert "box ended" in text
 
 
-def test_a_box_that_is_let_go_too_early_is_told() -> None:
+def test_a_box_that_is_let_go_too_early_is_reported() -> None:
     dropped = [*WAY[:31], *[TABLE] * 20][: len(CARRIED)]
     opened = [RecordedCall(3.0, 3.2, "arm:open", "mission.py:9", None, {}, {})]
     text = story(ORIGINAL, recorded(CARRIED, dropped, held_until(31, 32), opened))  # type: ignore[arg-type]
@@ -66,7 +66,7 @@ def test_a_box_that_is_let_go_too_early_is_told() -> None:
     )
 
 
-def test_a_box_that_is_held_to_the_end_is_told() -> None:
+def test_a_box_that_is_held_to_the_end_is_reported() -> None:
     text = story(ORIGINAL, recorded(CARRIED, CARRIED, held_until(99, 40), ORIGINAL.calls))  # type: ignore[arg-type]
     assert "box was never let go (original: at 4.1 s)" in text
 

@@ -133,7 +133,7 @@ def test_what_cannot_be_read_is_said_and_the_test_goes_on(
     assert all(map(isnan, recorder.recording.tracks["box"].values))
 
 
-def test_contacts_are_told_when_they_begin_and_end(recorder: WorldRecorder) -> None:
+def test_contacts_are_reported_when_they_begin_and_end(recorder: WorldRecorder) -> None:
     world = World()
     feed = fed(world)
     feed.contacts(lambda: [("box", "arm"), ("arm", "box")] if 0.3 < world.time < 0.6 else [])
@@ -144,7 +144,7 @@ def test_contacts_are_told_when_they_begin_and_end(recorder: WorldRecorder) -> N
     ]
 
 
-def test_where_everything_ended_is_told_whenever_that_was(recorder: WorldRecorder) -> None:
+def test_where_everything_ended_is_reported_whenever_that_was(recorder: WorldRecorder) -> None:
     world = World()
     feed = fed(world, rate=1.0)
     world.run(feed, 2.5)

@@ -143,7 +143,7 @@ def with_margin(*margins: float) -> Recording:
         ((40.0, 39.0, 60.0), "the same movements happened at most 0.1 s earlier or later"),
     ],
 )
-def test_how_near_to_a_limit_is_told_if_it_is_much_nearer(margins: tuple[float, ...], story: str) -> None:
+def test_how_near_to_a_limit_is_reported_if_it_is_much_nearer(margins: tuple[float, ...], story: str) -> None:
     found = apart(with_margin(40.0, 38.0, 40.0), with_margin(*margins))
     assert found is not None
     assert found.story == story

@@ -83,7 +83,7 @@ def test_what_is_no_recording_is_refused(data: Any) -> None:
         from_bytes(data)
 
 
-def test_values_that_json_does_not_know_are_told_in_words() -> None:
+def test_values_that_json_does_not_know_are_described_in_words() -> None:
     odd = RecordedCall(0.0, 1.0, "arm:move", "mission.py:1", None, {"to": {1, 2}}, {})
     (read,) = from_bytes(to_bytes(Recording(calls=[odd]))).calls
     assert read.written == {"to": "{1, 2}"}

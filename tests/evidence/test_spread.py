@@ -53,7 +53,7 @@ def test_where_the_original_does_not_spread_the_tolerance_is_the_unit() -> None:
     assert box_of(told(beside(0.3), beside(0.0), beside(0.0))) == pytest.approx(300.0, rel=0.01)
 
 
-def test_what_differs_by_no_more_than_the_original_itself_is_not_told() -> None:
+def test_what_differs_by_no_more_than_the_original_itself_is_not_reported() -> None:
     found = told(beside(0.05), beside(0.0), beside(0.08))
     assert box_of(found) <= 1.0
     assert "box" not in found.story
@@ -72,7 +72,7 @@ def test_a_test_in_which_the_original_scatters_says_so() -> None:
     assert found.story.startswith("only in a test whose end the original itself scatters (box by 0.52 m): ")
 
 
-def test_the_story_is_told_in_a_test_whose_end_is_stable() -> None:
+def test_the_story_is_shown_in_a_test_whose_end_is_stable() -> None:
     lost = told(beside(9.0), beside(0.0), beside(0.5))
     stable = told(beside(0.02), beside(0.0), beside(0.001))
     assert lost.apart[0].final > stable.apart[0].final
@@ -120,7 +120,7 @@ def turning(*angles: float) -> Recording:
     return recorder.recording
 
 
-def test_a_tool_that_is_turned_on_its_way_is_told_by_the_angle_from_all_that_the_original_has() -> None:
+def test_a_tool_that_is_turned_on_its_way_is_described_by_the_angle_from_all_that_the_original_has() -> None:
     usual = turning(0, 30, 60, 90)
     assert told(turning(0, 30, 60, 200, 90), usual).story.startswith(
         "tool was turned by up to 110 deg on its way"
@@ -130,7 +130,7 @@ def test_a_tool_that_is_turned_on_its_way_is_told_by_the_angle_from_all_that_the
     assert late.deviation <= 1.0
 
 
-def test_things_that_left_their_paths_are_told_together() -> None:
+def test_things_that_left_their_paths_are_reported_together() -> None:
     way = [(x, y + (0.2 if 5 < number < 10 else 0.0), z) for number, (x, y, z) in enumerate(WAY)]
     story = told(recorded(way, way), recorded(WAY, WAY)).story
     assert (

@@ -100,7 +100,9 @@ def project(folder: Path, mission: str, tests: str, heartbeat: Path) -> Path:
 
 
 @pytest.mark.parametrize("engine", [REPLAY, pytest.param("auto", marks=pytest.mark.whole)])
-def test_a_daemon_that_a_mutant_starts_is_gone_and_told(engine: str, tmp_path: Path, heartbeat: Path) -> None:
+def test_a_daemon_that_a_mutant_starts_is_gone_and_reported(
+    engine: str, tmp_path: Path, heartbeat: Path
+) -> None:
     # the original starts one as well where its runs are copies of one process
     mission = MISSION.replace("if arm.x", "if True or arm.x") if engine == "auto" else MISSION
     folder = project(tmp_path, mission, TESTS, heartbeat)

@@ -76,7 +76,7 @@ def test_program_is_imported_once_for_all_rounds_and_mutants_and_draws_the_same_
 
 
 @pytest.mark.whole
-def test_tests_that_are_not_safe_to_fork_start_anew_and_the_user_is_told(
+def test_tests_that_are_not_safe_to_fork_start_anew_and_that_is_reported(
     tmp_path: Path, common: Path
 ) -> None:
     waiting = "threading.Thread(target=threading.Event().wait, daemon=True, name='spinner').start()"
@@ -195,7 +195,7 @@ def test_interrupted_session_of_a_copy_ends_like_one_of_its_own(tmp_path: Path, 
 
 
 @pytest.mark.whole
-def test_error_in_a_test_file_is_told_as_without_sharing(tmp_path: Path, common: Path) -> None:
+def test_error_in_a_test_file_is_reported_as_without_sharing(tmp_path: Path, common: Path) -> None:
     root = project(tmp_path, common, conftest="", tests="import nothing_of_that_name")
     texts = []
     for engine in ("fork", "replay"):

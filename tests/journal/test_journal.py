@@ -136,7 +136,7 @@ def test_outcomes_are_kept_aside_with_their_keys_until_a_later_one_takes_their_p
         Outcome("m", 0, Verdict.KILLED, message="OSError: [Errno 28] No space left on device: 'x'"),
     ],
 )
-def test_an_outcome_that_tells_of_the_machine_is_not_sound(path: Path, outcome: Outcome) -> None:
+def test_an_outcome_that_shows_the_state_of_the_machine_is_not_sound(path: Path, outcome: Outcome) -> None:
     begin(path, outcome)
     with Journal.create(path, meta={}) as journal:
         assert not journal.kept()["m", 0].is_sound

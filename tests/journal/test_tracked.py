@@ -239,7 +239,7 @@ def test_links_and_folders_that_nobody_committed_are_the_users_own(tmp_path: Pat
     refuse_tracked(cell / "loop" / "journal.sqlite")
 
 
-def test_where_git_cannot_tell_a_journal_is_not_believed(
+def test_where_git_does_not_know_a_journal_is_not_believed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     git(tmp_path, "init", "-q")

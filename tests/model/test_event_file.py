@@ -171,7 +171,7 @@ def test_an_endless_line_is_not_kept(written: Written, monkeypatch: pytest.Monke
     assert "99940 more bytes" in lost.reason
 
 
-def test_a_flood_of_damage_is_told_once(written: Written) -> None:
+def test_a_flood_of_damage_is_reported_once(written: Written) -> None:
     (found,) = written.add(b"x\n" * 100_000)
     assert isinstance(found, Untrusted)
 
@@ -254,7 +254,7 @@ def test_whatever_a_test_says_arrives_and_can_be_stored(value: Any, told: Any) -
 
 
 @pytest.mark.parametrize("value", [ITSELF, DEEP, float("nan")], ids=["itself", "deep", "nan"])
-def test_what_cannot_be_told_whole_loses_nothing_else(value: Any) -> None:
+def test_what_cannot_be_reported_whole_loses_nothing_else(value: Any) -> None:
     found = through(replace(END, example=(value, 1)))
     assert isinstance(found, TestEnd)
     assert replace(found, example=None) == END
@@ -364,7 +364,7 @@ def in_fork(file: EventFile, work: Callable[[], object], died: ForkDied | None =
     return code
 
 
-def test_what_two_forks_tell_side_by_side_comes_when_each_has_ended(tmp_path: Path) -> None:
+def test_what_two_forks_report_side_by_side_comes_when_each_has_ended(tmp_path: Path) -> None:
     with a_stream(tmp_path) as (stream, file):
         file.send(EVENTS[0])
         pipes = [os.pipe(), os.pipe()]

@@ -17,7 +17,7 @@ PARTS: dict[str, Any] = {
 }  # fmt: skip
 
 
-def test_processes_below_a_fork_are_told_what_they_need() -> None:
+def test_processes_below_a_fork_get_what_they_need() -> None:
     job = Job(vocabulary=Vocabulary(), reaching={"m": (0,)}, **PARTS)
     below = job.below(MUTANT, Activation.of_text(1, 0))
     assert (below.mutant, below.tests, below.reaching, below.simulated) == (MUTANT, None, {}, {})

@@ -244,7 +244,9 @@ def test_a_demanded_magnitude_of_a_package_is_planted_searched_and_judged(tmp_pa
     assert (ladder["place"], ladder["none_up_to"], ladder["all_from"]) == ("belt", 0.2, 0.5)
 
 
-def test_a_demand_of_a_package_that_speaks_of_nothing_is_told_and_others_are_refused(tmp_path: Path) -> None:
+def test_a_demand_of_a_package_that_speaks_of_nothing_is_reported_and_others_are_refused(
+    tmp_path: Path,
+) -> None:
     site = installed(tmp_path)
     files = {"pyproject.toml": dedent(PROJECT["pyproject.toml"]) + DEMAND % "gravity"}
     project = write(tmp_path / "project", {**PROJECT, **files})

@@ -165,7 +165,7 @@ def test_its_text_has_mutants_of_the_package(engine: str, project: Path, tmp_pat
 
 
 @pytest.mark.needs("source")
-def test_that_python_has_no_mutants_of_its_text_is_told(project: Path, tmp_path: Path) -> None:
+def test_that_python_has_no_mutants_of_its_text_is_reported(project: Path, tmp_path: Path) -> None:
     site = write(tmp_path / "site", PACKAGE)
     done = mutabot(site, project, "list", "-o", "families=['conventional']")
     assert "no mutants of the text of mission.STEPS: it is not Python" in done.stderr

@@ -308,7 +308,7 @@ def test_a_campaign_without_its_client_library_says_which_middlewares_are_known(
     assert "middlewares that are known here: rclpy, rospy, actionlib, tf2_ros" in done.stderr
 
 
-def test_hooks_that_cannot_be_loaded_are_told_and_the_package_named(site: Path, project: Path) -> None:
+def test_hooks_that_cannot_be_loaded_are_reported_and_the_package_is_named(site: Path, project: Path) -> None:
     (site / "toybus_mutabot" / "hooks.py").write_text("raise RuntimeError('no licence')\n", encoding="utf-8")
     done = mutabot(site, project, "check")
     assert done.returncode in (2, 3)

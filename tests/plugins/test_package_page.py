@@ -87,6 +87,6 @@ def test_its_fault_of_the_world_is_at_work(installed: Path, tmp_path: Path) -> N
     assert end["test"] == "tests/test_mission.py::test_a_long_way"
 
 
-def test_a_wrong_value_of_its_option_is_told_before_anything_runs(installed: Path, project: Path) -> None:
+def test_a_wrong_value_of_its_option_is_reported_before_anything_runs(installed: Path, project: Path) -> None:
     done = mutabot(installed, project, "run", "--nice", "20")
     assert (done.returncode, done.stderr) == (2, "mutabot: --nice 20: a number from 0 to 19\n")

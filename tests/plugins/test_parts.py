@@ -178,7 +178,7 @@ def test_check_says_what_an_executor_with_a_table_would_take_elsewhere(site: Pat
         ("mutabot.toy]", "mutabot.toys]", ":5 · tool.mutabot.toys: unknown key 'toys'; did you mean 'toy'?"),
     ],
 )
-def test_a_mistake_in_a_table_of_a_package_is_told_like_any(
+def test_a_mistake_in_a_table_of_a_package_is_reported_like_any(
     old: str, new: str, told: str, site: Path, project: Path
 ) -> None:
     file = project / "pyproject.toml"
@@ -214,7 +214,7 @@ def test_help_lists_a_command_before_the_one_that_its_package_names_else_last(
     assert [*names, ""][names.index("play") + 1] == follows
 
 
-def test_help_tells_of_packages_and_imports_none_of_them(site: Path) -> None:
+def test_help_names_packages_and_imports_none_of_them(site: Path) -> None:
     code = (
         "import sys; from mutabot.cli.app import main\n"
         "main(sys.argv[1:]); print(*sys.modules, file=sys.stderr)"

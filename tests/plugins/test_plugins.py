@@ -237,7 +237,7 @@ def test_a_broken_plug_in_raises_an_operator_error_that_names_it(how: str, tmp_p
 @pytest.mark.parametrize(
     "how", ["raises at import", *(pytest.param(how, marks=pytest.mark.whole) for how in ON_USE)]
 )
-def test_the_command_line_tells_which_plug_in_is_broken(how: str, project: Path, tmp_path: Path) -> None:
+def test_the_command_line_names_the_plug_in_that_is_broken(how: str, project: Path, tmp_path: Path) -> None:
     name, code, told = BROKEN[how]
     done = mutabot(broken_plug_in(tmp_path / "site", name, code), project, "list")
     assert done.returncode == USAGE, done.stderr

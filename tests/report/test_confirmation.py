@@ -38,7 +38,7 @@ def on_terminal(found: Any, number: int) -> tuple[str, str]:
     return files[0].getvalue(), files[1].getvalue()
 
 
-def test_what_was_not_confirmed_is_told_in_all_of_them(tmp_path: Path) -> None:
+def test_what_was_not_confirmed_is_reported_in_all_of_them(tmp_path: Path) -> None:
     found = campaign(tmp_path, confirmed=False)
     survivor = next(result for result in found.survivors if result.outcomes[0].confirmed is False)
     of_all, of_one = on_terminal(found, survivor.mutant.number)
@@ -57,7 +57,7 @@ def test_what_was_not_confirmed_is_told_in_all_of_them(tmp_path: Path) -> None:
     ] == [False]
 
 
-def test_nothing_is_told_where_all_were_run_with_the_whole_suite(tmp_path: Path) -> None:
+def test_nothing_is_reported_where_all_were_run_with_the_whole_suite(tmp_path: Path) -> None:
     found = campaign(tmp_path)
     texts = *on_terminal(found, 1), made("markdown", found), made("sarif", found)
     assert not any("confirmed" in text for text in texts)

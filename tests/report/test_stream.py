@@ -59,20 +59,20 @@ def test_json_lines_say_the_same(tmp_path: Path) -> None:
     assert end["mutants"] == {"killed": 1, "survived": 2, "timeout": 1, "not covered": 1}
 
 
-def test_a_survivor_is_told_with_its_first_round_and_a_kill_with_the_last() -> None:
+def test_a_survivor_is_reported_with_its_first_round_and_a_kill_with_the_last() -> None:
     survived, killed = samples.OUTCOMES[2], samples.OUTCOMES[0]
     assert [line.split("\t")[0] for line in streamed("lines", *ends(survived, killed))] == ["SURVIVED"]
     found = streamed("lines", *ends(*samples.OUTCOMES[:2]))
     assert [line.split("\t")[:2] for line in found] == [["KILLED", "1"]]
 
 
-def test_an_accepted_survivor_is_told_as_such() -> None:
+def test_an_accepted_survivor_is_reported_as_such() -> None:
     found = ends(samples.OUTCOMES[2], acceptance=Acceptance("why", "a.toml:1"))
     (line,) = map(json.loads, streamed("jsonl", *found))
     assert (line["status"], line["accepted"]) == ("accepted", "why")
 
 
-def test_the_end_tells_of_mutants_that_changed_and_of_those_that_were_not_run(tmp_path: Path) -> None:
+def test_the_end_names_mutants_that_changed_and_those_that_were_not_run(tmp_path: Path) -> None:
     lines: list[str] = []
     stream = MutantStream("lines", 2, samples.VOCABULARY, "/nowhere", lines.append)
     for mutant_end in ends(Outcome(samples.REVERSE.id, 0, Verdict.SURVIVED), *samples.OUTCOMES[2:8]):

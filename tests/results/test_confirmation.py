@@ -68,7 +68,7 @@ def test_only_what_was_confirmed_without_a_gap_is_a_sample() -> None:
     assert gap.most > whole.most
 
 
-def test_what_was_noticed_and_what_was_refused_is_told() -> None:
+def test_what_was_noticed_and_what_was_refused_is_reported() -> None:
     outcomes = [
         *some(10, 10),
         Outcome("noticed", 0, KILLED, confirmed=True),

@@ -27,7 +27,7 @@ FAR = Outcome(
 )
 
 
-def test_a_reading_is_told_with_its_unit_and_what_became_of_the_world() -> None:
+def test_a_reading_is_shown_with_its_unit_and_what_became_of_the_world() -> None:
     assert explain(NEGATE, [READ], VOCABULARY) == (
         "read -0.0014 m instead of 0.0014 m; "
         "nothing differs in 3 calls, probes at 1 moment, 2 returned values (indistinguishable)"
@@ -46,7 +46,7 @@ def test_a_command_is_sent_rather_than_read() -> None:
 
 
 @pytest.mark.parametrize(("path", "verb"), [("pose", "sent"), (".pose", "read")])
-def test_what_may_be_sent_or_read_is_told_by_where_it_stands(path: str, verb: str) -> None:
+def test_what_may_be_sent_or_read_is_decided_by_where_it_stands(path: str, verb: str) -> None:
     at = Path.parse(path, rooted=not path.startswith("."))
     turn = Quantity("pose", at, Kind.EULER, unit="rad", order="XYZ")
     end = replace(READ, example=([1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]))
@@ -57,7 +57,7 @@ def test_without_the_vocabulary_values_stand_without_unit() -> None:
     assert explain(NEGATE, [READ]).startswith("had -0.0014 instead of 0.0014")
 
 
-def test_the_survivor_farthest_from_the_original_is_told() -> None:
+def test_the_survivor_farthest_from_the_original_is_reported() -> None:
     near = replace(FAR, round=0, distance=2.0, divergence=("near",))
     assert explain(SKIP, [near, FAR], VOCABULARY) == "gripper.command: do nothing; box.x: 1"
     assert MutantResult(SKIP, (near, FAR), None, "").deviation == 312.0
@@ -115,7 +115,7 @@ def test_a_change_in_the_last_digits_is_printed_with_these() -> None:
     )
 
 
-def test_the_change_is_that_of_the_test_whose_story_is_told() -> None:
+def test_the_change_is_that_of_the_test_whose_story_is_shown() -> None:
     def in_test(name: str, value: float, **details: Any) -> Diverged:
         return Diverged(name, 1.0, "", "box ended 0.3 m off", example=(0.5, value), **details)
 
@@ -127,7 +127,7 @@ def test_the_change_is_that_of_the_test_whose_story_is_told() -> None:
     assert change_text(NEGATE, replace(outcome, diverged=())) == "had 0.9 instead of 0.5"
 
 
-def test_a_survivor_is_told_in_the_round_that_differs_in_a_stable_test() -> None:
+def test_a_survivor_is_reported_in_the_round_that_differs_in_a_stable_test() -> None:
     apart = (Apart("box", "m", 1.0, 9.0, 1.0, 9.0, 9.0, 0.001),)
     lost = Diverged("lost", 1.0, "", "box ended 9 m off", apart, scatters="box by 0.5 m")
     near = Diverged("near", 1.0, "", "box ended 2 mm off", (replace(apart[0], final=0.002, aside=0.0),))

@@ -92,7 +92,7 @@ def test_errors_beyond_the_limit_fail_before_all_else(tmp_path: Path) -> None:
     assert decide(found, max_errors=0.25).exit_code == 0
 
 
-def test_nothing_but_errors_is_told_as_errors(tmp_path: Path) -> None:
+def test_nothing_but_errors_is_reported_as_errors(tmp_path: Path) -> None:
     found = results(tmp_path, (Outcome(SKIP.id, 0, Verdict.ERROR),))
     assert decide(found, max_errors=0.0).exit_code == 4
 

@@ -135,14 +135,16 @@ def test_what_a_test_executes_counts_for_all_tests_after_it(executed: dict[str, 
     assert "test_shared" not in of(executed["test_right"], NAMES[2])
 
 
-def test_each_test_tells_only_what_none_before_it_has_told(taken: tuple[Campaign, list[Result]]) -> None:
+def test_each_test_reports_only_what_none_before_it_has_reported(
+    taken: tuple[Campaign, list[Result]],
+) -> None:
     ends = taken[1][0].ends
     told = [(name, line) for end in ends for name, lines in (end.executed or {}).items() for line in lines]
     assert len(ends) > 3
     assert len(told) == len(set(told)) > 5
 
 
-def test_what_is_told_before_a_test_counts_for_it_and_what_is_not_known_for_all_after_it() -> None:
+def test_what_is_reported_before_a_test_counts_for_it_and_what_is_not_known_for_all_after_it() -> None:
     found = ExecutedByTests([("a", {"f.py": (1,)}), ("b", {}), ("c", {"f.py": (2,)}), ("d", None), ("e", {})])
     assert found.by(["b"]) == found.by(["b", "a"]) == {"f.py": (1,)}
     assert found.by(["c"]) == {"f.py": (1, 2)}

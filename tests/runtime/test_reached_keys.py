@@ -78,7 +78,7 @@ def test_what_a_fork_has_passed_as_the_original_is_not_reached_again() -> None:
 @pytest.mark.parametrize(
     ("keys", "asks"), [((MOVE,), True), ((Activation.nth(3, MOVE),), True), ((Activation.EACH_TEST,), False)]
 )
-def test_calls_are_only_told_if_somebody_awaits_one(keys: tuple[Key, ...], asks: bool) -> None:
+def test_calls_are_only_reported_if_somebody_awaits_one(keys: tuple[Key, ...], asks: bool) -> None:
     assert Told(*keys).reached.asks_calls is asks
 
 

@@ -78,7 +78,7 @@ def test_what_the_plan_leaves_out_stands_where_other_mutants_of_the_call_stand()
     assert found["rounds"] == [{"verdict": "left out"}]
 
 
-def test_what_is_left_out_under_a_name_is_about_the_operation_that_it_tells() -> None:
+def test_what_is_left_out_under_a_name_is_about_the_operation_that_it_names() -> None:
     site = "mission.py:run:wait#1"
     common = {"pattern": None, "variant": "", "quantity": None, "description": ""}
     publish = {

@@ -94,7 +94,7 @@ def test_a_clock_that_gives_no_number_stops_the_campaign_and_names_the_key(
     assert str(error).startswith("robot.toml:1 · clock")
 
 
-def test_check_tells_a_clock_that_never_ticks(tmp_path: Path) -> None:
+def test_check_reports_a_clock_that_never_ticks(tmp_path: Path) -> None:
     write_project(
         tmp_path, MISSION, TESTS, vocabulary=f'    clock = {{ tick = "robot:Arm.position" }}\n{VOCABULARY}'
     )
@@ -154,7 +154,7 @@ def test_a_selection_that_fits_nothing_names_the_nearest(tmp_path: Path) -> None
         run(tmp_path, only=("revers",))
 
 
-def test_check_tells_what_the_vocabulary_names_and_no_test_reaches(tmp_path: Path) -> None:
+def test_check_reports_what_the_vocabulary_names_and_no_test_reaches(tmp_path: Path) -> None:
     write_project(tmp_path, MISSION, TESTS)
     report = check(request_for(tmp_path), Quiet())
     assert report.data["unused"] == ["robot:Arm.position"]

@@ -198,7 +198,7 @@ def test_a_round_that_makes_no_sense_is_an_error_of_usage(
 
 
 @pytest.mark.usefixtures("plugins")
-def test_pytest_tells_an_error_of_usage_without_a_traceback(tmp_path: Path) -> None:
+def test_pytest_reports_an_error_of_usage_without_a_traceback(tmp_path: Path) -> None:
     write_project(tmp_path, MISSION, TESTS)
     done = plain_pytest(tmp_path, MUTABOT_ROUND="three")
     assert done.returncode == 4

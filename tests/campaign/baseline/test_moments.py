@@ -57,7 +57,7 @@ def named(found: dict[tuple[str, int], Outcome], part: str) -> Outcome:
     return next(value for (mutant, _), value in found.items() if part in mutant)
 
 
-def test_a_fault_that_is_seen_on_the_way_alone_is_told(tmp_path: Path) -> None:
+def test_a_fault_that_is_seen_on_the_way_alone_is_reported(tmp_path: Path) -> None:
     found = by_forks(project(tmp_path))
     reverse = named(found, "move_by#1:dx:reverse")
     assert (reverse.verdict, reverse.indistinguishable) == (Verdict.SURVIVED, False)
@@ -123,7 +123,7 @@ def moved(*places: float, key: str = "a") -> Observation:
     return Observation(events, {"w:p.x": 9.0}, moments=changes)
 
 
-def test_the_worst_moment_is_told_with_its_call() -> None:
+def test_the_worst_moment_is_reported_with_its_call() -> None:
     found = compare(moved(0.0, 1.0, 2.0), moved(0.1, 1.5, 2.0), [Probe("w:p", 0.01)])
     assert (found.distance, found.way, found.compared.moments) == (0.0, pytest.approx(50), 4)
     assert found.divergence == ("on the way, after call 2, a: p.x: 1.5 instead of 1 (off by 0.5)",)

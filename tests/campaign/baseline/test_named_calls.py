@@ -93,14 +93,14 @@ def test_what_may_be_something_else_is_in_doubt(text: str, doubt: str) -> None:
     assert doubt in call.doubt
 
 
-def test_what_tests_reach_tells_what_the_same_text_is() -> None:
+def test_what_tests_reach_shows_what_the_same_text_is() -> None:
     text = "from pathlib import Path\ndef f(path: Path):\n    path.open()"
     assert found(text, reached={"path.open": {OPEN.target}})[0].doubt == ""
     assert "not an operation" in found("def f(file):\n    file.open()", alone=("file.open",))[0].doubt
 
 
 @pytest.mark.parametrize("argument", ["'lift/3'", "f'lift/{height}'", "text='lift/3'"])
-def test_a_command_is_told_by_the_text_that_stands_there(argument: str) -> None:
+def test_a_command_is_identified_by_the_text_that_stands_there(argument: str) -> None:
     (call,) = found(f"def f(link, height):\n    link.send({argument})")
     assert (call.pattern, call.doubt) == ("lift/{height:g}", "")
 

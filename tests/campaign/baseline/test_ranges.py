@@ -75,7 +75,7 @@ def test_what_the_robot_limits_itself_may_be_sent(engine: str, tmp_path: Path) -
     assert not any("recorded values" in line for line in lines)
 
 
-def test_check_tells_what_is_out_of_range(tmp_path: Path) -> None:
+def test_check_reports_what_is_out_of_range(tmp_path: Path) -> None:
     told = Quiet()
     report = check(request_for(project(tmp_path), engine="fork"), told)
     assert f"note      {REMARK}" in report.lines

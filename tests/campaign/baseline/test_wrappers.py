@@ -68,7 +68,7 @@ TESTS = """
 @pytest.mark.parametrize(
     ("target", "sites", "is_told"), [("robot:Plc.write", 1, True), ("mission:Cell.put", 2, False)]
 )
-def test_a_site_of_several_calls_is_told_until_the_function_is_described(
+def test_a_site_of_several_calls_is_reported_until_the_function_is_described(
     tmp_path: Path, target: str, sites: int, is_told: bool
 ) -> None:
     vocabulary = f'[[operation]]\ncall = "{target}"\n'

@@ -82,7 +82,7 @@ def test_without_probes_there_is_no_distance() -> None:
         ([TraceCall("a", {"x": 1.0}, {"y": 2.0}), TraceCall("c")], "1 call more"),
     ],
 )
-def test_the_first_call_that_differs_is_told(mutant: list[TraceCall], line: str) -> None:
+def test_the_first_call_that_differs_is_reported(mutant: list[TraceCall], line: str) -> None:
     found = compare(seen(TraceCall("a", {"x": 1.0}, {"y": 2.0})), seen(*mutant))
     assert not found.indistinguishable
     assert found.divergence == (line,)
@@ -142,7 +142,7 @@ def test_values_that_differ_late_are_printed_with_as_many_digits_as_it_takes() -
         ([[1, 2], [3]], [[1, 2], [3, 4]], "go returned [1] (3, 4) instead of (3)"),
     ],
 )
-def test_of_what_was_returned_the_first_part_that_differs_is_told(
+def test_of_what_was_returned_the_first_part_that_differs_is_reported(
     before: object, after: object, line: str
 ) -> None:
     first, second = (Observation((), {}, returned=[("go", (value,))]) for value in (before, after))

@@ -116,7 +116,7 @@ def first_words(found: Difference) -> list[str]:
         ({"tool__theta_z": 90.01, "time": 10.05}, ["on the way", "world.tool", "the clock world.time"]),
     ],
 )
-def test_an_end_within_the_originals_spread_is_told_after_a_detour_and_a_delay(
+def test_an_end_within_the_originals_spread_is_reported_after_a_detour_and_a_delay(
     end: dict[str, float], lines: list[str]
 ) -> None:
     def along(y: float, **changes: float) -> Observation:
@@ -126,7 +126,7 @@ def test_an_end_within_the_originals_spread_is_told_after_a_detour_and_a_delay(
     assert first_words(compare(along(0.08), along(-0.08, **end), [MARKED])) == lines
 
 
-def test_the_test_with_the_detour_is_told_before_one_whose_end_is_nearly_the_same() -> None:
+def test_the_test_with_the_detour_is_reported_before_one_whose_end_is_nearly_the_same() -> None:
     same = Difference(False, 0.06, ("world.tool: turned by 0.03 deg",), way=0.1)
     detour = Difference(False, 0.02, ("on the way: off by 0.16",), way=160.0)
     elsewhere = Difference(False, 3.0, ("world.box: off by 3 mm",), way=3.0)

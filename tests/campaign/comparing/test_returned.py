@@ -37,7 +37,7 @@ def survivors(folder: Path, tests: str) -> dict[str, Outcome]:
     return {mutant: outcome for (mutant, _), outcome in found.items() if outcome.verdict is Verdict.SURVIVED}
 
 
-def test_a_mutant_that_changes_what_the_program_returns_can_be_told_apart(tmp_path: Path) -> None:
+def test_a_mutant_that_changes_what_the_program_returns_can_be_distinguished(tmp_path: Path) -> None:
     tests = """
         import mission
         import pytest

@@ -22,6 +22,6 @@ TESTS = """
     """
 
 
-def test_an_engine_that_there_is_not_is_told_before_the_tests_run(tmp_path: Path) -> None:
+def test_an_engine_that_there_is_not_is_reported_before_the_tests_run(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"'brunch'.*fork"):
         run(write_project(tmp_path, MISSION, TESTS), engine="brunch")

@@ -20,7 +20,7 @@ def passed(test: str) -> TestEnd:
     return TestEnd(test, "passed", hits=1, acted=1)
 
 
-def test_a_suite_that_passes_without_some_of_its_tests_lets_a_mutant_through_and_is_told_to_differ() -> None:
+def test_a_suite_that_passes_without_some_of_its_tests_lets_a_mutant_through_and_is_reported() -> None:
     ends = [passed(TESTS[0]), passed("t.py::test_new")]
     found = Run(MUTANT, 0, TESTS, ends, exit_code=0, gone=(TESTS[1],), has_acted=True)
     assert _ruling(found, 0)[0] is Verdict.SURVIVED

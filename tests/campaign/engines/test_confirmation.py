@@ -125,7 +125,7 @@ def test_a_kill_before_anything_is_left_out_counts(tmp_path: Path, script: Scrip
     assert ends(outcomes) == {(Verdict.KILLED, GOES, None)}
 
 
-def test_a_kill_after_that_is_told_as_the_whole_suite_ends(tmp_path: Path, script: Script) -> None:
+def test_a_kill_after_that_is_reported_as_the_whole_suite_ends(tmp_path: Path, script: Script) -> None:
     def mutated(run: Run) -> Any:
         return CHECKED if run.test == AGAIN or (run.test == OTHER_TEST and not run.is_short) else {}
 

@@ -159,7 +159,7 @@ def test_where_the_fatal_control_does_not_end_a_fork_no_fork_is_believed(
     assert "results of forks from any test do not count" in said[0]
 
 
-def test_what_forks_tell_of_a_test_whose_own_control_ended_otherwise_is_left_to_replay(
+def test_what_forks_report_of_a_test_whose_own_control_ended_otherwise_is_left_to_replay(
     tmp_path: Path, script: Script
 ) -> None:
     script.test_control = lambda run: CHECKED if run.test == SECOND else None

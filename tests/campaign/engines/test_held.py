@@ -52,6 +52,6 @@ def test_a_failed_test_has_nothing_to_compare() -> None:
     assert (run.own, run.observations) == ({end.test: end}, {})
 
 
-def test_the_calls_of_a_site_share_what_tells_it() -> None:
+def test_the_calls_of_a_site_share_what_shows_it() -> None:
     events = observation(ended(), {0: Place.of(MOVE)}).events
     assert len({id(call.key) for call in events}) == 1

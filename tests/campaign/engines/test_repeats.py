@@ -72,7 +72,7 @@ def test_a_kill_in_doubt_that_does_not_come_out_again_is_unstable(
     assert (estimate.expected, estimate.low, estimate.high, estimate.known) == (0.0, 0, 0, 0)
 
 
-def test_repeats_beyond_their_time_are_left_and_told(
+def test_repeats_beyond_their_time_are_left_and_reported(
     tmp_path: Path, script: Script, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     script.kill(FALSE)

@@ -81,7 +81,7 @@ def project(folder: Path, vocabulary: str) -> Path:
     return write_project(folder, MISSION, TESTS, robot=ROBOT, vocabulary=vocabulary)
 
 
-def test_a_quantity_that_names_an_object_is_told_with_its_place_and_what_to_do(tmp_path: Path) -> None:
+def test_a_quantity_that_names_an_object_is_reported_with_its_place_and_what_to_do(tmp_path: Path) -> None:
     report = check(request_for(project(tmp_path, DRIVE), engine="fork", rounds=1), Quiet())
     (note,) = (line for line in report.lines if line.startswith("note "))
     assert "arguments.speed: speed is of mission:Speed, which is not plain data" in note
@@ -92,7 +92,7 @@ def test_a_quantity_that_names_an_object_is_told_with_its_place_and_what_to_do(t
 
 
 @pytest.mark.parametrize("number", ["10**400", "-10**5000", "Fraction(10**400, 3)"])
-def test_a_number_beyond_floating_point_numbers_is_told_and_left_out(tmp_path: Path, number: str) -> None:
+def test_a_number_beyond_floating_point_numbers_is_reported_and_left_out(tmp_path: Path, number: str) -> None:
     program = f"""
         from fractions import Fraction
 
@@ -112,7 +112,7 @@ def test_a_number_beyond_floating_point_numbers_is_told_and_left_out(tmp_path: P
     ("answer", "path", "part"),
     [("3200 + 4j", ".imag", ".imag of complex"), ("[b'ab']", "[0][1]", "[1] of bytes")],
 )
-def test_a_part_that_cannot_be_replaced_is_told_and_left_out(
+def test_a_part_that_cannot_be_replaced_is_reported_and_left_out(
     tmp_path: Path, answer: str, path: str, part: str
 ) -> None:
     robot = f"class Base:\n    def force(self): return {answer}\n"
@@ -129,7 +129,7 @@ def test_a_part_that_cannot_be_replaced_is_told_and_left_out(
     assert any(f"{part} cannot be replaced, so the value is left as it is" in line for line in told.lines)
 
 
-def test_noise_on_what_no_operator_adds_it_to_is_told(tmp_path: Path) -> None:
+def test_noise_on_what_no_operator_adds_it_to_is_reported(tmp_path: Path) -> None:
     told = Quiet()
     request = request_for(project(tmp_path, FORCE), engine="fork", rounds=1)
     with pytest.raises(NothingToDoError, match=r"no operator of the families asked for \(robot\)"):
@@ -138,7 +138,7 @@ def test_noise_on_what_no_operator_adds_it_to_is_told(tmp_path: Path) -> None:
 
 
 @pytest.mark.whole
-def test_a_moment_or_demand_that_nobody_heeds_is_told(tmp_path: Path) -> None:
+def test_a_moment_or_demand_that_nobody_heeds_is_reported(tmp_path: Path) -> None:
     folder = project(tmp_path, DRIVE)
     file = folder / "mutabot.toml"
     file.write_text(file.read_text() + '[[demand]]\nquantity = "speed"\nnotice = "1 mm"\n')
@@ -148,7 +148,7 @@ def test_a_moment_or_demand_that_nobody_heeds_is_told(tmp_path: Path) -> None:
     assert any("demand: no mutant of offset is what it speaks of" in line for line in notes), notes
 
 
-def test_an_object_with_coordinates_is_told_with_one_of_them(tmp_path: Path) -> None:
+def test_an_object_with_coordinates_is_reported_with_one_of_them(tmp_path: Path) -> None:
     folder = project(tmp_path, DRIVE)
     mission = (folder / "mission.py").read_text().replace("class Speed:", "class Speed:\n    y = 0.0")
     (folder / "mission.py").write_text(mission)

@@ -41,7 +41,7 @@ def mutants(text: str, *operations: Operation, role: Role = Role.PROGRAM) -> dic
     return {mutant.id: mutant.description for mutant in wanted}
 
 
-def test_what_is_published_is_told_by_its_name_and_its_id_by_the_text() -> None:
+def test_what_is_published_is_identified_by_its_name_and_its_id_by_the_text() -> None:
     assert mutants("self.goals.publish", operation(Form.PUBLISH, "/arm/goal")) == {
         "pick.py:Pick.run:self.goals.publish#1:pose.position.y:reverse": (
             "publish /arm/goal: pose.position.y 0.2 m → -0.2 m"
@@ -49,7 +49,7 @@ def test_what_is_published_is_told_by_its_name_and_its_id_by_the_text() -> None:
     }
 
 
-def test_a_callback_is_told_with_what_it_hears() -> None:
+def test_a_callback_is_named_with_what_it_hears() -> None:
     assert mutants("def on_goal", operation(Form.RECEIVE, "/arm/goal", "/pick")) == {
         "pick.py:Pick.run:def on_goal#1:pose.position.y:negate": (
             "def on_goal, receive /arm/goal of /pick: reads pose.position.y -0.2 m instead of 0.2 m"

@@ -50,7 +50,7 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
     ],
 )
 @pytest.mark.parametrize("option", ["only", "skip"])
-def test_what_can_fit_nothing_is_told_with_the_nearest(
+def test_what_can_fit_nothing_is_reported_with_the_nearest(
     project: Path, option: str, word: str, nearest: str
 ) -> None:
     with pytest.raises(SelectionError, match=f"--{option}: no mutant matches") as error:
@@ -74,7 +74,7 @@ def test_what_may_fit_is_left_to_the_plan(project: Path, word: str) -> None:
 
 
 @pytest.mark.parametrize("command", ["run", "list"])
-def test_no_test_is_run_before_it_is_told(
+def test_no_test_is_run_before_it_is_reported(
     project: Path, command: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["-C", str(project), command, "--only", "revers"]) == 2

@@ -99,7 +99,7 @@ def test_notes_count_if_they_are_opened(tmp_path: Path, monkeypatch: pytest.Monk
     }  # fmt: skip
 
 
-def test_where_the_kernel_cannot_tell_every_file_counts(tmp_path: Path) -> None:
+def test_where_the_kernel_cannot_report_it_every_file_counts(tmp_path: Path) -> None:
     request = request_for(write_project(tmp_path, MISSION, TESTS, more=FILES))
     digests = dict.fromkeys(FILES, "#")
     assert counted(request, digests, set(), None).keys() == FILES.keys() - {"junit.xml"}

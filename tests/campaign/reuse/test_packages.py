@@ -114,7 +114,7 @@ def test_what_lies_in_the_project_is_known_as_its_own(
     assert code_of_packages(root).get("lab", ()) == ()
 
 
-def test_of_other_packages_the_version_tells_enough(site: Path, tmp_path: Path) -> None:
+def test_of_other_packages_the_version_is_enough(site: Path, tmp_path: Path) -> None:
     write(site, {"numbers.py": ""})
     installed(site, "numbers", "", ["numbers.py"])
     assert "numbers" not in code_of_packages(tmp_path)

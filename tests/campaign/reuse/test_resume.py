@@ -213,7 +213,7 @@ def test_a_new_test_runs_what_it_judges_and_no_test_has_killed_before_it(project
     assert "tests/conftest.py is new" in project.note
 
 
-def test_survivors_are_not_asked_again_by_tests_that_do_not_reach_them_and_that_is_told(
+def test_survivors_are_not_asked_again_by_tests_that_do_not_reach_them_and_that_is_reported(
     project: Project,
 ) -> None:
     first = project.run()
@@ -612,7 +612,7 @@ def test_campaigns_killed_at_random_moments_end_like_an_undisturbed_one() -> Non
     assert sum(json.loads(done.stdout)["kills"].values()) == 5
 
 
-def test_changes_are_told_in_words() -> None:
+def test_changes_are_described_in_words() -> None:
     old = {"a.py": "#1", "b.py": "#1", "seed": "1", "numpy": "2.0"}
     new = {"b.py": "#2", "c.py": "#1", "seed": "2", "numpy": "2.0"}
     assert changed_parts(old, new) == ["a.py is gone", "b.py changed", "c.py is new", "seed is 2, was 1"]

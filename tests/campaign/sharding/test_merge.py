@@ -129,7 +129,7 @@ def test_shards_part_the_plan_and_no_ladder(campaigns: Path) -> None:
     assert not ladders[0] & ladders[1]
 
 
-def test_a_missing_shard_is_told_with_what_to_do(campaigns: Path, tmp_path: Path) -> None:
+def test_a_missing_shard_is_reported_with_what_to_do(campaigns: Path, tmp_path: Path) -> None:
     target = tmp_path / "merged.sqlite"
     (told,) = merge(shards(campaigns)[1:], target, root=campaigns / "cell", room=ROOM)
     assert told.startswith("shard 1 of 2 missing")
@@ -138,7 +138,7 @@ def test_a_missing_shard_is_told_with_what_to_do(campaigns: Path, tmp_path: Path
         assert read_results(journal).state == "not all shards are there"
 
 
-def test_a_shard_that_was_interrupted_is_told(campaigns: Path, tmp_path: Path) -> None:
+def test_a_shard_that_was_interrupted_is_reported(campaigns: Path, tmp_path: Path) -> None:
     shutil.copytree(campaigns / "1", tmp_path / "1")
     with Journal.open(tmp_path / "1" / "journal.sqlite") as journal:
         lost = journal.outcomes()[0]

@@ -174,7 +174,7 @@ def test_a_journal_of_elsewhere_is_taken_over_as_far_as_it_holds(project: Projec
     assert "seed is 5, was 1" in project.notes()  # and what is not altered is not judged
 
 
-def test_a_missing_journal_is_told_with_since_and_an_error_without(project: Project) -> None:
+def test_a_missing_journal_is_reported_with_since_and_an_error_without(project: Project) -> None:
     nowhere = project.folder / "nowhere.sqlite"
     project.edit("mission.py", lambda text: text.replace("0.3", "0.4"))
     project.run(since="HEAD", other_journal=nowhere)

@@ -583,7 +583,7 @@ def test_the_message_itself_is_no_quantity(tmp_path: Path) -> None:
     assert "robot.toml:4 · robot:Arm.move · arguments.m: holds the text command" in message
 
 
-def test_all_mistakes_of_a_file_are_told_in_the_order_of_its_lines(tmp_path: Path) -> None:
+def test_all_mistakes_of_a_file_are_reported_in_the_order_of_its_lines(tmp_path: Path) -> None:
     text = (
         "chekcs = []\n"
         + GOOD_OPERATION
@@ -598,7 +598,7 @@ def test_all_mistakes_of_a_file_are_told_in_the_order_of_its_lines(tmp_path: Pat
     assert (caught.value.file, caught.value.key, caught.value.line) == ("robot.toml", "chekcs", 1)
 
 
-def test_no_more_than_ten_mistakes_are_told_one_by_one(tmp_path: Path) -> None:
+def test_no_more_than_ten_mistakes_are_reported_one_by_one(tmp_path: Path) -> None:
     message = vocabulary_refused(tmp_path, "".join(f"[[operation]]\ncall = 'a.b{n}'\n" for n in range(25)))
     assert len(message.splitlines()) == 11
     assert message.endswith("… and 15 more")

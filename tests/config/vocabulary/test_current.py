@@ -39,7 +39,7 @@ HIDDEN = '{ kind = "translation", axis = "x", unit = "m", mode = "to", relative 
         ),
     ],
 )
-def test_what_came_last_under_a_name_tells(current: str, reading: str, tmp_path: Path) -> None:
+def test_the_current_value_is_what_came_last_under_a_name(current: str, reading: str, tmp_path: Path) -> None:
     text = f"[[operation]]\n{GOAL}fields.x = {HIDDEN}\ncurrent = '{current}'\n{reading}"
     operation = loaded(tmp_path, text).operation("publish /arm/goal")
     assert operation is not None

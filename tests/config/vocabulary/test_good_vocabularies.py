@@ -245,7 +245,7 @@ def test_a_pattern_with_several_fields_describes_each(tmp_path: Path) -> None:
     assert [q.name for q in pattern.result] == ["[0]"]
 
 
-def test_a_rotation_of_a_joint_may_be_told_by_the_joint_angle(tmp_path: Path) -> None:
+def test_a_rotation_of_a_joint_may_be_given_by_the_joint_angle(tmp_path: Path) -> None:
     text = """
     [[operation]]
     call = "robot:turn"
@@ -339,7 +339,7 @@ def test_a_pattern_may_describe_arguments_beside_the_text(tmp_path: Path) -> Non
     assert operation.described.keys() == {"timeout", "value", "pose", "node"}
 
 
-def test_the_object_of_a_call_may_tell_which_command_it_is(tmp_path: Path) -> None:
+def test_the_object_of_a_call_may_decide_which_command_it_is(tmp_path: Path) -> None:
     text = """message = "self.nodeid"
     patterns = [{ text = "ns=2;s=X", arguments.value = { kind = "duration", unit = "s" } }]
     """

@@ -55,7 +55,7 @@ def test_a_method_is_an_operation_of_a_kind_of_its_own(tmp_path: Path) -> None:
         ),
     ],
 )
-def test_what_is_wrong_is_told(tmp_path: Path, lines: str, text: str) -> None:
+def test_what_is_wrong_is_reported(tmp_path: Path, lines: str, text: str) -> None:
     (tmp_path / "robot.toml").write_text(f"[[operation]]\n{lines}\n", encoding="utf-8")
     with pytest.raises(VocabularyError, match=text.replace("(", r"\(").replace(")", r"\)")):
         load_vocabulary(["robot.toml"], tmp_path)

@@ -167,7 +167,7 @@ def test_what_a_vocabulary_says_reaches_the_worker(tmp_path: Path) -> None:
     assert from_data(Vocabulary, to_data(vocabulary)) == vocabulary
 
 
-def test_two_operations_of_one_site_are_told_apart_by_name() -> None:
+def test_two_operations_of_one_site_are_distinguished_by_name() -> None:
     assert with_operation("", "publish /arm/goal") == "publish /arm/goal"
     assert with_operation("", "robot:Arm.move") == "Arm.move"
 

@@ -71,6 +71,8 @@ def test_each_case_of_a_call_has_refusals_of_its_own(tmp_path: Path) -> None:
         ('topic = "/a"\ndirection = "receive"\nrefused = { values = [5] }', [":4", "has no refused"]),
     ],
 )
-def test_a_wrong_refusal_is_told_with_place_and_remedy(text: str, words: list[str], tmp_path: Path) -> None:
+def test_a_wrong_refusal_is_reported_with_place_and_remedy(
+    text: str, words: list[str], tmp_path: Path
+) -> None:
     message = refused(tmp_path, text)
     assert [word for word in words if word not in message] == [], message

@@ -115,7 +115,7 @@ def test_pybullet_has_both_places_of_a_link(tmp_path: Path) -> None:
     assert set(parts) == {*positions, "[1][0:4] quaternion None", "[5][0:4] quaternion None"}
 
 
-def test_a_motor_of_pybullet_is_told_what_its_mode_says(tmp_path: Path) -> None:
+def test_a_motor_of_pybullet_gets_what_its_mode_names(tmp_path: Path) -> None:
     assert parts_of("pybullet", "pybullet:setJointMotorControl2", tmp_path) == {
         "controlMode=0": ["targetVelocity speed rad/s"],
         "controlMode=1": ["force torque Nm"],

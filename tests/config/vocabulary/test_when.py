@@ -79,7 +79,7 @@ def test_a_case_goes_together_with_modes_and_with_text(tmp_path: Path) -> None:
     assert (up.notation, up.name) == ("up/{h:g}", "up/{h} [kind=move]")
 
 
-def test_what_is_told_twice_alike_counts_once(tmp_path: Path) -> None:
+def test_what_is_reported_twice_alike_counts_once(tmp_path: Path) -> None:
     entry = f"[[operation]]\n{CALL}{GRIP}{OPENING}"
     (tmp_path / "more.toml").write_text(entry)
     (tmp_path / "robot.toml").write_text(entry)

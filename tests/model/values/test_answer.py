@@ -257,6 +257,6 @@ def test_a_proxy_is_asked_nothing() -> None:
     assert Proxy.asked == []
 
 
-def test_a_class_that_is_gone_is_told() -> None:
+def test_a_class_that_is_gone_is_reported() -> None:
     with pytest.raises(LookupError, match="nowhere:Pose"):
         restore({"object": ["nowhere:Pose", {}, {}]}, {})

@@ -181,7 +181,7 @@ def test_an_object_with_less_parts_is_no_orientation() -> None:
     assert Reply({}).values == {}
 
 
-def test_a_value_that_a_message_refuses_is_told_with_its_path() -> None:
+def test_a_value_that_a_message_refuses_is_reported_with_its_path() -> None:
     message = trajectory(Ros2)
     with pytest.raises(PathError, match=r"cannot replace .*effort"):
         Path.parse(".points[0].effort", rooted=False).put(message, [1.5])

@@ -60,7 +60,7 @@ def test_a_value_is_printed_with_its_unit(unit: str | None, value: Any, text: st
         (1234567, 1234568, ("1234567 m", "1234568 m")),
     ],
 )
-def test_two_values_are_printed_with_as_many_digits_as_tell_them_apart(
+def test_two_values_are_printed_with_as_many_digits_as_distinguish_them(
     first: float, second: float, texts: tuple[str, str]
 ) -> None:
     quantity = Quantity("x", Path.parse("x", rooted=True), Kind.POSITION, unit="m")

@@ -85,13 +85,13 @@ OTHERS = [
 
 
 @pytest.mark.parametrize(("quantity", "first", "second"), SAME)
-def test_the_robot_cannot_tell_them_apart(quantity: Quantity, first: Any, second: Any) -> None:
+def test_the_robot_cannot_distinguish_them(quantity: Quantity, first: Any, second: Any) -> None:
     assert quantity.is_same(first, second)
     assert quantity.is_same(second, first)
 
 
 @pytest.mark.parametrize(("quantity", "first", "second"), OTHERS)
-def test_the_robot_can_tell_them_apart(quantity: Quantity, first: Any, second: Any) -> None:
+def test_the_robot_can_distinguish_them(quantity: Quantity, first: Any, second: Any) -> None:
     assert not quantity.is_same(first, second)
     assert not quantity.is_same(second, first)
 

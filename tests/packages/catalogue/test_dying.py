@@ -52,7 +52,7 @@ def run(node: Path, operator: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, capture_output=True, text=True, check=False, env=environment, timeout=600)
 
 
-def test_a_node_that_is_killed_tells_so_and_is_gone(node: Path) -> None:
+def test_a_node_that_is_killed_reports_it_and_is_gone(node: Path) -> None:
     ended = run(node, "kill-node")
     assert ended.returncode == -signal.SIGKILL, ended.stderr
     assert ended.stdout.split("\n")[-3:] == ["tells Acted False", "tells Acted None", ""]

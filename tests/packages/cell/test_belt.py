@@ -108,7 +108,7 @@ def test_the_encoder_counts_whole_steps_of_what_the_belt_has_run() -> None:
     assert belt.speed() == pytest.approx(0.15, abs=belt_data.resolution / 0.1)
 
 
-def test_the_encoder_tells_what_it_read_when_a_picture_was_taken() -> None:
+def test_the_encoder_shows_what_it_read_when_a_picture_was_taken() -> None:
     cell = cell_with(Belt())
     belt = cell.belt()
     belt.run(0.2)

@@ -153,7 +153,7 @@ def test_a_mesh_is_read_from_a_file_in_its_unit(tmp_path: Path) -> None:
     assert found == sorted(corners)
 
 
-def test_a_part_looks_as_it_is_told_and_otherwise_as_its_colour() -> None:
+def test_a_part_looks_as_it_is_given_and_otherwise_as_its_colour() -> None:
     cell = Cell(1, scene=Scene(parts=(Box(colour="blue"), Box(name="carton", rgba=(0.7, 0.5, 0.3, 1)))))
     assert cell.simulation.model.geom("carton").rgba == pytest.approx((0.7, 0.5, 0.3, 1))
     red, _, blue, _ = cell.simulation.model.geom("box").rgba

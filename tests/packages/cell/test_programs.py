@@ -44,7 +44,7 @@ def test_a_program_waits_for_what_another_one_does(cell: Cell) -> None:
     assert done == ["second", "first"]
 
 
-def test_waiting_tells_when_its_time_is_over(cell: Cell) -> None:
+def test_waiting_ends_when_its_time_is_over(cell: Cell) -> None:
     async def wait() -> bool:
         return await until(cell, lambda: False, within=0.25)
 
@@ -103,7 +103,7 @@ def test_no_program_is_refused(cell: Cell) -> None:
         run_together(cell, {}, within=10)
 
 
-def test_a_move_that_is_told_to_brake_ends_soon_and_short_of_its_target(cell: Cell) -> None:
+def test_a_move_that_is_ordered_to_brake_ends_soon_and_short_of_its_target(cell: Cell) -> None:
     arm = cell.robots["left"].arm
     moved = arm.start_move_by(y=0.3)
     cell.wait(0.5)

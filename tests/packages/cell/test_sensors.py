@@ -95,7 +95,7 @@ def test_missing_box_is_a_sensor_error_that_lists_the_boxes(cell: Cell) -> None:
         Cell(1, scene=Scene(parts=())).sensors.colour()
 
 
-def test_several_boxes_are_told_apart() -> None:
+def test_several_boxes_are_distinguished() -> None:
     boxes = (Box(name="left", position=(0.5, 0.3, 1.0)), Box(name="right", position=(0.5, -0.3, 1.0)))
     sensors = Cell(2, scene=Scene(parts=boxes)).sensors
     assert sensors.box_position("left").y == pytest.approx(0.3, abs=0.005)
@@ -109,7 +109,7 @@ def test_unknown_colour_and_seed_are_refused() -> None:
         Cell("one")  # type: ignore[arg-type]
 
 
-def test_the_encoder_tells_where_the_belt_was_when_the_camera_took_its_picture() -> None:
+def test_the_encoder_shows_where_the_belt_was_when_the_camera_took_its_picture() -> None:
     """So a box on a moving belt is where the picture showed it plus what the belt has run since."""
     cell = Cell(1, noise=False, scene=Scene(parts=(Box(position=(0.55, -0.6, 1.0), jitter=0.0),)))
     belt = cell.belt()

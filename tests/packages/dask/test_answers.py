@@ -158,7 +158,7 @@ _WRONG: dict[str, bytes] = {
 
 
 @pytest.mark.parametrize("data", _WRONG.values(), ids=_WRONG.keys())
-def test_what_is_no_answer_to_a_unit_is_told(data: bytes) -> None:
+def test_what_is_no_answer_to_a_unit_is_reported(data: bytes) -> None:
     with pytest.raises(InvalidData, match=r".{4}"):
         UnitAnswer.of(data, unit())
 
@@ -168,7 +168,7 @@ def test_an_answer_of_absurd_size_is_not_read() -> None:
         UnitAnswer.of(packed(good()) + b" " * MOST_BYTES, unit())
 
 
-def test_a_fork_parent_tells_of_its_own_mutants_only() -> None:
+def test_a_fork_parent_reports_its_own_mutants_only() -> None:
     data = good()
     data["lines"].append(event_to_data(ForkTestEnd(mutant(1).id, replace(END, trace=()))))
     assert sum(isinstance(line, ForkTestEnd) for line in events_of(packed(data), fork_parent())) == 1

@@ -59,7 +59,7 @@ def test_its_name_is_that_of_its_content(tmp_path: Path) -> None:
     assert packed(other).digest != first.digest
 
 
-def test_what_tells_pytest_how_to_run_comes_along_from_above(tmp_path: Path) -> None:
+def test_what_configures_pytest_comes_along_from_above(tmp_path: Path) -> None:
     cell = project(tmp_path / "repository" / "robots" / "cell")
     (tmp_path / "repository" / "pytest.ini").write_text("[pytest]\n")
     (tmp_path / "repository" / "secret.txt").write_text("")

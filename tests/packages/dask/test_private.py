@@ -148,7 +148,7 @@ def test_only_its_user_can_read_the_key(tmp_path: Path) -> None:
     assert Path(made.key).parent.stat().st_mode & 0o777 == 0o700
 
 
-def test_no_command_line_and_no_environment_tells_the_key(opened: Opened) -> None:
+def test_no_command_line_and_no_environment_holds_the_key(opened: Opened) -> None:
     secret = Path(str(opened.settings.key)).read_bytes().splitlines()[1]
     for pid in own():
         for name in ("cmdline", "environ"):
@@ -194,7 +194,7 @@ class Nobody:
         ("tcp://localhost:8786", 0),
     ],
 )
-def test_a_link_that_others_can_read_is_told_once(
+def test_a_link_that_others_can_read_is_reported_once(
     address: str, warnings: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(connection, "Link", Nobody)

@@ -119,7 +119,7 @@ Store.take = take
     [("sys.modules['mutabot'] = None", False, "mutabot"), (NO_ROOM, True, "No space left on device")],
     ids=["no mutabot", "no room"],
 )
-def test_a_worker_that_cannot_take_part_is_told_and_lives_on(
+def test_a_worker_that_cannot_take_part_is_reported_and_lives_on(
     how: str, has_bundle: bool, says: str, tmp_path: Path
 ) -> None:
     with cluster(tmp_path, 0) as settings, strange_worker(settings, tmp_path, how) as process:
@@ -159,7 +159,7 @@ def test_without_dask_the_extra_is_named() -> None:
 
 
 @pytest.mark.whole
-def test_certificates_that_do_not_fit_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_certificates_that_do_not_fit_are_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(link, "PATIENCE", 3.0)
     ours, others = (_certificates(tmp_path / name) for name in ("ours", "others"))
     ca, cert, key = ours
@@ -235,7 +235,7 @@ def test_workers_on_this_machine_end_with_whoever_started_them(tmp_path: Path) -
     assert until(lambda: not processes(entry), 10.0)
 
 
-def test_a_scheduler_that_cannot_start_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_scheduler_that_cannot_start_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("DASK_DISTRIBUTED__SCHEDULER__PRELOAD", '["no.such.module"]')
     with pytest.raises(UsageError, match="a scheduler could not be started on this machine"):
         LocalCluster(1, tmp_path).start()

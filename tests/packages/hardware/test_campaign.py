@@ -202,7 +202,7 @@ def test_a_motion_that_was_stopped_is_not_repeated_unasked(folder: Path, server:
         ((), "each mutant needs a confirmation, but this is no terminal"),
     ],
 )
-def test_what_is_missing_is_told_before_anything_moves(
+def test_what_is_missing_is_reported_before_anything_moves(
     folder: Path, server: RobotServer, words: tuple[str, ...], said: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert mutabot(folder, "run", *words) == 2
@@ -211,7 +211,7 @@ def test_what_is_missing_is_told_before_anything_moves(
 
 
 @pytest.mark.parametrize("surprises", ["[]", pytest.param('["guard"]', marks=pytest.mark.whole)])
-def test_a_guard_that_the_original_violates_is_told_before_a_mutant_moves(
+def test_a_guard_that_the_original_violates_is_reported_before_a_mutant_moves(
     folder: Path, server: RobotServer, surprises: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     narrow = ("-o", "guard.box=[{x=[0.5,0.7]}]", "-o", f"hardware.stop={surprises}")

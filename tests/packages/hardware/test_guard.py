@@ -209,7 +209,7 @@ def test_what_a_wrong_reading_leads_to_is_stopped_as_well(tmp_path: Path, server
 @pytest.mark.parametrize(
     "engine", ["auto", *(pytest.param(name, marks=pytest.mark.whole) for name in ("fork", "replay"))]
 )
-def test_a_guard_that_the_original_violates_is_told_before_anything_is_mutated(
+def test_a_guard_that_the_original_violates_is_reported_before_anything_is_mutated(
     tmp_path: Path, server: RobotServer, engine: str
 ) -> None:
     guard = "[guard]\nbox = [{ x = [0.5, 0.7] }]\n"

@@ -71,7 +71,7 @@ def test_a_move_by_an_amount_counts_by_where_it_leads() -> None:
     assert why(guard, {"dx": 0.3}, by, current=current) == "dx leads to 0.9 m, the workspace is 0.2 to 0.8 m"
 
 
-def test_a_move_whose_end_nothing_tells_does_not_pass() -> None:
+def test_a_move_whose_end_nothing_shows_does_not_pass() -> None:
     by = Operation("robot:Arm.move_by", arguments=(quantity("dx", "x", mode=Mode.BY),))
     found = why(TableGuard({"box": [{"x": [0.2, 0.8]}]}), {"dx": 0.1}, by)
     assert found == "where dx leads to is not known: no reading gives the robot's present position"

@@ -97,7 +97,7 @@ def test_what_it_does_not_say_stands_beside_it(bullet: Path) -> None:
     assert "stepSimulation" not in text
 
 
-def test_check_tells_in_one_line_what_of_it_no_test_reaches(bullet: Path) -> None:
+def test_check_reports_in_one_line_what_of_it_no_test_reaches(bullet: Path) -> None:
     propose(bullet, [Path("program.py")])
     described = {
         operation.target.partition(":")[2] for operation in load_vocabulary(("pybullet",), bullet).operations
@@ -139,7 +139,7 @@ def test_an_environment_behind_wrappers_has_its_own_vocabulary(
     assert load_configuration(tmp_path).vocabulary == (expected,)
 
 
-def test_without_a_run_the_imports_of_the_program_tell(bullet: Path) -> None:
+def test_without_a_run_the_imports_of_the_program_count(bullet: Path) -> None:
     write(bullet, {"test_program.py": "import simulator_that_is_missing\n"})
     told = "\n".join(propose(bullet, [Path("program.py")]))
     assert "simulator_that_is_missing" in told

@@ -154,7 +154,7 @@ def test_without_tests_that_import_it_a_telling_name_decides(tmp_path: Path) -> 
     assert [path.name for path in layout.program] == ["mission.py"]  # "replace" is no "place"
 
 
-def test_a_guess_of_which_the_tests_run_no_call_is_told(tmp_path: Path) -> None:
+def test_a_guess_of_which_the_tests_run_no_call_is_reported(tmp_path: Path) -> None:
     test = """
         from arm import Arm
         from units import METRE

@@ -123,11 +123,11 @@ def test_what_is_read_means_what_ros_says(read: WatchedPart, table: dict[str, An
         part("data", ("std_msgs/Int32", "data"), values=(9,)),
     ],
 )
-def test_nothing_is_made_up_where_nothing_tells(read: WatchedPart) -> None:
+def test_nothing_is_made_up_where_nothing_is_known(read: WatchedPart) -> None:
     assert meaning(read, place(Form.RECEIVE, "/it")) == {}
 
 
-def test_poses_and_joints_of_a_vendor_are_told_by_the_names_of_services() -> None:
+def test_poses_and_joints_of_a_vendor_are_identified_by_the_names_of_services() -> None:
     pose = part("pose", ("arm_msgs/MoveRequest", "pose"), values=([282.0, 187.9, 404.5, 3.1, 0.0, -1.5],))
     line = meaning(pose, place(Form.CALL, "/arm/move_line", is_written=True))
     assert {path: guess.table.get("unit") for path, guess in line.items()} == {
@@ -197,7 +197,7 @@ def test_a_vocabulary_takes_the_entries_as_they_are(tmp_path: Path) -> None:
     assert goal.type == "geometry_msgs/PoseStamped"
 
 
-def test_what_is_guessed_and_what_nothing_tells_stands_there() -> None:
+def test_what_is_guessed_and_what_nothing_shows_stands_there() -> None:
     texts = {entry.name: entry_text(entry) for entry in entries(uses(everything()))}
     assert texts["/arm/goal"].splitlines() == [
         "[[operation]]  # seen: 1 message, first at mission.py:7",

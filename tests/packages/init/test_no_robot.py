@@ -86,7 +86,7 @@ def test_callbacks_of_tests_factories_parsers_and_mocked_events_are_none(project
     assert [operation.target for operation in found] == ["bus:Bus.send"]
 
 
-def test_a_description_of_an_object_tells_no_commands_apart(project: Path) -> None:
+def test_a_description_of_an_object_distinguishes_no_commands(project: Path) -> None:
     (sending,) = load_vocabulary(["robot.toml"], project).operations
     assert sending.message is None
     assert sending.command

@@ -256,7 +256,7 @@ def test_a_reading_without_arguments_stands_as_the_probe_to_take(proposed: tuple
     assert probe["call"] in operations(proposed[0])
 
 
-def test_what_was_run_and_what_comes_next_is_told(proposed: tuple[Path, str]) -> None:
+def test_what_was_run_and_what_comes_next_is_reported(proposed: tuple[Path, str]) -> None:
     assert "mission.py (guessed" in proposed[1]
     assert "tests: 1 passed" in proposed[1]
     assert "mutabot check" in proposed[1].splitlines()[-1]
@@ -439,7 +439,7 @@ def test_a_pose_that_is_read_is_understood(vendor: Path, target: str) -> None:
     ]
 
 
-def test_what_cannot_be_told_is_a_comment_with_its_reason(vendor: Path) -> None:
+def test_what_cannot_be_described_is_a_comment_with_its_reason(vendor: Path) -> None:
     text = (vendor / "robot.toml").read_text()
     assert '# call = "vendor:Client.close_later"' in text
     assert "it returns a coroutine but is not a coroutine function" in text
@@ -524,7 +524,7 @@ def test_values_come_from_the_program_where_the_tests_call_the_same(tmp_path: Pa
     assert [pattern.text for pattern in operations(tmp_path)["link:send"].patterns] == ["lift/{height:g}"]
 
 
-def test_tests_that_cannot_run_are_told_precisely_and_files_are_written(project: Path) -> None:
+def test_tests_that_cannot_run_are_reported_precisely_and_files_are_written(project: Path) -> None:
     (project / "tests" / "test_mission.py").write_text("import simulator_that_is_missing, mission\n")
     told = "\n".join(propose(project))
     assert "No module named 'simulator_that_is_missing'" in told
@@ -533,7 +533,7 @@ def test_tests_that_cannot_run_are_told_precisely_and_files_are_written(project:
     assert "without an operation" in told
 
 
-def test_failing_tests_are_told_and_what_they_called_counts(project: Path) -> None:
+def test_failing_tests_are_reported_and_what_they_called_counts(project: Path) -> None:
     with (project / "tests" / "test_mission.py").open("a") as file:
         file.write("def test_bad(): assert 1 == 2, 'this is bad'\n")
     told = "\n".join(propose(project))
@@ -659,7 +659,7 @@ def test_the_verb_decides_what_an_argument_is(
         ("speed", "move_to", (0.5,), "the unit: m/s, cm/s"),
     ],
 )
-def test_what_nothing_tells_is_asked(name: str, called: str, values: tuple[Any, ...], asked: str) -> None:
+def test_what_nothing_shows_is_asked(name: str, called: str, values: tuple[Any, ...], asked: str) -> None:
     guess = guess_argument(name, NameContext(words_of(called), values=values))
     assert guess.questions[0].startswith(asked)
 

@@ -84,7 +84,7 @@ def test_the_nodes_of_an_object_are_commands_with_what_is_written_beside_them(pr
     }
 
 
-def test_what_a_node_reads_is_told_by_its_name_and_values(project: Path) -> None:
+def test_what_a_node_reads_is_identified_by_its_name_and_values(project: Path) -> None:
     reading = operation(project, "Node.read_value")
     assert not reading.command
     assert {pattern.text: [part.kind for part in pattern.result] for pattern in reading.patterns} == {
@@ -93,7 +93,7 @@ def test_what_a_node_reads_is_told_by_its_name_and_values(project: Path) -> None
     }
 
 
-def test_registers_are_told_apart_by_their_numbers(project: Path) -> None:
+def test_registers_are_distinguished_by_their_numbers(project: Path) -> None:
     writing = operation(project, "Registers.write_register")
     assert {pattern.text: [part.values for part in pattern.arguments] for pattern in writing.patterns} == {
         "40001": [(100, 200)],
@@ -107,7 +107,7 @@ def test_an_object_whose_text_changes_is_no_node(project: Path) -> None:
     assert found.message is None
 
 
-def test_check_accepts_commands_that_nodes_tell_apart(project: Path) -> None:
+def test_check_accepts_commands_that_nodes_distinguish(project: Path) -> None:
     report = check(request_for(project), Quiet())
     assert report.data["unused"] == []
 

@@ -118,7 +118,7 @@ def test_a_camera_that_fails_is_asked_once_and_the_test_goes_on(tmp_path: Path) 
 @pytest.mark.parametrize(
     "wrong", [b"123", memoryview(bytes(12)).cast("B", (4, 3)), memoryview(bytes(16)).cast("I", (2, 2, 1))]
 )
-def test_what_is_no_picture_is_told_with_what_one_is(wrong: Any, tmp_path: Path) -> None:
+def test_what_is_no_picture_is_reported_with_what_one_is(wrong: Any, tmp_path: Path) -> None:
     world = World()
     world.feed.camera(lambda: wrong)
     found = recorder.begin(FilmWriter(str(tmp_path / "a")))

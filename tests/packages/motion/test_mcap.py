@@ -86,7 +86,7 @@ def test_values_blocks_and_what_it_is_are_there(found: Found) -> None:
     assert found.about["mutabot"]["fault"] == "1.000 s"
 
 
-def test_the_log_tells_commands_contacts_and_the_fault(found: Found) -> None:
+def test_the_log_names_commands_contacts_and_the_fault(found: Found) -> None:
     told = [line for _, line in found.messages["/mutant/log"]]
     assert [line.message for line in told][:2] == ["Arm.move_by dx=1", "FAULT: grip: do nothing → it opens"]
     assert (told[0].file, told[0].line) == ("mission.py", 3)

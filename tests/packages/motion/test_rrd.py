@@ -56,7 +56,7 @@ def test_poses_come_at_their_simulated_times(written: list[Any]) -> None:
     assert moved.timeline_names == ["simulated time"]
 
 
-def test_the_log_tells_commands_contacts_and_the_fault(written: list[Any]) -> None:
+def test_the_log_names_commands_contacts_and_the_fault(written: list[Any]) -> None:
     told = column(written, "/mutant/log", "TextLog:text")
     assert told == [
         "Arm.move_by dx=1 (mission.py:3)",

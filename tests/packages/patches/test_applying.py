@@ -194,7 +194,7 @@ def test_a_path_may_have_no_folder_before_it_or_stand_in_quotes(tmp_path: Path) 
         assert (made.path, made.after) == ("ä.txt", b"A\nb\n")
 
 
-def test_where_hunks_stand_is_told_of_the_file_as_it_is(tmp_path: Path) -> None:
+def test_where_hunks_stand_is_reported_for_the_file_as_it_is(tmp_path: Path) -> None:
     before, hunks = ALIKE["two hunks, the first longer"]
     (tmp_path / "x.py").write_text("# further down\n" + before)
     patch = read_patch((HEAD + hunks.replace("@@ -1,", "@@ -2,")).encode(), tmp_path, lambda _: False)

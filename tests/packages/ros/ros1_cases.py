@@ -533,7 +533,7 @@ def problems(stage: Stage) -> list[tuple[str, str]]:
         (ACTION.replace("result.result", "result.sum"), "result.sum", "it has result"),
     ],
 )
-def test_a_type_or_field_that_does_not_exist_is_told(
+def test_a_type_or_field_that_does_not_exist_is_reported(
     make: Making, vocabulary: str, key: str, text: str
 ) -> None:
     program = """

@@ -636,7 +636,7 @@ def test_a_publisher_is_set_up_under_another_name(make: Making) -> None:
     assert stage.mutated("wrong-name", "name", variant="misspelt")[0] == "/cell/goal_misspelt"
 
 
-def test_what_does_not_fit_a_type_is_told_with_the_nearest_name(make: Making) -> None:
+def test_what_does_not_fit_a_type_is_reported_with_the_nearest_name(make: Making) -> None:
     stage = make(
         "\n    def run():\n        pass\n",
         GOAL.replace("linear.y", "liner.y") + CLOSE.replace("SetBool", "SetBol"),

@@ -139,7 +139,7 @@ def test_a_driver_that_does_not_come_up_kills_no_mutant(end_of: Callable[..., En
 
 
 @pytest.mark.whole
-def test_a_full_queue_kills_no_mutant_and_a_topic_without_messages_is_told(
+def test_a_full_queue_kills_no_mutant_and_a_topic_without_messages_is_reported(
     end_of: Callable[..., End],
 ) -> None:
     found, lines = end_of(IGNORED)(1000)

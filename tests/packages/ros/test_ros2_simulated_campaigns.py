@@ -67,7 +67,7 @@ TESTS = """
         context.shutdown()
         return found[:1]
 
-    def test_it_tells_the_speed():
+    def test_it_shows_the_speed():
         {check}
 """
 CHECK = "assert heard(mission.run) == [0.5]"
@@ -140,7 +140,7 @@ def test_a_mutant_of_it_is_replayed_over_the_simulation(tmp_path: Path) -> None:
         pytest.param(
             "assert len(heard(mission.run)) == 1",
             '0.25 if __import__("ros_in_process").is_running() else 0.5',
-            "tests/test_mission.py::test_it_tells_the_speed differs in round 1 in the simulation: ",
+            "tests/test_mission.py::test_it_shows_the_speed differs in round 1 in the simulation: ",
             id="another value",
             marks=pytest.mark.whole,
         ),
@@ -237,7 +237,7 @@ RACE = """
 
 
 @pytest.mark.whole
-def test_an_order_in_which_the_original_fails_is_told_with_what_repeats_it(tmp_path: Path) -> None:
+def test_an_order_in_which_the_original_fails_is_reported_with_what_repeats_it(tmp_path: Path) -> None:
     is_real = 'not __import__("ros_in_process").is_running()'
     tests = RACE.format(is_real=is_real, patience=f"(10.0 if {is_real} else 0.1)")
     settings = f'{CONFIGURATION}\nunstable_limit = 1.0\n[ros]\nschedule = "random"\n'

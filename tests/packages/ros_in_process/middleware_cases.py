@@ -102,7 +102,7 @@ def test_late_joiners_hear_what_is_latched_and_has_not_expired(pair: Pair) -> No
     assert pair.hear(Int32, "latched", latched) == []
 
 
-def test_incompatible_offers_are_told_to_both_ends(pair: Pair) -> None:
+def test_incompatible_offers_are_reported_to_both_ends(pair: Pair) -> None:
     told: list[Any] = []
     pair.other.create_subscription(
         Int32, "topic", told.append, QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE),
@@ -120,7 +120,7 @@ def test_incompatible_offers_are_told_to_both_ends(pair: Pair) -> None:
     assert publisher.get_subscription_count() == 0
 
 
-def test_missed_deadlines_and_matches_are_told(pair: Pair) -> None:
+def test_missed_deadlines_and_matches_are_reported(pair: Pair) -> None:
     missed: list[int] = []
     matched: list[tuple[int, int]] = []
     qos = QoSProfile(depth=1, deadline=Duration(seconds=0.2))
@@ -360,7 +360,7 @@ def test_what_nodes_log_is_on_rosout_and_the_standard_error(
     assert "[WARN]" in capfd.readouterr().err
 
 
-def test_endpoints_tell_their_quality_of_service(pair: Pair) -> None:
+def test_endpoints_report_their_quality_of_service(pair: Pair) -> None:
     pair.one.create_publisher(
         String, "topic", QoSProfile(depth=7, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     )

@@ -227,7 +227,7 @@ def test_one_alternative_at_a_time(tmp_path: Path) -> None:
         assert hook.alternatives.hits == {add.number: 1, multiply.number: 1}
 
 
-def test_a_recording_tells_kinds_and_variables_of_the_same_type(tmp_path: Path) -> None:
+def test_a_recording_distinguishes_kinds_and_variables_of_the_same_type(tmp_path: Path) -> None:
     source = "LIMIT = 4\nNAME = 'a'\ndef f(x, y, z):\n    n = 1\n    return x < y, n\n"
     text = text_of(tmp_path, source)
     with imported(tmp_path, text, record=True) as (module, hook):
@@ -281,7 +281,7 @@ def test_a_recording_keeps_no_class_that_a_test_makes(tmp_path: Path) -> None:
     assert f"{__name__}:Local" in seen
 
 
-def test_a_place_that_has_told_all_is_not_looked_at_any_more(tmp_path: Path) -> None:
+def test_a_place_that_has_shown_all_is_not_looked_at_any_more(tmp_path: Path) -> None:
     text = text_of(tmp_path, "LIMIT = 4\ndef f(x):\n    return x, [x + x]\n", "ABS", "SVR")
     numbers = {place.text: place.number for place in text.places}
     found = []
@@ -300,7 +300,7 @@ def test_a_place_that_has_told_all_is_not_looked_at_any_more(tmp_path: Path) -> 
     assert found[3][numbers["x"]].variables == ()
 
 
-def test_a_file_that_changed_is_left_alone_and_told(tmp_path: Path) -> None:
+def test_a_file_that_changed_is_left_alone_and_reported(tmp_path: Path) -> None:
     text = text_of(tmp_path, "x = 1 + 1\n")
     (tmp_path / text.file).write_text("x = 5\n")
     hook = SessionText(str(tmp_path), Instrumentation((text,)))
@@ -312,7 +312,7 @@ def test_a_file_that_changed_is_left_alone_and_told(tmp_path: Path) -> None:
     assert hook.problems == {text.file: "it has changed since its mutants were made"}
 
 
-def test_another_text_under_the_name_of_a_file_is_left_alone_and_told(tmp_path: Path) -> None:
+def test_another_text_under_the_name_of_a_file_is_left_alone_and_reported(tmp_path: Path) -> None:
     text = text_of(tmp_path, "x = 1 + 1\n")
     hook = SessionText(str(tmp_path), Instrumentation((text,)))
     hook.install()
@@ -325,7 +325,7 @@ def test_another_text_under_the_name_of_a_file_is_left_alone_and_told(tmp_path: 
     assert hook.problems == {text.file: "other text than the file holds is compiled under its name"}
 
 
-def test_a_file_whose_code_is_read_from_a_compiled_file_is_told(tmp_path: Path) -> None:
+def test_a_file_whose_code_is_read_from_a_compiled_file_is_reported(tmp_path: Path) -> None:
     text = text_of(tmp_path, "x = 1 + 1\n")
     hook = SessionText(str(tmp_path), Instrumentation((text,)))
     hook.install()
@@ -340,7 +340,7 @@ def test_a_file_whose_code_is_read_from_a_compiled_file_is_told(tmp_path: Path) 
     assert hook.problems == {text.file: instrument._ELSEWHERE}
 
 
-def test_a_file_whose_code_comes_out_of_sight_is_told(tmp_path: Path) -> None:
+def test_a_file_whose_code_comes_out_of_sight_is_reported(tmp_path: Path) -> None:
     text = text_of(tmp_path, "x = 1 + 1\n")
     hook = SessionText(str(tmp_path), Instrumentation((text,), record=True))
     hook.install()
@@ -436,7 +436,7 @@ def test_a_program_may_be_loaded_in_any_way(tmp_path: Path, monkeypatch: pytest.
         assert runpy.run_module(name)["x"] == 0
 
 
-def test_a_program_imported_too_early_is_told(tmp_path: Path) -> None:
+def test_a_program_imported_too_early_is_reported(tmp_path: Path) -> None:
     text = text_of(tmp_path, "x = 1 + 1\n")
     load(tmp_path / text.file)
     hook = SessionText(str(tmp_path), Instrumentation((text,)))

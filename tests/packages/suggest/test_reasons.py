@@ -103,7 +103,7 @@ def test_without_a_probe_the_reason_asks_for_one_and_with_one_for_a_check_on_the
     ]
 
 
-def test_what_ends_within_the_suites_tolerance_is_told_so(suite: SuiteChecks) -> None:
+def test_what_ends_within_the_suites_tolerance_is_reported_as_such(suite: SuiteChecks) -> None:
     told = in_test("test_it", "box ended 1.4 mm from its position", apart(0.0014, 0.0049))
     assert reason(suite, told) == "at most 4.9 mm, within your tolerance of 20 mm"
 
@@ -130,7 +130,7 @@ def test_a_failed_check_of_the_end_is_no_reason_where_only_the_way_differs(
     )
 
 
-def test_a_small_detour_is_told_with_the_tolerance_at_the_end(suite: SuiteChecks) -> None:
+def test_a_small_detour_is_reported_with_the_tolerance_at_the_end(suite: SuiteChecks) -> None:
     told = in_test("test_it", "box left its path by up to 25 mm", apart(0.001, 0.025))
     assert reason(suite, told) == (
         "box left its path by up to 25 mm: at the end within your tolerance of 20 mm; "
@@ -138,7 +138,7 @@ def test_a_small_detour_is_told_with_the_tolerance_at_the_end(suite: SuiteChecks
     )
 
 
-def test_what_turns_as_the_original_turns_is_told_so(suite: SuiteChecks) -> None:
+def test_what_turns_as_the_original_turns_is_reported_as_such(suite: SuiteChecks) -> None:
     turned = Apart("box turned", "deg", 1.0, 78.0, 2.0, 0.1, 78.0, 0.5)
     told = in_test("test_it", "box was turned by up to 78 deg on its way", apart(0.001, 0.015), turned)
     assert reason(suite, told).endswith(
@@ -156,7 +156,7 @@ def test_where_only_times_differ_the_reason_is_a_deadline(suite: SuiteChecks) ->
     assert reason(suite, told) == "only times differ: add a deadline if the task has one"
 
 
-def test_what_slips_on_its_way_is_told_so_though_no_position_differs(suite: SuiteChecks) -> None:
+def test_what_slips_on_its_way_is_reported_though_no_position_differs(suite: SuiteChecks) -> None:
     late = Apart("box", "m", 1.0, 0.04, 2.0, 0.0, 0.0, 0.04, 0.0001, 0.05)
     told = in_test("test_it", "box slipped 9.3 mm (original: 0.23 mm) in the grip", late)
     assert reason(suite, told).startswith("box slipped 9.3 mm (original: 0.23 mm) in the grip: nothing that")
@@ -166,7 +166,7 @@ def test_what_slips_on_its_way_is_told_so_though_no_position_differs(suite: Suit
     ("slip", "said"),
     [(0.0093, "within your tolerance of 20 mm"), (0.031, "nothing that its tests can read distinguishes it")],
 )
-def test_a_slip_that_the_suite_allows_at_the_end_is_told_with_its_tolerance(
+def test_a_slip_that_the_suite_allows_at_the_end_is_reported_with_its_tolerance(
     suite: SuiteChecks, slip: float, said: str
 ) -> None:
     slipped = Measurement("slip", "box", "m", slip, 0.0002, 5.0, 0.001)
@@ -180,7 +180,7 @@ def late() -> Apart:
     return Apart("box", "m", 1.0, 0.04, 2.0, 0.0, 0.0, 0.04, 0.0001, 0.05)
 
 
-def test_the_same_reason_is_told_once(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_same_reason_is_reported_once(capsys: pytest.CaptureFixture[str]) -> None:
     texts: list[str] = []
 
     class Context:

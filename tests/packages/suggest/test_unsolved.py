@@ -38,7 +38,7 @@ def measured(originals: list[float], mutant: float, tolerance: float) -> Measure
         (0.103, 0.01, "box.x differs by 0.003, its tolerance is 0.01"),
     ],
 )
-def test_a_difference_within_the_spread_kills_nothing_and_is_told(
+def test_a_difference_within_the_spread_kills_nothing_and_is_reported(
     mutant: float, tolerance: float, said: str
 ) -> None:
     found = measured([0.1, 0.105, 0.102, 0.104, 0.101, 0.103], mutant, tolerance)

@@ -32,7 +32,7 @@ class Clamped:
         return 0.3
 
 
-def test_a_number_is_told_as_it_is_after_the_change() -> None:
+def test_a_number_is_reported_as_it_is_after_the_change() -> None:
     servo = Clamped()
     assert change_at(servo, "speed", NumberChange("scale", 0.5))[:2] == (1.0, 1.2)
 

@@ -44,7 +44,7 @@ def test_what_is_noticed_and_up_to_where_the_task_is_done_are_two_numbers() -> N
     assert ladder("ULN").robust_to is None
 
 
-def test_nothing_is_claimed_of_an_end_that_nothing_tells() -> None:
+def test_nothing_is_claimed_of_an_end_that_nothing_shows() -> None:
     rungs = ladder("PPN")
     assert (rungs.robust, rungs.unseen, rungs.bar) == ("not known", [], "??█")
     assert ladder("UUN").robust == "not even the least"

@@ -71,7 +71,7 @@ def test_a_call_over_several_lines_has_no_columns(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("same", "level", "shown"), [(False, "warning", 10), (True, "notice", 9)])
-def test_no_more_than_github_shows_and_the_rest_is_told(
+def test_no_more_than_github_shows_and_the_rest_is_reported(
     tmp_path: Path, same: bool, level: str, shown: int
 ) -> None:
     mutants = tuple(

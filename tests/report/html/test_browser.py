@@ -225,7 +225,7 @@ def test_all_of_it_can_be_used_by_keyboard(visit: Visit) -> None:
     assert visit.wrong == []
 
 
-def test_a_mutant_s_page_tells_what_the_robot_did_and_who_looked(visit: Visit) -> None:
+def test_a_mutant_s_page_shows_what_the_robot_did_and_who_looked(visit: Visit) -> None:
     visit.open("#/mutant/2")
     visit.page.wait_for_selector("canvas.scene")
     text = visit.page.locator("main").inner_text()
@@ -597,7 +597,7 @@ def headings(visit: Visit, mutant: int) -> list[str]:
     return visit.page.locator("main h2").all_inner_texts()
 
 
-def test_a_mutant_that_no_test_reaches_is_told_so_once(browser: Any, tmp_path: Path) -> None:
+def test_a_mutant_that_no_test_reaches_is_reported_once(browser: Any, tmp_path: Path) -> None:
     ends = tuple(Outcome(samples.REVERSE.id, number, Verdict.NOT_COVERED) for number in range(2))
     page = browser.new_page()
     visit = Visit(page, reports.plain(tmp_path, outcomes=ends))

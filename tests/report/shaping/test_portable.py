@@ -37,7 +37,7 @@ def test_what_is_fit_already_is_left_alone(tmp_path: Path) -> None:
     assert "root" not in made.meta
 
 
-def test_what_came_out_otherwise_afresh_tells_nothing_of_the_machine(tmp_path: Path) -> None:
+def test_what_came_out_otherwise_afresh_shows_nothing_of_the_machine(tmp_path: Path) -> None:
     campaign = stored(tmp_path)
     mutant = campaign.mutants[0].mutant
     root = campaign.meta["root"]

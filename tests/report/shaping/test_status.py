@@ -52,7 +52,7 @@ def test_the_state_is_what_there_is_to_act_on(
     assert result(*verdicts).status is status
 
 
-def test_rounds_are_told_by_their_end() -> None:
+def test_rounds_are_grouped_by_their_end() -> None:
     assert rounds_text(result(K, K, S, None, None, None)) == (
         "killed by check in rounds 1 and 2, survived in round 3, not run in rounds 4 to 6"
     )

@@ -129,7 +129,7 @@ def test_with_one_round_there_is_no_interval(tmp_path: Path) -> None:
 
 @WIDTHS
 @pytest.mark.parametrize(("size", "told"), [("10%", "10%"), ("3", "3 of each family")])
-def test_a_sample_is_told_with_what_it_says_about_all(
+def test_a_sample_is_reported_with_what_it_means_for_all(
     tmp_path: Path, width: int, size: str, told: str
 ) -> None:
     stratum = {"family": "robot", "role": "program", "population": 30, "drawn": 3}
@@ -141,7 +141,7 @@ def test_a_sample_is_told_with_what_it_says_about_all(
 
 
 @WIDTHS
-def test_a_second_look_is_told(tmp_path: Path, width: int) -> None:
+def test_a_second_look_is_reported(tmp_path: Path, width: int) -> None:
     wrong = {
         "mutant": samples.SKIP.id, "number": 2, "round": 0, "first": "survived", "second": "killed by check",
     }  # fmt: skip
@@ -169,7 +169,7 @@ def test_a_second_look_is_told(tmp_path: Path, width: int) -> None:
     assert max(cell_len(line) for line in text.splitlines()) <= width
 
 
-def test_re_runs_that_all_end_the_same_are_told_without_a_count_of_others(tmp_path: Path) -> None:
+def test_re_runs_that_all_end_the_same_are_reported_without_a_count_of_others(tmp_path: Path) -> None:
     repeats = {"doubted": {"outcomes": 2, "repeated": 1, "changed": 0}}
     with Journal.open(samples.write_journal(tmp_path / "journal.sqlite", repeats=repeats)) as journal:
         text = " ".join(report(read_results(journal)).split())
@@ -204,7 +204,7 @@ def test_survivors_come_with_a_reason_the_farthest_first(results: Results) -> No
     assert "1 survivor without a measured effect: mutant 4" in section
 
 
-def test_that_no_probe_tells_how_the_world_ended_is_said_once(tmp_path: Path) -> None:
+def test_that_no_probe_shows_how_the_world_ended_is_said_once(tmp_path: Path) -> None:
     ends = [Outcome(item.id, 0, Verdict.SURVIVED) for item in (samples.REVERSE, samples.SKIP)]
     with Journal.open(samples.write_journal(tmp_path / "journal.sqlite", outcomes=ends)) as journal:
         text = report(read_results(journal))
@@ -324,7 +324,7 @@ def test_show_gives_the_kill_rate_with_its_interval(results: Results) -> None:
     assert "in 2 of 2 valid rounds, 95 % interval 34–100 %" in written(on)
 
 
-def test_show_tells_what_changed_and_how_each_round_ended(results: Results) -> None:
+def test_show_reports_what_changed_and_how_each_round_ended(results: Results) -> None:
     on = console(100)
     print_mutant(on, results.mutant("1"), lambda _: None, everything=True)
     text = written(on)
@@ -370,7 +370,7 @@ def test_rounds_that_ended_alike_are_one_line(tmp_path: Path) -> None:
     ]
 
 
-def test_one_screen_shows_the_rounds_that_tell_most(results: Results) -> None:
+def test_one_screen_shows_the_rounds_that_differ_most(results: Results) -> None:
     on = console(100)
     print_mutant(on, results.mutant("4"), lambda _: None)
     text = written(on)
@@ -413,7 +413,7 @@ def test_an_effect_does_not_repeat_the_values_that_the_description_has(
     assert finding_text(told) == effect
 
 
-def test_show_tells_where_a_mutant_stayed_away_and_why(results: Results) -> None:
+def test_show_reports_where_a_mutant_stayed_away_and_why(results: Results) -> None:
     mutant = results.mutant("1")
     why = {"the value would leave the range [-1, 1]": 138, "the value would stay the same": 1}
     rounds = tuple(end and replace(end, acted=161, hits=300, away=why) for end in mutant.rounds)

@@ -41,7 +41,7 @@ def test_a_pipe_gets_the_beginning_and_the_end_of_a_stage_and_little_between() -
     ]
 
 
-def test_a_pipe_is_told_the_time_left() -> None:
+def test_a_pipe_gets_the_time_left() -> None:
     out = io.StringIO()
     progress = Lines(make_console(out), every=0.0)
     progress.stage("mutants", 2)
@@ -99,7 +99,7 @@ def test_every_stage_is_one_line_with_count_and_time_and_with_a_bar_where_there_
     assert "killed" not in last  # what was told of the last step does not stay
 
 
-def test_what_is_told_beside_the_bar_never_takes_a_second_line() -> None:
+def test_what_is_printed_beside_the_bar_never_takes_a_second_line() -> None:
     out = io.StringIO()
     with Bar(Console(file=out, force_terminal=True, width=60)) as progress:
         progress.stage("mutants", 2)
@@ -133,7 +133,7 @@ def test_survivors_are_printed_as_they_are_found_and_once() -> None:
     assert last == "mutants 4/4: took 0:00 (killed 1, survived 2, not covered 1)"
 
 
-def test_mutants_of_one_place_that_no_test_reaches_are_told_together() -> None:
+def test_mutants_of_one_place_that_no_test_reaches_are_reported_together() -> None:
     other = replace(samples.BY_TO, operator="skip")
     lines = told(end(samples.BY_TO, Verdict.NOT_COVERED), end(other, Verdict.NOT_COVERED))
     assert [line.partition(":")[0] for line in lines] == ["not covered", "mutants 2/2"]

@@ -127,7 +127,7 @@ def test_json_holds_every_ladder_and_round(thresholds: Thresholds) -> None:
     assert by_name["arm.move_by dx −", "deg"]["judged"] is False
 
 
-def test_the_document_tells_of_every_key(thresholds: Thresholds) -> None:
+def test_the_document_names_every_key(thresholds: Thresholds) -> None:
     document = (Path(__file__).parents[3] / "docs" / "thresholds.md").read_text(encoding="utf-8")
     missing = [key for key in keys_of(json.loads(dumps(data_of(thresholds)))) if f"`{key}`" not in document]
     assert missing == []

@@ -23,7 +23,9 @@ ROUND = st.text("".join(LETTERS) + ".CCCSSS", min_size=len(SIZES), max_size=len(
 
 @settings(max_examples=20, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(rounds=st.lists(ROUND, min_size=1, max_size=6))
-def test_whatever_was_seen_can_be_told(tmp_path_factory: pytest.TempPathFactory, rounds: list[str]) -> None:
+def test_whatever_was_seen_can_be_described(
+    tmp_path_factory: pytest.TempPathFactory, rounds: list[str]
+) -> None:
     both = Rungs(rounds), Rungs(rounds, direction="-")
     results = journals.results(tmp_path_factory.mktemp("ladder"), *both)
     found = thresholds_of(results)

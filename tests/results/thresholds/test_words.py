@@ -74,7 +74,7 @@ def test_what_is_unstable_inside_a_bracket_does_not_open_it(tmp_path: Path) -> N
     assert ladder_line(found) == "noticed from 20 mm, not at 5 mm (1 round)"
 
 
-def test_a_larger_fault_that_is_missed_is_told(tmp_path: Path) -> None:
+def test_a_larger_fault_that_is_missed_is_reported(tmp_path: Path) -> None:
     found = journals.ladder(tmp_path, "SSSSCCC", "SSSSCCC", "SSCSSCC")
     assert list(describe_violations(found)) == ["noticed at 5 mm, survives 20 mm, round 3"]
     assert (

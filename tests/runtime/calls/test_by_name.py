@@ -84,14 +84,14 @@ def test_a_pose_that_another_file_receives_is_known_as_well(stage: ClientStage) 
     assert [message.x for _, _, message in client.log] == [0.25]
 
 
-def test_nothing_is_mirrored_as_long_as_nothing_has_told_where_it_is(stage: ClientStage) -> None:
+def test_nothing_is_mirrored_as_long_as_nothing_has_shown_where_it_is(stage: ClientStage) -> None:
     _, client, activation = stage.mutated(program(PUBLISH, "hear(Message(x=500))"), "reverse", quantity="x")
     assert [message.x for _, _, message in client.log] == [0.75]
     assert activation.activity.away == {"the position of the robot is not known yet": 1}
     assert activation.activity.failure is None
 
 
-def test_a_parameter_may_tell_where_the_robot_is(stage: ClientStage) -> None:
+def test_a_parameter_may_be_where_the_robot_is(stage: ClientStage) -> None:
     _, client, _ = stage.mutated(program(GOAL, 'client.parameter("home")'), "reverse", quantity="x")
     assert [goal.x for _, _, goal in client.log] == [4.0]
 

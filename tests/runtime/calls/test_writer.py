@@ -105,7 +105,7 @@ def test_a_value_beside_the_text_is_found_and_replaced(
         ("Node.awrite", "self", "asyncio.run(robot.Node('ns=2;s=Arm.X').awrite(1.5))"),
     ],
 )
-def test_an_object_tells_the_command_by_what_it_prints(
+def test_an_object_shows_the_command_by_what_it_prints(
     make_stage: Make, target: str, message: str, call: str
 ) -> None:
     stage = make_stage(ROBOT, program(call), vocabulary(target, message))

@@ -90,7 +90,7 @@ def looked_at(folder: Path, tests: str) -> dict[str, tuple[Check, ...]]:
     return {test.test.rpartition(":")[2]: test.checks for test in survivor.looked}
 
 
-def test_a_check_tells_what_it_compared(tmp_path: Path) -> None:
+def test_a_check_shows_what_it_compared(tmp_path: Path) -> None:
     asserted = "".join(f"    assert {assertion}\n" for assertion in ASSERTIONS)
     compared = "".join(f"        {comparison}\n" for comparison in COMPARISONS)
     tests = (
@@ -109,7 +109,7 @@ def test_a_check_tells_what_it_compared(tmp_path: Path) -> None:
             assert check.text in lines[int(line) - 1]
 
 
-def test_parts_of_an_assertion_and_rounds_of_a_loop_are_told_once(tmp_path: Path) -> None:
+def test_parts_of_an_assertion_and_rounds_of_a_loop_are_reported_once(tmp_path: Path) -> None:
     found = looked_at(
         tmp_path,
         """

@@ -240,7 +240,7 @@ def test_every_kind_of_assertion_is_a_check(check: Callable[[], Any]) -> None:
     assert ending(raised(check)).by is By.CHECK
 
 
-def test_hypothesis_tells_what_its_tests_tell(tmp_path: Path) -> None:
+def test_hypothesis_reports_what_its_tests_report(tmp_path: Path) -> None:
     made = module(
         tmp_path,
         "tests/test_it.py",

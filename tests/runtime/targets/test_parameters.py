@@ -149,7 +149,7 @@ def looked_at(stage: Stage) -> list[Remark]:
         (DECORATED, "plain", "dx", ['signature = "(dx, …)"']),
     ],
 )
-def test_a_callable_that_tells_no_arguments_is_remarked_with_what_to_write(
+def test_a_callable_whose_arguments_are_unknown_is_remarked_with_what_to_write(
     make_stage: Make, robot: str, target: str, argument: str, words: list[str]
 ) -> None:
     stage = make_stage(robot, "import robot\n", vocabulary_with(None, target=target, argument=argument))
@@ -169,7 +169,7 @@ def test_a_callable_that_tells_no_arguments_is_remarked_with_what_to_write(
     ],
     ids=["given", "nothing described", "given for a method", "wraps", "named rest"],
 )
-def test_nothing_is_remarked_where_the_arguments_can_be_told_apart(
+def test_nothing_is_remarked_where_the_arguments_can_be_distinguished(
     make_stage: Make, robot: str, vocabulary: str
 ) -> None:
     stage = make_stage(robot, "import robot\n", vocabulary)

@@ -46,7 +46,7 @@ def test_a_wrapper_that_a_test_has_deleted_is_gone(robot: Any) -> None:
     assert robot.Arm().move_by(1.0) == 1.0
 
 
-def test_what_cannot_be_intercepted_for_any_reason_is_told(robot: Any) -> None:
+def test_what_cannot_be_intercepted_for_any_reason_is_reported(robot: Any) -> None:
     class Odd(type):
         def __setattr__(cls, name: str, value: object) -> None:
             raise RuntimeError("not now")

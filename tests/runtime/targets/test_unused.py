@@ -63,7 +63,7 @@ def said(wanted: str, *used: str) -> list[str]:
         ),
     ],
 )
-def test_what_was_not_done_is_told_with_what_was_done_instead(
+def test_what_was_not_done_is_reported_with_what_was_done_instead(
     wanted: str, used: list[str], text: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(extensions, "_declared", lambda: (("a", Extension(1, middlewares={"bus": "a.bus"})),))
@@ -78,7 +78,7 @@ def test_what_was_not_done_is_told_with_what_was_done_instead(
         ("feedback /follow", "goal /follow"),
     ],
 )
-def test_what_was_done_or_goes_with_something_else_is_not_told(wanted: str, used: str) -> None:
+def test_what_was_done_or_goes_with_something_else_is_not_reported(wanted: str, used: str) -> None:
     assert said(wanted, used) == []
 
 
@@ -106,7 +106,7 @@ def test_what_a_process_below_the_tests_does_counts() -> None:
         (["receive /arm/ended"], False),
     ],
 )
-def test_a_refusal_that_nobody_can_hear_is_told(used: list[str], is_told: bool) -> None:
+def test_a_refusal_that_nobody_can_hear_is_reported(used: list[str], is_told: bool) -> None:
     refused = [Refused("status", (5,), "/arm/ended"), Refused("ok", (False,))]
     found = [finding.text for finding in unheard(refused, [Named.of(usage) for usage in used])]
     assert [text.startswith("no node listens to /arm/ended") for text in found] == [True] * is_told

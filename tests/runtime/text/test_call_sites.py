@@ -116,7 +116,7 @@ def test_what_is_called_gets_its_arguments_as_written_from_whom_they_are(
     assert go(Arm(), [5]) == ((1, 5), {"x": 2, "y": 3}, "go")
 
 
-def test_what_stands_there_is_told_with_what_it_was_read_from(sites: Callable[..., CallSites]) -> None:
+def test_what_stands_there_is_reported_with_what_it_was_read_from(sites: Callable[..., CallSites]) -> None:
     told: list[Any] = []
 
     def stands(site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
@@ -201,7 +201,7 @@ def test_messages_of_pytest_stay_as_they_are(tmp_path: Path) -> None:
     assert ours == plain
 
 
-def test_assignments_are_told_before_they_are_made_and_worked_out_as_ever() -> None:
+def test_assignments_are_reported_before_they_are_made_and_worked_out_as_ever() -> None:
     told: list[Any] = []
 
     def stored(site: CallSite, holder: Any, values: list[Any]) -> None:

@@ -173,7 +173,7 @@ def test_patched_names_mean_the_operation_where_they_did_before(stage: Stage) ->
     assert [written for _, written, *_ in session.recorder.trace] == [{"on": True}, {"dx": 0.5}, {"on": True}]
 
 
-def test_a_mutant_changes_what_a_mock_is_told_and_leaves_the_rest_as_written(stage: Stage) -> None:
+def test_a_mutant_changes_what_a_mock_is_given_and_leaves_the_rest_as_written(stage: Stage) -> None:
     session, arm = stage.session(), Mock()
     stage.run(session, "run", arm)
     take_away(session)

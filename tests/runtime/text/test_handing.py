@@ -192,7 +192,7 @@ def test_so_does_a_function_of_the_robot(stage: Stage) -> None:
     assert (session.recorder.sites[index].span.function, written) == ("function", {"on": True})
 
 
-def test_a_mutant_changes_what_a_mock_is_told_in_a_thread(stage: Stage) -> None:
+def test_a_mutant_changes_what_a_mock_is_given_in_a_thread(stage: Stage) -> None:
     def take(action: Callable[..., Any]) -> None:
         with ThreadPoolExecutor(1) as pool:
             pool.submit(action, 0.5).result()

@@ -204,14 +204,14 @@ def test_a_step_that_is_last_comes_after_the_loader_that_rewrites_a_tree(
     assert (len(early.sources), len(late.sources)) == (1, 2)
 
 
-def test_text_that_a_loader_rewrites_is_told_from_that_of_the_file(name: str) -> None:
+def test_text_that_a_loader_rewrites_is_distinguished_from_that_of_the_file(name: str) -> None:
     step = Doubling(name)
     loaded_by(SourceFileLoader, name, step)
     loaded_by(ByText, name, step)
     assert step.sources == [b"x = 1\n", b"x = (5)\n"]
 
 
-def test_what_a_loader_does_not_take_stays_as_it_is_and_is_told(name: str) -> None:
+def test_what_a_loader_does_not_take_stays_as_it_is_and_is_reported(name: str) -> None:
     step = Doubling(name)
     assert loaded_by(Strict, name, step).x == 1
     (error,) = step.given_up
@@ -219,7 +219,7 @@ def test_what_a_loader_does_not_take_stays_as_it_is_and_is_told(name: str) -> No
     assert "Strict" in str(error)
 
 
-def test_code_that_comes_out_of_sight_is_told(name: str) -> None:
+def test_code_that_comes_out_of_sight_is_reported(name: str) -> None:
     step = Doubling(name)
     loaded_by(Unseen, name, step)
     assert [str(error).partition(" (")[0] for error in step.given_up] == [loading.UNSEEN]

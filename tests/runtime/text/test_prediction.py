@@ -299,7 +299,7 @@ def run(thing):
         ("a", "a", True),
     ],
 )
-def test_values_are_identical_only_if_no_program_can_tell_them_apart(
+def test_values_are_identical_only_if_no_program_can_distinguish_them(
     first: Any, second: Any, same: bool
 ) -> None:
     assert is_identical(first, second) is same

@@ -170,7 +170,7 @@ def test_docstrings_names_and_signatures_stay(program: Noted) -> None:
     assert module.inner.__code__.co_varnames == ("value",)
 
 
-def test_only_so_many_are_noted_and_those_of_fixtures_are_told_apart(program: Noted) -> None:
+def test_only_so_many_are_noted_and_those_of_fixtures_are_distinguished(program: Noted) -> None:
     returns, module = program
     module.inner(0)
     returns.begin_call()
@@ -198,7 +198,7 @@ def test_values_become_plain_data(value: object, data: object) -> None:
     assert json_data(value) == data
 
 
-def test_large_values_are_told_apart_by_a_digest() -> None:
+def test_large_values_are_distinguished_by_a_digest() -> None:
     first, second = list(range(LONGEST)), list(range(LONGEST + 1))
     assert json_data(first) == json_data(list(first)) != json_data(second)
     assert json_data("a" * 1000) == json_data("a" * 1000) != json_data("a" * 999 + "b")

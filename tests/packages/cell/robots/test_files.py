@@ -149,7 +149,7 @@ def test_a_robot_in_a_file_with_other_things_stands_where_the_file_says(tmp_path
     assert len(list(model.spec.geoms)) == 6
 
 
-def test_a_file_names_a_package_that_must_be_told(tmp_path: Path) -> None:
+def test_a_file_names_a_package_that_must_be_named(tmp_path: Path) -> None:
     file = tmp_path / "arm.urdf"
     file.write_text('<robot name="r"><a b="package://arm_description/x.stl"/></robot>', encoding="utf-8")
     with pytest.raises(BadModel, match=r"packages=\{'arm_description': FOLDER\}"):

@@ -51,7 +51,7 @@ class Native:
         ("stop", "Stop at once.", None),
     ],
 )
-def test_docstrings_of_native_methods_tell_arguments(name: str, doc: str, expected: list[str] | None) -> None:
+def test_docstrings_of_native_methods_name_arguments(name: str, doc: str, expected: list[str] | None) -> None:
     callee = Callee(f"rtde:Control.{name}", Native(doc), type("Control", (), {}), "")
     assert (list(callee.signature.parameters) if callee.signature else None) == expected
     assert callee.is_documented == (expected is not None)
@@ -121,7 +121,7 @@ def test_a_class_in_a_function_has_no_name_to_stand_for() -> None:
     assert replaced_method(Local, "go") is None
 
 
-def test_a_real_call_tells_more_than_the_mock_before_it(robot: Any) -> None:
+def test_a_real_call_shows_more_than_the_mock_before_it(robot: Any) -> None:
     watch = Watch((), lambda path: None)
     with mock.patch.object(robot, "lift"):
         make(watch, robot, "lift", 0.25)
