@@ -14,7 +14,6 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import pytest
-from hypothesis import HealthCheck, settings
 
 from tests.processor_time import ProcessorTime
 
@@ -28,15 +27,22 @@ def pytest_configure(config: pytest.Config) -> None:
 
     Tests start a thousand processes that may not write bytecode: it is there before them.
     """
-    # no test may fail because the machine is busy
-    settings.register_profile("busy", deadline=None, suppress_health_check=[HealthCheck.too_slow])
-    settings.load_profile("busy")
     if not hasattr(config, "workerinput"):
         compileall.compile_dir(Path(__file__).parents[1] / "src", quiet=2)
     if signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
         signal.signal(signal.SIGINT, signal.default_int_handler)
     config.pluginmanager.register(ProcessorTime(config))
     config.pluginmanager.register(Bytecode())
+    _allow_slow_machines()
+
+
+def _allow_slow_machines() -> None:
+    """No test of a property fails because the machine is busy."""
+    # pytest rewrites hypothesis, and keeps that only where bytecode is written
+    from hypothesis import HealthCheck, settings  # noqa: PLC0415
+
+    settings.register_profile("busy", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+    settings.load_profile("busy")
 
 
 class Bytecode:
