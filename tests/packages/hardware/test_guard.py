@@ -160,50 +160,64 @@ CHECKED = """
     """
 
 
-@pytest.mark.parametrize("engine", ["auto", pytest.param("replay", marks=pytest.mark.whole)])
-def test_a_mutant_that_a_guard_stops_is_outside_the_score(
-    tmp_path: Path, server: RobotServer, engine: str
-) -> None:
-    names = ("arm.move_to#1:x:reverse", "arm.grip#1:closed:opposite", "arm.move_by#1:call:skip")
-    only = tuple(f"program.py:pick:{name}" for name in names)
-    made = outcomes_of(write_project(tmp_path, SIMPLE, CHECKED), engine, only=only)
-    found = {outcome.mutant: outcome for outcome in made}
-    stopped = found["program.py:pick:arm.move_to#1:x:reverse"]
-    assert stopped.verdict is Verdict.GUARDED
-    assert not stopped.verdict.is_valid
-    assert stopped.message == "robot:Arm.move_to: x leads to -0.4 m, the workspace is 0.2 to 0.7 m"
-    assert found["program.py:pick:arm.grip#1:closed:opposite"].verdict is Verdict.SURVIVED
-    assert found["program.py:pick:arm.move_by#1:call:skip"].verdict is Verdict.KILLED
+#: beside it a program that catches everything, and one that goes where a reading says
+STOPPED = f"""{SIMPLE}
+    def pick_whatever_is_raised(arm):
+        try:
+            arm.move_to(0.4, 0.6)
+        except BaseException as error:
+            if type(error).__name__ != "GuardedCall":
+                raise
+        arm.grip(True)
+
+    def pick_here(arm):
+        arm.move_to(arm.pose()["x"], 0.6)
+    """
+STOPPED_TESTS = f"""{CHECKED}
+    def test_it_picks_whatever_is_raised():
+        program.pick_whatever_is_raised(Arm())
+
+    def test_it_picks_here():
+        program.pick_here(Arm())
+    """
+REVERSED, OPPOSITE, SKIPPED, CAUGHT, READ = (
+    f"program.py:{name}"
+    for name in (
+        "pick:arm.move_to#1:x:reverse",
+        "pick:arm.grip#1:closed:opposite",
+        "pick:arm.move_by#1:call:skip",
+        "pick_whatever_is_raised:arm.move_to#1:x:reverse",
+        "pick_here:arm.pose#1:['x']:negate",
+    )
+)
+
+
+@pytest.fixture(scope="module", params=["auto", pytest.param("replay", marks=pytest.mark.whole)])
+def stopped(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Outcome]:
+    with robot_server() as server, pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ROBOT_PORT", str(server.port))
+        folder = write_project(tmp_path_factory.mktemp("stopped"), STOPPED, STOPPED_TESTS)
+        only = (REVERSED, OPPOSITE, SKIPPED, CAUGHT, READ)
+        return {outcome.mutant: outcome for outcome in outcomes_of(folder, request.param, only=only)}
+
+
+def test_a_mutant_that_a_guard_stops_is_outside_the_score(stopped: dict[str, Outcome]) -> None:
+    assert stopped[REVERSED].verdict is Verdict.GUARDED
+    assert not stopped[REVERSED].verdict.is_valid
+    assert stopped[REVERSED].message == "robot:Arm.move_to: x leads to -0.4 m, the workspace is 0.2 to 0.7 m"
+    assert stopped[OPPOSITE].verdict is Verdict.SURVIVED
+    assert stopped[SKIPPED].verdict is Verdict.KILLED
 
 
 def test_a_program_that_catches_everything_does_not_hide_that_a_guard_stopped_it(
-    tmp_path: Path, server: RobotServer
+    stopped: dict[str, Outcome],
 ) -> None:
-    program = """
-        def pick(arm):
-            try:
-                arm.move_to(0.4, 0.6)
-            except BaseException as error:
-                if type(error).__name__ != "GuardedCall":
-                    raise
-            arm.grip(True)
-        """
-    tests = CHECKED.replace('assert arm.pose() == {"x": 0.6000000000000001, "z": 0.6}', "pass")
-    only = ("program.py:pick:arm.move_to#1:x:reverse",)
-    found = outcomes_of(write_project(tmp_path, program, tests), "auto", only=only)
-    assert [outcome.verdict for outcome in found] == [Verdict.GUARDED]
+    assert stopped[CAUGHT].verdict is Verdict.GUARDED
 
 
-def test_what_a_wrong_reading_leads_to_is_stopped_as_well(tmp_path: Path, server: RobotServer) -> None:
-    program = """
-        def pick(arm):
-            arm.move_to(arm.pose()["x"], 0.6)
-        """
-    tests = CHECKED.replace('assert arm.pose() == {"x": 0.6000000000000001, "z": 0.6}', "pass")
-    only = ("program.py:pick:arm.pose#1:['x']:negate",)
-    (wrong,) = outcomes_of(write_project(tmp_path, program, tests), "auto", only=only)
-    assert wrong.verdict is Verdict.GUARDED
-    assert "leads to -0.4 m" in str(wrong.message)
+def test_what_a_wrong_reading_leads_to_is_stopped_as_well(stopped: dict[str, Outcome]) -> None:
+    assert stopped[READ].verdict is Verdict.GUARDED
+    assert "leads to -0.4 m" in str(stopped[READ].message)
 
 
 @pytest.mark.parametrize(

@@ -60,6 +60,7 @@ def log(folder: Path) -> list[dict[str, Any]]:
     return [json.loads(line) for line in text.splitlines()]
 
 
+@pytest.mark.whole  # test_guard.py says it of a client of our own
 def test_no_mutant_outside_the_guard_reaches_the_controller(
     vendor: Vendor, controller: Controller, tmp_path: Path
 ) -> None:
