@@ -13,6 +13,7 @@ from typing import Any
 
 from .observations import WatchedPart
 from .words import (
+    ASKING,
     DIRECTIONS,
     GRIPPER,
     HOUSEKEEPING,
@@ -150,6 +151,9 @@ def guess_argument(name: str, setting: NameContext) -> Guess:
     if OUTPUT & {*setting.words} and stem in ("x", "y", "z") and first(VERBS, setting.words) is None:
         return Guess()  # the number of an output
     motion = _by_verb(noun, stem, setting) or _by_name(noun, stem)
+    is_asked = bool(ASKING.intersection(setting.words[:1]))
+    if is_asked and (motion is not None or noun == "length"):
+        return Guess()  # what is read moves nothing: a length is how much is read, x is where
     limits = _documented_range(_about(name, setting.doc), setting) if noun == "generic" else None
     if limits is not None and limits[1] in _TOPS and limits[0] in (0.0, -limits[1]):
         return Guess({"kind": "output", "range": limits})
@@ -239,6 +243,8 @@ def measured(table: TomlTable, dimension: str, unit: str | None, name: str, sett
     fitting = UNITS[dimension]
     if unit in fitting:
         return Guess({**table, "unit": unit})
+    if unit in UNITS["time"] and dimension in ("length", "angle"):
+        return Guess()  # a gap in seconds is no distance
     about = _about(name, setting.doc)
     if dimension == "angle" and setting.angle_unit:
         return Guess({**table, "unit": setting.angle_unit})
@@ -403,6 +409,8 @@ def guess_elements(part: WatchedPart, name: str, setting: NameContext, *, writte
     if "speed" in (verb, noun) and length <= _MOST_JOINTS:
         return {f"{at}[0:{length}]": Guess({"kind": "speed", "unit": "…"}, ["the unit, and the axis?"])}
     if noun in ("none", "acceleration", "force", "torque", "time", "speed") or verb == "speed":
+        return {}
+    if _without_unit(words)[1] in UNITS["time"]:
         return {}
     for about, meaning in ((words, noun), (setting.words, verb)):
         is_turning = meaning == "joints" or (meaning == "angle" and 3 < length <= 7)

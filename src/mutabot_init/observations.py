@@ -3,12 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from enum import Enum, auto
 from typing import Any
 
 from mutabot.api.values import Form
 
 #: the owner of a method of any object, as targets name it
 ANY = "*:*"
+
+
+class Holder(Enum):
+    """What the objects of a class are: a robot is none of ``DATA``, ``VALUE`` and ``CONTAINER``."""
+
+    ANYTHING = auto()
+    #: fields, as of a dataclass
+    DATA = auto()
+    #: fields that never change, as of a named tuple, an enumeration, an exception
+    VALUE = auto()
+    #: a text, list or mapping of an installed library
+    CONTAINER = auto()
 
 
 @dataclass(slots=True)
@@ -78,6 +91,7 @@ class WatchedCallable:
         is_set: whether it is a property that is assigned.
         is_managed: whether its class is a context manager, which opens and closes a connection.
         is_of_class: whether it is a method of its class, and not of its objects.
+        holder: what its class's objects are.
         only_computes: whether its text shows that it changes nothing.
         signature: its arguments as a vocabulary writes them; empty if they are unknown.
         is_documented: whether only a docstring gives the signature.
@@ -106,6 +120,7 @@ class WatchedCallable:
     is_set: bool = False
     is_managed: bool = False
     is_of_class: bool = False
+    holder: Holder = Holder.ANYTHING
     only_computes: bool = False
     signature: str = ""
     is_documented: bool = False

@@ -12,8 +12,9 @@ from typing import Any
 
 from .guess import Guess, NameContext, guess_argument, guess_elements, guess_reading
 from .layout import with_compared
-from .observations import Command, WatchedCallable, WatchedPart
+from .observations import Command, Holder, Values, WatchedCallable, WatchedPart
 from .words import (
+    CALLBACKS,
     CAMERAS,
     CHANGES,
     COMMANDS,
@@ -22,6 +23,7 @@ from .words import (
     GRIPPER,
     HELPERS,
     HOUSEKEEPING,
+    LINKED,
     MODES,
     OPPOSITES,
     OUTPUT,
@@ -175,7 +177,10 @@ def _is_housekeeping(call: WatchedCallable) -> bool:
     """Return whether it is about a connection, or queries the state of a reply."""
     words, owner = set(words_of(call.name)), {*words_of(call.owner)}
     is_link = (call.is_managed and words & CONNECTION) or (owner & HELPERS and words & (CONNECTION | RUNNING))
-    if is_link and not (GRIPPER | OUTPUT) & (words | owner):
+    is_started = HELPERS.intersection(words_of(call.name)[-1:]) and words & RUNNING
+    if (is_link or is_started) and not (GRIPPER | OUTPUT) & (words | owner):
+        return True
+    if LINKED.intersection(words_of(call.name)[:1]) and _types(call.result) <= {"bool"}:
         return True
     return bool(words & HOUSEKEEPING) and ("is" in words or bool(REPLIES & owner))
 
@@ -184,12 +189,18 @@ def _computes(call: WatchedCallable) -> bool:
     """Return whether it makes or computes something from its arguments, without the robot."""
     is_constructor = call.is_of_class and call.owner != "" and call.result.type == call.owner
     is_constructor = is_constructor or call.result.type in _MADE
+    if call.holder is Holder.CONTAINER or (call.holder is Holder.VALUE and call.only_computes):
+        return True
     is_called_so = not COMPUTERS.isdisjoint(words_of(call.name)[:1])
     is_pure = bool(call.arguments) and (call.only_computes or is_called_so)
     # what computes from its arguments alone reads nothing, and nor does what compares with one
     may_read = _reads(call) and (bool(call.owner) or not call.only_computes)
     may_read = may_read and not (call.only_computes and _COMPARING & set(words_of(call.name)))
     return is_constructor or ((is_pure or _fills_buffer(call)) and not may_read)
+
+
+def _types(values: Values) -> set[str]:
+    return {part.type for part in values.parts.values()}
 
 
 def _fills_buffer(call: WatchedCallable) -> bool:
@@ -201,7 +212,9 @@ def _fills_buffer(call: WatchedCallable) -> bool:
 
 def _is_setup(call: WatchedCallable) -> bool:
     words = set(words_of(call.name))
-    return bool(SETUP & words) or {"pin", "mode"} <= words
+    is_of_timeout = words_of(call.name)[-1:] in (("timeout",), ("settimeout",))
+    hands_over = bool(call.arguments) and call.arguments.keys() <= CALLBACKS
+    return bool(SETUP & words) or {"pin", "mode"} <= words or is_of_timeout or hands_over
 
 
 def _is_command(call: WatchedCallable) -> bool:

@@ -23,11 +23,12 @@ from .layout import (
     refuse_mistakes,
 )
 from .messages import MessageEntry, entries
-from .observations import ANY, WatchedCallable
+from .observations import ANY, Holder, WatchedCallable
 from .observe import LIMIT, merged, watch
 from .operations import Proposal, commands_of, has_discriminator, proposals
 from .proposers import brought_proposers
 from .text import counted, probe_text, questions_in, value_text, vocabulary_text
+from .words import ASKING, words_of
 
 CONFIGURATION, VOCABULARY = "mutabot.toml", "robot.toml"
 #: what is said of a test file that imports one that is no Python
@@ -140,7 +141,8 @@ class _Findings:
             self.operations = proposals(mine, groups)
         if self.is_empty:  # what is called at all can be skipped and repeated
             for operation in self.operations:
-                operation.is_plain = operation.is_taken = self._may_be_robot(operation.call)
+                operation.is_plain = self._may_be_robot(operation.call)
+                operation.is_taken = operation.is_operation
         else:  # without an operation of the program, what its tests read is no robot
             known = {_holder(call) for call in mine}
             self.operations += [
@@ -148,8 +150,7 @@ class _Findings:
                 for proposal in proposals(self._new(rest), groups)
                 if proposal.is_taken
                 and proposal.is_reading
-                # what the program does not know, and what only computes, is no robot
-                and (_holder(proposal.call) in known or not proposal.call.only_computes)
+                and self._may_be_read(proposal, is_known=_holder(proposal.call) in known)
             ]
         self.oracle = self._files_that_read()
         self.beside = [
@@ -220,9 +221,27 @@ class _Findings:
 
     def _may_be_robot(self, call: WatchedCallable) -> bool:
         """Return whether a call of which nothing is known may be left out: one of another package."""
+        return not call.problem and not call.is_property and call.package not in self._own_packages
+
+    @property
+    def _own_packages(self) -> set[str]:
+        """The top-level packages and modules of the program."""
         folders = ((*Path(file).parts[:-1], Path(file).stem) for file in self.program)
-        own = {next(part for part in folder if part != "src") for folder in folders}
-        return not call.problem and not call.is_property and call.package not in own
+        return {next(part for part in folder if part != "src") for folder in folders}
+
+    def _may_be_read(self, proposal: Proposal, *, is_known: bool) -> bool:
+        """Return whether what the tests alone read may be the robot's.
+
+        What only computes is not, unless the program uses the same object; what only holds data never is.
+        A truth value or a text of the program's own package is its state, unless the program uses the same
+        object, or its name says "read".
+        """
+        call = proposal.call
+        if call.only_computes and (call.holder is not Holder.ANYTHING or not is_known):
+            return False
+        kinds = {guess.table["kind"] for guess in proposal.result.values()}
+        is_state = kinds <= {"flag", "label"} and not ASKING.intersection(words_of(call.name)[:1])
+        return (is_known and bool(call.owner)) or not is_state or call.package not in self._own_packages
 
     def _seen_by(self, name: str) -> list[Any]:
         return [calls.beside[name] for calls in self.run.seen if name in calls.beside]
@@ -378,7 +397,7 @@ def _summary(found: _Findings, questions: int) -> list[str]:
         lines.append(f"seen on mocks or fakes, proposed {how}: {', '.join(names)}")
     written = " and ".join([CONFIGURATION, *([VOCABULARY] if found.needs_vocabulary else [])])
     again = f"If another file is the program, remove {written}, and run `mutabot init FILE…`"
-    if found.layout.guessed and found.makes_no_call and found.calls:
+    if found.layout.guessed and found.makes_no_call and found.calls and run.outcomes:
         return [*lines, f"next: no test runs a call of the guessed program. {again}"]
     if not found.is_empty:
         answer = f"answer the questions in {VOCABULARY}, then " if questions else ""

@@ -55,7 +55,7 @@ CHANGES = _words("by relative rel offset shift jog delta increment")
 COMMANDS = _words(
     "home park move movej movel movep movec go goto pick place grasp grip grab release open close lock "
     "unlock wait sleep stop lift lower raise drop rotate turn translate attach detach push start feed insert "
-    "press screw weld dock undock servo servoj servol speedj speedl step write jog drive set send "
+    "press screw weld dock undock servo servoj servol speedj speedl step write jog drive set send sendall "
     "command enable disable ptp lin calibrate takeoff land fly up down left right forward "
     "forwards back backward backwards curve flip clockwise counterclockwise on off toggle blink "
     "emergency arm disarm pulse pause resume aspirate dispense halt activate deactivate shake"
@@ -63,15 +63,21 @@ COMMANDS = _words(
 READERS = _words(
     "read get getl getj query ask measure is has recv receive where locate detect scan actual current"
 )
+#: how callables begin that read, whatever else they are called
+ASKING = _words("read get getl getj query ask recv receive")
 #: how functions are called that put values into a buffer
 PACKERS = _words("set put pack encode insert")
 #: how what only computes is called, whatever its text does on the way
-COMPUTERS = _words("calculate calc compute estimate parse format encode decode serialize deserialize")
+COMPUTERS = _words(
+    "calculate calc compute estimate parse format encode decode serialize deserialize check validate verify"
+)
 #: what is made ready before the robot does anything, and the clock of a simulator
 SETUP = _words(
     "create connect disconnect load make init initialize configure configuration simulation reset safety "
-    "handler callback listener"
+    "handler callback listener observer"
 )
+#: what a function is called that is handed over, to be called back
+CALLBACKS = _words("callback callbacks handler listener observer")
 #: what lets a simulation go on, and what has such a clock
 STEPS = _words("step tick advance stepSimulation step_simulation")
 SIMULATORS = _words("sim simulation simulator world physics scene engine")
@@ -86,13 +92,15 @@ HELPERS = _words(
 #: how long or wide something is, and not how far it goes, unless a verb says so
 SIZES = _words("length width")
 #: words of settings, which no sensor reads
-SETTINGS = _words("max maximum min minimum default initial limit limits")
+SETTINGS = _words("max maximum min minimum default initial limit limits only supported supports configured")
 #: words for a state that are no participles
 STATES = _words("in at found held lost stuck contact ready busy")
 #: predicates of replies and of connections, which no sensor reads
 HOUSEKEEPING = _words(
     "error ok success connected alive valid failed exception setup installed reply response zero nan finite"
 )
+#: what is asked of a connection, whatever follows
+LINKED = _words("connected alive online reachable ping")
 REPLIES = _words("response reply result error exception future pdu packet message status")
 #: what a person moves, and not the robot
 INPUTS = _words("joystick gamepad stick xbox keyboard mouse")

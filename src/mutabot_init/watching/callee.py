@@ -8,19 +8,23 @@ import inspect
 import os
 import re
 import sys
+import sysconfig
 import textwrap
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from enum import Enum
 from types import BuiltinFunctionType, FunctionType, MethodType, ModuleType
 from typing import Any
 
 from mutabot.api.values import parse_signature, resolve
-from mutabot_init.observations import ANY, WatchedCallable
+from mutabot_init.observations import ANY, Holder, WatchedCallable
 from mutabot_init.watching.effects import only_computes
 
 #: what pybind11 writes for a default that is no literal, in front of each overload, and of arguments
 _OBJECT, _OVERLOAD = re.compile(r"<[^<>]*>"), re.compile(r"^\s*\d+\. ", re.MULTILINE)
+#: where installed libraries are
+_LIBRARIES = tuple(os.path.realpath(sysconfig.get_path(name)) for name in ("stdlib", "purelib", "platlib"))
 _UNNAMED, _NAMES = re.compile(r"\barg(\d+)\b"), re.compile(r"Parameter ``(\w+)``")
 
 
@@ -174,6 +178,7 @@ def described(callee: Callee, *, of_tests: bool, own: bool) -> WatchedCallable:
         is_set=callee.is_set,
         is_managed=owner is not None and (hasattr(owner, "__exit__") or hasattr(owner, "__aexit__")),
         is_of_class=isinstance(callee.raw, classmethod | staticmethod),
+        holder=_holder_of(owner, callee.file),
         only_computes=not callee.stands_in and only_computes(function, owner),
         signature=spell_signature(signature) if signature is not None else "",
         is_documented=callee.is_documented,
@@ -186,6 +191,19 @@ def described(callee: Callee, *, of_tests: bool, own: bool) -> WatchedCallable:
         raised=list(dict.fromkeys(_raised_by(function))),
         stands_in=callee.stands_in,
     )
+
+
+def _holder_of(owner: type | None, file: str) -> Holder:
+    """Return what the objects of a class are, whose function's text is in this file."""
+    if owner is None:
+        return Holder.ANYTHING
+    parameters = getattr(owner, "__dataclass_params__", None)
+    if issubclass(owner, Enum | BaseException | tuple) or (parameters is not None and parameters.frozen):
+        return Holder.VALUE
+    if issubclass(owner, str | list | dict | set) and file.startswith(_LIBRARIES):
+        return Holder.CONTAINER
+    is_data = parameters is not None or hasattr(owner, "__attrs_attrs__") or hasattr(owner, "model_fields")
+    return Holder.DATA if is_data else Holder.ANYTHING
 
 
 def _nameable(target: str, raw: Any, owner: type | None) -> Callee | None:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import ast
 import inspect
+import re
 import sys
 import textwrap
 from functools import cached_property
-from types import FunctionType, ModuleType
+from types import FunctionType, MappingProxyType, ModuleType
 from typing import Any, TypeGuard
 
 #: functions that are followed from one
@@ -136,12 +137,19 @@ class _Function:
             return True  # an object is made
         if isinstance(function, ast.Attribute) and function.attr in _METHODS and function.attr != "get":
             return True
+        if isinstance(function, ast.Attribute) and self._is_of_constant(function):
+            return True
         if isinstance(function, ast.Attribute) and root in ("self", "cls") and self._owner is not None:
             found = inspect.getattr_static(self._owner, function.attr, None)
             return isinstance(function.value, ast.Name) and self._may_be_called(found, self._owner)
         if root is None or (root not in self._names and not hasattr(_builtins(), root)):
             return isinstance(function, ast.Attribute) and function.attr == "get"
         return self._may_be_called(self._found(function), None)
+
+    def _is_of_constant(self, function: ast.Attribute) -> bool:
+        """Return whether it is a method, of a table or value of the module, that only reads it."""
+        holder = self._found(function.value)
+        return isinstance(holder, _UNCHANGING) or (isinstance(holder, _TABLES) and function.attr in _METHODS)
 
     def _may_be_called(self, found: Any, owner: type | None) -> bool:
         if isinstance(found, type):
@@ -191,14 +199,21 @@ _COMPUTING = frozenset(
 )
 #: built-in functions that do more than compute
 _WRITING = (print, open, input, setattr, delattr, exec, eval)
-#: methods of numbers, arrays and texts that compute
+#: methods of numbers, arrays, texts and bytes that compute
 _METHODS = frozenset(
     {
-        "astype", "conjugate", "copy", "count", "dot", "endswith", "flatten", "format", "get", "index", "inv",
-        "item", "items", "join", "keys", "lower", "max", "mean", "min", "ravel", "reshape", "split",
-        "startswith", "strip", "sum", "tolist", "transpose", "upper", "values",
+        "astype", "bit_length", "casefold", "conjugate", "copy", "count", "decode", "dot", "encode",
+        "endswith", "findall", "flatten", "format", "fullmatch", "get", "group", "groupdict", "groups",
+        "hex", "index", "inv", "isalnum", "isalpha", "isascii", "isdecimal", "isdigit", "isnumeric",
+        "isspace", "item", "items", "join", "keys", "ljust", "lower", "lstrip", "max", "mean", "min",
+        "partition", "ravel", "removeprefix", "removesuffix", "reshape", "rjust", "rpartition", "rsplit",
+        "rstrip", "split", "splitlines", "startswith", "strip", "sum", "to_bytes", "tolist", "transpose",
+        "upper", "values", "zfill",
     }
 )  # fmt: skip
+#: constants of a module: no method changes the first, and those of ``_METHODS`` do not change the others
+_UNCHANGING = (str, bytes, int, float, tuple, frozenset, range, re.Pattern)
+_TABLES = (dict, list, set, MappingProxyType)
 
 
 def _builtins() -> ModuleType:

@@ -392,6 +392,20 @@ def test_a_program_that_only_computes_is_said_to_call_no_robot(tmp_path: Path) -
     assert "run tests that call the program" not in done.stdout
 
 
+def test_where_no_test_could_run_the_next_step_is_to_make_them_run(tmp_path: Path) -> None:
+    """The guess may be right: that no test called it says nothing where none ran."""
+    files = {
+        "robot.py": "class Arm:\n    def move(self, metres): self.x = metres\n",
+        "program.py": "import robot\ndef run(): robot.Arm().move(0.5)\n",
+        "test_program.py": "import robot, program\nrobot.Arm().move(0.1)\nimport missing_one\n",
+    }
+    write(tmp_path, files)
+    done = mutabot(tmp_path, "init")
+    assert "the tests could not be watched: test_program.py: ModuleNotFoundError" in done.stdout, done.stderr
+    assert "run tests that call the program" in done.stdout
+    assert "no test runs a call of the guessed program" not in done.stdout
+
+
 def test_what_pytests_own_configuration_names_is_watched_and_not_written_down(tmp_path: Path) -> None:
     """A doctest of the program is a test as well; the files of tests alone would never show it."""
     files = {

@@ -275,3 +275,159 @@ def test_what_tests_read_of_a_library_without_a_robot_is_none(tmp_path: Path) ->
     }
     with pytest.raises(ConfigurationError, match="describes nothing"):
         written(tmp_path, files)
+
+
+PROTOCOL = {
+    "plc/__init__.py": "",
+    "plc/codec.py": """
+        import re
+        TEXTS = {"length": "too long"}
+        ADDRESS = re.compile(r"([DM])([0-9]+)")
+
+        def _(text): return TEXTS.get(text, text)
+
+        def _check(words):
+            if len(words) > 9: raise ValueError(_("length"))
+
+        def translate_address(text):
+            found = ADDRESS.fullmatch(text.strip())
+            if found is None or not found.group(2).isdigit(): raise ValueError(_("address"))
+            return found.group(1), int(found.group(2))
+
+        def build_write(address, words):
+            _check(words)
+            body = b"".join(word.to_bytes(2, "big") for word in words)
+            return translate_address(address)[0].encode("ascii") + body
+
+        def get_level(code): return TEXTS.get(code, "INFO")
+
+        LOG = []
+
+        def is_logged():
+            LOG.append(1)
+            return True
+        """,
+    "plc/state.py": """
+        from dataclasses import dataclass
+        from enum import Enum
+        from typing import NamedTuple
+
+        class Coding(Enum):
+            ASCII = 1
+            BINARY = 2
+            @property
+            def is_active(self): return self is Coding.ASCII
+
+        class Pose(NamedTuple):
+            x: float
+            y: float
+            @property
+            def xy(self): return [self.x, self.y]
+
+        @dataclass
+        class State:
+            mode: int
+            @property
+            def is_heating(self): return self.mode == 3
+            @property
+            def is_configured(self): return self.mode > 0
+            @property
+            def is_cooling(self): return self.mode == 2
+        """,
+    "plc/client.py": """
+        from plc.state import State
+
+        class Metrics:
+            def __init__(self): self.began = None
+            def start_timer(self): self.began = 1
+
+        class Monitor:
+            def __init__(self): self.threads = []
+            @property
+            def running(self): return len(self.threads) > 0
+
+        class Line:
+            def __init__(self): self.sent, self.read_only = [], False
+            def send(self, data): self.sent.append(data)
+            def on_change(self, callback): self.sent.append(callback)
+            def set_timeout(self, seconds): self.sent.append(seconds)
+            def state(self): return State(len(self.sent))
+            @property
+            def connected(self): return len(self.sent) >= 0
+            def ping(self): self.sent.append(1); return True
+            def read_sensor(self): self.sent.append(1); return True
+
+        class Spare(Line):
+            pass
+        """,
+    "plc/run.py": """
+        from http.cookies import SimpleCookie
+        from plc import codec
+        from plc.client import Line, Metrics
+        from plc.state import Coding, Pose
+
+        def run(line):
+            Metrics().start_timer()
+            line.on_change(print)
+            line.set_timeout(2.0)
+            settings = SimpleCookie()
+            settings["mode"] = "1"
+            line.send(codec.build_write("D1", [1, 2]))
+            state = line.state()
+            return state.is_heating, state.is_configured, Coding.ASCII.is_active, Pose(1.0, 2.0).xy
+        """,
+    "tests/test_plc.py": """
+        from plc.client import Line, Monitor
+        from plc.codec import get_level, is_logged
+        from plc.run import run
+        from plc.state import State
+
+        def test_it():
+            line = Line()
+            assert run(line)[0]
+            assert line.connected and line.ping() and line.read_sensor()
+            assert State(2).is_cooling and not Monitor().running and get_level("a") == "INFO"
+            assert is_logged()
+        """,
+}
+
+
+def test_of_a_protocols_library_what_reaches_the_line_is_an_operation_and_no_codec_or_data(
+    tmp_path: Path,
+) -> None:
+    reached = ["plc.client:Line.send", "plc.state:State.is_heating", "plc.client:Line.read_sensor"]
+    assert written(tmp_path, PROTOCOL) == reached
+
+
+@pytest.mark.parametrize(("call", "name"), [("read", "length"), ("get_height", "x")])
+def test_an_argument_of_what_only_reads_is_no_motion(call: str, name: str) -> None:
+    assert guess_argument(name, NameContext(words_of(call), values=[4])).table == {}
+
+
+@pytest.mark.parametrize("name", ["segment_gap_s", "time_to_target_ms"])
+def test_what_is_in_seconds_by_its_name_is_no_length(name: str) -> None:
+    assert guess_reading(name, NameContext(values=[0.02])).table == {}
+    part = WatchedPart("", values=[[0.02, 0.05]], length=2)
+    assert guess_elements(part, name, NameContext(values=part.values), written=False) == {}
+
+
+def test_what_nothing_is_known_of_is_proposed_unless_it_sets_a_connection_up(tmp_path: Path) -> None:
+    files = {
+        "vendor.py": """
+            class Bus:
+                def __init__(self): self.log = []
+                def set_timeout(self, seconds): self.log.append(seconds)
+                def load(self, path): self.log.append(path)
+                def execute(self, code): self.log.append(code)
+            """,
+        "program.py": """
+            import vendor
+            def run():
+                bus = vendor.Bus()
+                bus.set_timeout(2)
+                bus.load("a")
+                bus.execute(6)
+            """,
+        "test_it.py": "import program\ndef test_it(): program.run()\n",
+    }
+    assert written(tmp_path, files) == ["vendor:Bus.execute"]
