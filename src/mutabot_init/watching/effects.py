@@ -161,7 +161,9 @@ class _Function:
             return False
         if module in _COMPUTING:
             return True
-        is_text = isinstance(found, FunctionType | staticmethod | classmethod)
+        # a cached function is a wrapper; hasattr is true of all names of mock.call
+        is_wrapper = "__wrapped__" in getattr(found, "__dict__", {})
+        is_text = is_wrapper or isinstance(found, FunctionType | staticmethod | classmethod)
         if not is_text:
             return False
         function = _Function.of(found, owner, self._callers)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import os
+import re
 import socket
 import struct
 import time
@@ -126,9 +128,30 @@ def remove(name: str) -> Any:
     return os.rmdir(name)  # noqa: PTH106  # as above
 
 
+@functools.lru_cache
+def parsed(text: str) -> tuple[str, int]:
+    found = ADDRESS.fullmatch(text.strip())
+    return ("", 0) if found is None else (found.group(1), int(found.group(2)))
+
+
+def translated(text: str) -> bytes:
+    name, number = parsed(text)
+    return KINDS.get(name, name).encode() + number.to_bytes(2, "big")
+
+
+def collected(text: str) -> int:
+    SEEN.append(text)
+    return len(text)
+
+
+KINDS, SEEN = {"D": "W"}, ["D1"]
+ADDRESS = re.compile(r"([DM])([0-9]+)")
+
+
 @pytest.mark.parametrize(
     ("function", "expected"),
     [
+        (translated, True), (collected, False),
         (Robot.__dict__["at"], True), (Robot.forward, True), (Robot.where, True), (filled, True),
         (table, True), (fetched, False), (checked, True), (packed, True),
         (commanded, False), (_refuse_nonsense, False),
