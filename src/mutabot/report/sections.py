@@ -193,7 +193,7 @@ def _survivors(results: Results, place: PlaceName) -> Iterator[Section]:
         (
             *mutant_cells(result.mutant, place),
             effect.replace(UNKNOWN_END, "").removesuffix("; ") if unknown else effect,
-            f"{result.kill_rate.valid - result.kill_rate.killed} of {result.kill_rate.valid}",
+            f"{len(result.survived)} of {result.kill_rate.valid}",
         )
         for result, effect in zip(shown, effects, strict=True)
     ]

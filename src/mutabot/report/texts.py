@@ -248,9 +248,11 @@ def finding_text(result: MutantResult) -> str:
 def effect_text(result: MutantResult) -> str:
     """Return the line about a mutant with the test in which it happened, and how many rounds killed it."""
     why, rate = finding_text(result), result.kill_rate
+    uncovered = rate.valid - rate.killed - len(result.survived)
+    if uncovered and (result.survived or rate.killed):
+        why += f"{'; not covered' if result.survived else ''} in {uncovered} of {rate.valid} rounds"
     if result.lets_through and rate.killed:
-        where = "" if result.survived else f" in {rate.valid - rate.killed} of {rate.valid} rounds"
-        why += f"{where}; killed in {rate.killed} of {rate.valid} rounds"
+        why += f"; killed in {rate.killed} of {rate.valid} rounds"
     return why
 
 

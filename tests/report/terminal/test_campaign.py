@@ -204,6 +204,31 @@ def test_survivors_come_with_a_reason_the_farthest_first(results: Results) -> No
     assert "1 survivor without a measured effect: mutant 4" in section
 
 
+@pytest.mark.parametrize(
+    ("other", "count", "said"),
+    [
+        (Verdict.NOT_COVERED, "1 of 2", "not covered in 1 of 2 rounds"),
+        (Verdict.KILLED, "1 of 2", "killed in 1 of 2 rounds"),
+        (Verdict.REFUSED, "1 of 1", None),
+        (Verdict.SURVIVED, "2 of 2", None),
+    ],
+)
+def test_a_survivor_is_counted_in_the_rounds_that_let_it_through(
+    tmp_path: Path, other: Verdict, count: str, said: str | None
+) -> None:
+    by = By.CHECK if other is Verdict.KILLED else None
+    ends = (
+        Outcome(samples.REVERSE.id, 0, other, by),
+        Outcome(samples.REVERSE.id, 1, Verdict.SURVIVED, divergence=("1 call fewer",)),
+    )
+    with Journal.open(samples.write_journal(tmp_path / "journal.sqlite", outcomes=ends)) as journal:
+        text = report(read_results(journal), 200)
+    line = next(line for line in text.splitlines() if "1 call fewer" in line or line.endswith(count))
+    assert line.rstrip().endswith(count), text
+    assert said is None or said in " ".join(text.split())
+    assert (said == "not covered in 1 of 2 rounds") is ("not covered in" in text)
+
+
 def test_that_no_probe_shows_how_the_world_ended_is_said_once(tmp_path: Path) -> None:
     ends = [Outcome(item.id, 0, Verdict.SURVIVED) for item in (samples.REVERSE, samples.SKIP)]
     with Journal.open(samples.write_journal(tmp_path / "journal.sqlite", outcomes=ends)) as journal:
