@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import subprocess
-import sys
 import textwrap
 import tomllib
 import venv
@@ -23,6 +22,7 @@ from mutabot_init.guess import NameContext, guess_argument, guess_elements, gues
 from mutabot_init.observations import WatchedPart
 from mutabot_init.propose import propose
 from mutabot_init.words import words_of
+from tests.command import mutabot
 
 ROBOT = '''
 from dataclasses import dataclass
@@ -266,11 +266,6 @@ def test_check_accepts_the_proposal_as_it_is(proposed: tuple[Path, str]) -> None
     done = mutabot(proposed[0], "check")
     assert done.returncode == 0, done.stderr
     assert "sites     14 reached" in done.stdout  # every call of the program and the oracle that was seen
-
-
-def mutabot(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "mutabot.cli.app", *words]
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
 
 
 def test_text_commands_become_patterns(tmp_path: Path) -> None:
