@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+
+from tests import command
 
 #: each goes up by 50 mm and shuts the gripper; its mutant goes down
 PROGRAMS = {
@@ -25,7 +25,7 @@ import pytest
 from mutabot_languages import load
 
 
-@pytest.mark.parametrize("file", ["up.mod", "up.src", "up.script"])
+@pytest.mark.parametrize("file", FILES)
 def test_it_shuts_the_gripper(new_cell, mutabot_seed, file):
     cell = new_cell(mutabot_seed)
     load(file).run(cell)
@@ -33,34 +33,34 @@ def test_it_shuts_the_gripper(new_cell, mutabot_seed, file):
 """
 
 
-@pytest.fixture
-def project(tmp_path: Path) -> Path:
-    for name, text in PROGRAMS.items():
-        (tmp_path / name).write_text(text)
-    (tmp_path / "cell_map.toml").write_text(SIGNALS)
-    (tmp_path / "test_up.py").write_text(TESTS)
-    (tmp_path / "conftest.py").write_text("from mutabot_cell.fixtures import *\n")
-    (tmp_path / "mutabot.toml").write_text(
-        f'program = {[*PROGRAMS]}\nvocabulary = ["cell"]\ntests = ["test_up.py"]\n'
-        'families = ["program-text"]\n'
+def write_project(folder: Path, files: list[str]) -> None:
+    for name in files:
+        (folder / name).write_text(PROGRAMS[name])
+    (folder / "cell_map.toml").write_text(SIGNALS)
+    (folder / "test_up.py").write_text(TESTS.replace("FILES", repr(files)))
+    (folder / "conftest.py").write_text("from mutabot_cell.fixtures import *\n")
+    (folder / "mutabot.toml").write_text(
+        f'program = {files}\nvocabulary = ["cell"]\ntests = ["test_up.py"]\nfamilies = ["program-text"]\n'
     )
-    return tmp_path
 
 
 def mutabot(folder: Path, *words: str) -> str:
-    command = [sys.executable, "-m", "mutabot", *words]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    done = command.mutabot(folder, *words)
     assert done.returncode == 0, done.stderr
     return done.stdout
 
 
-def test_a_check_is_found_that_notices_what_the_suite_does_not(project: Path) -> None:
-    mutabot(project, "run", "--only", "reverse-offset", "--rounds", "2", "-o", "repeats=false")
-    mutants = json.loads(mutabot(project, "results", "--json"))["mutants"]
+@pytest.mark.parametrize(
+    "files", [["up.src"], pytest.param([*PROGRAMS], marks=pytest.mark.whole)], ids=["krl", "all"]
+)
+def test_a_check_is_found_that_notices_what_the_suite_does_not(tmp_path: Path, files: list[str]) -> None:
+    write_project(tmp_path, files)
+    mutabot(tmp_path, "run", "--only", "reverse-offset", "--rounds", "2", "-o", "repeats=false")
+    mutants = json.loads(mutabot(tmp_path, "results", "--json"))["mutants"]
     ends = {mutant["site"].partition(":")[0]: mutant["rounds"][0]["verdict"] for mutant in mutants}
-    assert ends == dict.fromkeys(PROGRAMS, "survived")
-    found = json.loads(mutabot(project, "suggest", "--json"))
+    assert ends == dict.fromkeys(files, "survived")
+    found = json.loads(mutabot(tmp_path, "suggest", "--json"))
     kills = [kill["mutant"]["id"] for suggestion in found["suggestions"] for kill in suggestion["kills"]]
-    assert {name.partition(":")[0] for name in kills} == PROGRAMS.keys()
+    assert {name.partition(":")[0] for name in kills} == {*files}
     assert found["unsolved"] == []
     assert ".z ==" in found["diff"]
