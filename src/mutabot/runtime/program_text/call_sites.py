@@ -30,7 +30,7 @@ from mutabot.model.mutant import Extent
 from mutabot.model.source_units import FunctionNode
 from mutabot.runtime.program_text import loading
 from mutabot.runtime.program_text.compiling import SourceStep
-from mutabot.runtime.program_text.instrument import declare_global, is_instrumentation
+from mutabot.runtime.program_text.instrument import declare_global, is_instrumentation, is_switch
 from mutabot.runtime.program_text.returns import is_translated
 from mutabot.runtime.targets.target import CallPlace
 from mutabot.runtime.targets.wrapper import WRAPPERS, unbound
@@ -65,6 +65,8 @@ def _parts(node: ast.AST) -> Iterator[ast.expr]:
             yield node.body
         case ast.arguments():
             yield from (*node.defaults, *(default for default in node.kw_defaults if default is not None))
+        case ast.BoolOp(values=[ast.Call(func=entered), _]) if is_switch(entered):  # a witness
+            yield from node.values[1:] if hasattr(node, _PLACE) else ()
         case ast.Dict() | ast.BoolOp():
             yield from node.values
         case ast.List() | ast.Tuple() | ast.Set():
@@ -157,7 +159,7 @@ class CallSites(SourceStep):
     are_read: bool = False
     stored: Stored | None = None
     loaded: set[str] = field(default_factory=set)
-    _numbers: dict[tuple[str, Extent, str], int] = field(default_factory=dict)
+    _numbers: dict[tuple[Any, ...], int] = field(default_factory=dict)
     #: what was worked out of the assignment that a frame is about to make, by the frame's identity
     _parts: dict[int, list[Any]] = field(default_factory=dict)
 
@@ -191,16 +193,17 @@ class CallSites(SourceStep):
     @property
     def asked(self) -> set[str]:
         """The instrumented files, as code objects name them."""
-        return {path for path, _, _ in self._numbers}
+        return {key[0] for key in self._numbers}
 
     def _number(self, path: str, role: Role, node: ast.expr, name: str, form: str) -> int:
-        key = (path, extent_of(node), form)
+        is_handed = form.startswith("handed")
+        given_to = getattr(node, _PLACE, None) if is_handed else None
+        is_awaited, extent = bool(getattr(node, "is_awaited", False)), extent_of(given_to or node)
+        # an alternative may call or hand on something else where the original stands
+        key = (path, extent_of(node), form, name, extent, is_awaited, given_to is not None)
         number = self._numbers.get(key)
         if number is None:
             number = self._numbers[key] = len(_entries)
-            is_handed = form.startswith("handed")
-            given_to = getattr(node, _PLACE, None) if is_handed else None
-            is_awaited, extent = bool(getattr(node, "is_awaited", False)), extent_of(given_to or node)
             site = CallSite(path, role, name, extent, is_handed, is_awaited, given_to is not None)
             _entries.append(getattr(self, f"_{form}")(site))
         return number
@@ -340,8 +343,10 @@ class _Writer(ast.NodeTransformer):
             vars(node).update(hidden)
 
     def visit_Await(self, node: ast.Await) -> ast.AST:  # the name that ast looks for
-        if isinstance(node.value, ast.Call):
-            node.value.is_awaited = True  # type: ignore[attr-defined]
+        awaited = extent_of(node.value)
+        for part in ast.walk(node.value):  # an instrumented call stands within what was put around it
+            if isinstance(part, ast.Call) and extent_of(part) == awaited:
+                part.is_awaited = True  # type: ignore[attr-defined]
         return self.generic_visit(node)
 
     def visit_Assign(self, node: ast.Assign) -> ast.AST:  # as above
@@ -369,21 +374,36 @@ class _Writer(ast.NodeTransformer):
     def visit_Call(self, node: ast.Call) -> ast.AST:  # as above
         function = node.func
         self.generic_visit(node)
+        asked = self._called(node, function)
+        if asked is not function:
+            node.func = asked
+        return node
+
+    def _called(self, node: ast.Call, function: ast.expr) -> ast.expr:
+        """Return what a call calls, with a hook in it, and in what may take its place."""
+        match function:
+            case ast.IfExp() if is_switch(function.test):
+                function.body = self._called(node, function.body)
+                function.orelse = self._called(node, function.orelse)
+                return function
+            case ast.BoolOp(values=[ast.Call(func=entered), ast.Call() as shown]) if is_switch(entered):
+                shown.args = [self._called(node, *shown.args)]
+                return function
+            case ast.Call(args=[*_, value]) if is_instrumentation(function.func):
+                function.args[-1] = self._called(node, value)
+                return function
         read = self._read.get(function.id, function) if isinstance(function, ast.Name) else function
-        if is_instrumentation(read):
-            return node
-        if isinstance(read, ast.Attribute) and read.attr in self.names:
+        if isinstance(read, ast.Attribute) and read.attr in self.names and not is_instrumentation(read):
             if read is function:
                 _as_compiled(node, read)
-                node.func = self._question(self.number(node, read.attr, "attribute"), function, [read.value])
-            else:
-                given = [function, copy.deepcopy(read.value)]
-                node.func = self._question(self.number(node, read.attr, "name"), function, given)
-        elif isinstance(read, ast.Name) and read.id == "getattr" and self.are_handed:
-            node.func = self._question(self.number(node, "", "handed_by_name"), function, [function])
-        elif isinstance(read, ast.Name) and read.id in self.names:
-            node.func = self._question(self.number(node, read.id, "name"), function, [function])
-        return node
+                return self._question(self.number(node, read.attr, "attribute"), function, [read.value])
+            given = [function, copy.deepcopy(read.value)]
+            return self._question(self.number(node, read.attr, "name"), function, given)
+        if isinstance(read, ast.Name) and read.id == "getattr" and self.are_handed:
+            return self._question(self.number(node, "", "handed_by_name"), function, [function])
+        if isinstance(read, ast.Name) and read.id in self.names:
+            return self._question(self.number(node, read.id, "name"), function, [function])
+        return function
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:  # as above
         self.generic_visit(node)

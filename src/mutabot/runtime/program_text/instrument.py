@@ -252,6 +252,13 @@ def _moved(made: _Node, node: ast.AST) -> _Node:
     return made
 
 
+def is_switch(test: ast.expr) -> bool:
+    """Return whether an expression is a condition of the instrumentation, before an original."""
+    if isinstance(test, ast.BoolOp):
+        test = test.values[0]
+    return is_instrumentation(test.left if isinstance(test, ast.Compare) else test)
+
+
 def is_instrumentation(function: ast.expr) -> bool:
     """Return whether a function is part of the instrumentation."""
     while isinstance(function, ast.Attribute | ast.Subscript):
