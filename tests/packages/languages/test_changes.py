@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 from mutabot.model.source_units import File
 from mutabot_languages.registry import language_for
+from tests import command
 
 FILES = {
     "a.mod": """MODULE A
@@ -57,8 +57,7 @@ def git(folder: Path, *words: str) -> None:
 
 def mutabot(folder: Path, *options: str) -> str:
     """Run a campaign; all that it says."""
-    command = [sys.executable, "-m", "mutabot", "run", "-o", "repeats=false", *options]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    done = command.mutabot(folder, "run", "-o", "repeats=false", *options)
     return " ".join((done.stdout + done.stderr).split())
 
 

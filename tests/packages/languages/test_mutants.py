@@ -6,6 +6,7 @@ import json
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -13,6 +14,7 @@ from mutabot.campaign.suppressions import comments_in
 from mutabot_languages.mutation.planning import PlannedText, mutants_of, planned_texts, read_program
 from mutabot_languages.mutation.rewriting import Sizes
 from mutabot_languages.mutation.rules import BY_NAME, FAMILY
+from tests.command import mutabot
 from tests.packages.languages.programs import FILES, RAPID, written
 
 
@@ -157,8 +159,7 @@ def test_they_have_verdicts(engine: str, tmp_path: Path) -> None:
     (tmp_path / "pyproject.toml").write_text(f"[tool.mutabot]\n{settings}")
     only = ["shift-point", "drop-statement", "swap-motion", "forget-wait"]
     options = [word for name in only for word in ("--only", name)]
-    command = [sys.executable, "-m", "mutabot", "run", "--json", "--engine", engine, "-o", "repeats=false"]
-    done = subprocess.run([*command, *options], cwd=tmp_path, capture_output=True, text=True, check=False)
+    done = mutabot(tmp_path, "run", "--json", "--engine", engine, "-o", "repeats=false", *options)
     assert done.returncode == 0, done.stderr
     found = {mutant["description"]: mutant["rounds"][0] for mutant in json.loads(done.stdout)["mutants"]}
     verdicts = {text: end["verdict"] for text, end in found.items()}
@@ -168,42 +169,46 @@ def test_they_have_verdicts(engine: str, tmp_path: Path) -> None:
     assert verdicts["WAIT FOR $IN[25]==TRUE → WAIT SEC 0"] == "survived"
 
 
-@pytest.mark.parametrize("engine", ["fork", pytest.param("replay", marks=pytest.mark.whole)])
-def test_what_the_program_does_not_come_to_is_not_covered(engine: str, tmp_path: Path) -> None:
-    (tmp_path / "a.script").write_text("x = 1\nif x > 1:\n  x = x + 5\nend\nsleep(0.1)\n")
-    (tmp_path / "conftest.py").write_text("from mutabot_cell.fixtures import *\n")
-    (tmp_path / "test_a.py").write_text(
-        "from pathlib import Path\nfrom mutabot_languages import load\n\n\ndef test_a(new_cell):\n"
-        '    done = load(Path(__file__).parent / "a.script").run(new_cell(1))\n'
-        '    assert done.variables["x"] == 1\n'
-    )
-    settings = 'program = ["a.script"]\nvocabulary = ["cell"]\ntests = ["test_a.py"]\n'
-    (tmp_path / "mutabot.toml").write_text(f'{settings}families = ["program-conventional"]\n')
-    command = [sys.executable, "-m", "mutabot", "run", "--json", "--engine", engine, "-o", "repeats=false"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
-    verdicts = {
-        mutant["description"]: mutant["rounds"][0]["verdict"] for mutant in json.loads(done.stdout)["mutants"]
-    }
-    assert verdicts["x + 5 → x - 5"] == "not covered"
-    assert verdicts["x > 1 → x >= 1"] == "killed"
+#: one does not come to a statement of its own; in the other, a value may be missing
+SHORT = {
+    "a.script": "x = 1\nif x > 1:\n  x = x + 5\nend\nsleep(0.1)\n",
+    "b.script": "y = 1\nz = y + 1\ny = z\n",
+}
+SHORT_TESTS = """
+from pathlib import Path
+from mutabot_languages import load
+
+def test_a(new_cell):
+    assert load(Path(__file__).parent / "a.script").run(new_cell(1)).variables["x"] == 1
+
+def test_b(new_cell):
+    assert load(Path(__file__).parent / "b.script").run(new_cell(1)).variables["z"] == 2
+"""
 
 
-@pytest.mark.parametrize("engine", ["fork", pytest.param("replay", marks=pytest.mark.whole)])
-def test_a_variable_that_has_lost_its_value_is_an_error_of_the_program(engine: str, tmp_path: Path) -> None:
-    (tmp_path / "a.script").write_text("x = 1\ny = x + 1\nx = y\n")
-    (tmp_path / "conftest.py").write_text("from mutabot_cell.fixtures import *\n")
-    (tmp_path / "test_a.py").write_text(
-        "from pathlib import Path\nfrom mutabot_languages import load\n\n\ndef test_a(new_cell):\n"
-        '    assert load(Path(__file__).parent / "a.script").run(new_cell(1)).variables["y"] == 2\n'
-    )
-    settings = 'program = ["a.script"]\nvocabulary = ["cell"]\ntests = ["test_a.py"]\n'
-    (tmp_path / "mutabot.toml").write_text(f'{settings}families = ["program-conventional"]\n')
-    command = [sys.executable, "-m", "mutabot", "run", "--json", "--engine", engine, "-o", "repeats=false"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
-    ends = {mutant["description"]: mutant["rounds"][0] for mutant in json.loads(done.stdout)["mutants"]}
-    assert ends["x = 1 deleted"]["verdict"] == "killed"
-    assert "a.script:2: x has no value" in ends["x = 1 deleted"]["message"]
-    assert ends["x = y deleted"]["verdict"] == "survived"
+@pytest.fixture(scope="module", params=["fork", pytest.param("replay", marks=pytest.mark.whole)])
+def short(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    """How each mutant of two short programs ends, by its description."""
+    folder = tmp_path_factory.mktemp("short")
+    for name, text in SHORT.items():
+        (folder / name).write_text(text)
+    (folder / "conftest.py").write_text("from mutabot_cell.fixtures import *\n")
+    (folder / "test_short.py").write_text(SHORT_TESTS)
+    settings = f'program = {[*SHORT]}\nvocabulary = ["cell"]\ntests = ["test_short.py"]\n'
+    (folder / "mutabot.toml").write_text(f'{settings}families = ["program-conventional"]\n')
+    done = mutabot(folder, "run", "--json", "--engine", request.param, "-o", "repeats=false")
+    return {mutant["description"]: mutant["rounds"][0] for mutant in json.loads(done.stdout)["mutants"]}
+
+
+def test_what_the_program_does_not_come_to_is_not_covered(short: dict[str, Any]) -> None:
+    assert short["x + 5 → x - 5"]["verdict"] == "not covered"
+    assert short["x > 1 → x >= 1"]["verdict"] == "killed"
+
+
+def test_a_variable_that_has_lost_its_value_is_an_error_of_the_program(short: dict[str, Any]) -> None:
+    assert short["y = 1 deleted"]["verdict"] == "killed"
+    assert "b.script:2: y has no value" in short["y = 1 deleted"]["message"]
+    assert short["y = z deleted"]["verdict"] == "survived"
 
 
 def test_diff_and_export_show_and_write_them(tmp_path: Path) -> None:
@@ -212,28 +217,24 @@ def test_diff_and_export_show_and_write_them(tmp_path: Path) -> None:
         '[tool.mutabot]\nprogram = ["pick.src", "pick.dat"]\nvocabulary = ["cell"]\ntests = ["."]\n'
     )
 
-    def mutabot(*words: str) -> subprocess.CompletedProcess[str]:
-        command = [sys.executable, "-m", "mutabot", *words]
-        return subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
-
-    shown = mutabot("diff").stdout
+    shown = mutabot(tmp_path, "diff").stdout
     assert ":forget-wait\n" in shown
     assert ":drop-any\n" not in shown  # of a family that is not asked for
-    shown = mutabot("diff", "forget-wait").stdout.splitlines()
+    shown = mutabot(tmp_path, "diff", "forget-wait").stdout.splitlines()
     assert shown[0] == "# pick.src:pick:wait for#1:forget-wait"
     assert shown[-2:] == ["-WAIT FOR $IN[25]==TRUE", "+WAIT SEC 0"]
-    assert mutabot("export", "out", "forget-wait").returncode == 0
+    assert mutabot(tmp_path, "export", "out", "forget-wait").returncode == 0
     original = (tmp_path / "pick.src").read_bytes()
     exported = (tmp_path / "out/1/pick.src").read_bytes()
     assert exported == original.replace(b"WAIT FOR $IN[25]==TRUE", b"WAIT SEC 0")
     assert (tmp_path / "out/1/pick.dat").read_bytes() == (tmp_path / "pick.dat").read_bytes()
-    assert "is not empty" in mutabot("export", "out").stderr
+    assert "is not empty" in mutabot(tmp_path, "export", "out").stderr
     for words in (
         ("--only", "1"),
         ("--rounds", "1"),
         ("--sample", "10%"),
     ):  # nothing runs, nothing has a number
-        refused = mutabot("diff", *words)
+        refused = mutabot(tmp_path, "diff", *words)
         assert refused.returncode == 2
         assert f"No such option: {words[0]}" in refused.stderr
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import csv
 import json
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
 import pytest
+
+from tests import command
 
 #: a statement by file, and its line
 PLACES = {"a.mod": ("WaitTime 0.5", 4), "b.src": ("WAIT SEC 0.5", 4), "c.script": ("sleep(0.5)", 4)}
@@ -32,10 +32,9 @@ def test_it_ends(new_cell, mutabot_seed, file):
 
 
 def mutabot(folder: Path, *words: str) -> str:
-    command = [sys.executable, "-m", "mutabot", *words]
-    done = subprocess.run(command, cwd=folder, capture_output=True, check=False)
-    assert done.returncode == 0, done.stderr.decode()
-    return done.stdout.decode()
+    done = command.mutabot(folder, *words)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
 
 
 @pytest.fixture(scope="module")

@@ -16,6 +16,7 @@ from mutabot_languages.registry import language_for
 from mutabot_languages.starting import project as starting
 from mutabot_languages.starting.signals import signals_of
 from mutabot_languages.starting.trial import ProgramTrial
+from tests.command import mutabot
 from tests.packages.languages.programs import FILES, written
 
 UP = """MODULE Up
@@ -42,15 +43,12 @@ def begun(
 @pytest.mark.usefixtures("plugins")
 def test_init_makes_a_project_whose_tests_pass_and_that_mutabot_lists(tmp_path: Path) -> None:
     (tmp_path / "up.mod").write_text(UP)
-    command = [sys.executable, "-m", "mutabot", "-C", str(tmp_path)]
-    done = subprocess.run([*command, "init"], capture_output=True, text=True, check=True)
-    assert "up.mod ends after" in done.stdout
+    assert "up.mod ends after" in mutabot(tmp_path, "init").stdout
     tests = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider"]
     ended = subprocess.run(tests, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert ended.returncode == 0, ended.stdout
     assert tomllib.loads((tmp_path / "mutabot.toml").read_text())["program"] == ["up.mod"]
-    changed = subprocess.run([*command, "diff", "reverse-offset"], capture_output=True, text=True, check=True)
-    assert "Offs(pNow,0,0,-50)" in changed.stdout
+    assert "Offs(pNow,0,0,-50)" in mutabot(tmp_path, "diff", "reverse-offset").stdout
 
 
 @pytest.mark.parametrize("language", FILES)

@@ -7,11 +7,11 @@ by hand: 3 > 2, so that 3 + 4 = 7 is what the tests expect.
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+
+from tests.command import mutabot
 
 PROGRAM = """MODULE Pick
   VAR num count := 0;
@@ -104,8 +104,7 @@ def verdicts(
         'families = ["program-conventional"]\n'
     )
     only = [word for name in ("drop-any", "insert-unary", "replace-relation") for word in ("--only", name)]
-    command = [sys.executable, "-m", "mutabot", "run", "--json", "--engine", engine, "-o", "repeats=false"]
-    done = subprocess.run([*command, *only], cwd=folder, capture_output=True, text=True, check=False)
+    done = mutabot(folder, "run", "--json", "--engine", engine, "-o", "repeats=false", *only)
     assert done.stdout, done.stderr
     found = {mutant["description"]: mutant["rounds"][0] for mutant in json.loads(done.stdout)["mutants"]}
     return {text: (end["verdict"], end.get("message") or "") for text, end in found.items()}
