@@ -133,7 +133,7 @@ def test_a_mutant_of_it_is_replayed_over_the_simulation(tmp_path: Path) -> None:
         pytest.param(
             "assert not ros_in_process.is_running(); " + CHECK,
             "0.5",
-            "1 test fails on the unmutated program in round 1: tests/test_mission.py::test_it_tells",
+            "1 test fails on the unmutated program in round 1: tests/test_mission.py::test_it_shows",
             id="another outcome",
             marks=pytest.mark.whole,
         ),
