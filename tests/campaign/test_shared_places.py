@@ -162,11 +162,11 @@ def test_a_call_of_what_has_a_counterpart_keeps_its_sites(tmp_path: Path, engine
     project = write_project(tmp_path, mission, BOTH, robot=COUNTERPARTS, vocabulary=MOVES)
     found = run(project, engine=engine, families=("robot", "bugs"), every_test=True)
     alone = run(project, engine=engine, families=("robot",), fresh=True, every_test=True)
-    told = {mutant: (outcome.verdict, outcome.hits) for mutant, outcome in found.items()}
-    assert {mutant: told.get(mutant) for mutant in alone} == {
+    ends = {mutant: (outcome.verdict, outcome.hits) for mutant, outcome in found.items()}
+    assert {mutant: ends.get(mutant) for mutant in alone} == {
         mutant: (outcome.verdict, outcome.hits) for mutant, outcome in alone.items()
     }
     kinds = [mutant.rpartition(":")[2] for mutant in alone]
     assert kinds.count("reverse") == 3
-    turned = [told[mutant] for mutant in alone if mutant.endswith(":reverse")]
+    turned = [ends[mutant] for mutant in alone if mutant.endswith(":reverse")]
     assert turned == [(Verdict.KILLED, 2)] * 3

@@ -149,7 +149,8 @@ class _Function:
     def _is_of_constant(self, function: ast.Attribute) -> bool:
         """Return whether it is a method, of a table or value of the module, that only reads it."""
         holder = self._found(function.value)
-        return isinstance(holder, _UNCHANGING) or (isinstance(holder, _TABLES) and function.attr in _METHODS)
+        kind = type(holder)  # methods of a subclass, as of members of an IntEnum, may do anything
+        return kind in _UNCHANGING or (kind in _TABLES and function.attr in _METHODS)
 
     def _may_be_called(self, found: Any, owner: type | None) -> bool:
         if isinstance(found, type):

@@ -60,13 +60,13 @@ class _Awaitable(int):
 
 
 def _seen(text: str, tree: ast.Module) -> tuple[list[Any], list[Any]]:
-    """What the hooks are told while the program runs, and what the arm does."""
-    told = []
+    """What the hooks are asked while the program runs, and what the arm does."""
+    asked = []
 
     def note(site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
         position = inspect.getframeinfo(frame).positions
         what = site.name, site.extent, site.is_handed, site.is_given, site.is_awaited
-        told.append((*what, found.__name__, position.lineno if position is not None else None))
+        asked.append((*what, found.__name__, position.lineno if position is not None else None))
         return found
 
     sites = CallSites(NAMES, lambda path: Role.PROGRAM, note, hands=note)
@@ -75,7 +75,7 @@ def _seen(text: str, tree: ast.Module) -> tuple[list[Any], list[Any]]:
     exec(compile(tree, "mission.py", "exec"), program)
     arm = _Arm()
     asyncio.run(program["run"](arm))
-    return told, arm.log
+    return asked, arm.log
 
 
 @pytest.mark.parametrize("record", [True, False])

@@ -111,14 +111,15 @@ class Sources:
 
     def is_among(self, span: Span, find: Callable[[str], frozenset[Extent]]) -> bool:
         """Return whether ``find`` finds an expression in the text of its file, if that is Python."""
-        is_python = front_end_of(span.file) is PYTHON
-        return is_python and _extent(span) in (self.found_in(span.file, find) or ())
+        return _extent(span) in (self._found_in_python(span.file, find) or ())
 
     def found_at(self, span: Span, find: Callable[[str], Mapping[Extent, _T]]) -> _T | None:
         """Return what ``find`` finds of an expression in the text of its file; None if it finds nothing."""
-        is_python = front_end_of(span.file) is PYTHON
-        found: Mapping[Extent, _T] = self.found_in(span.file, find) or {} if is_python else {}
-        return found.get(_extent(span))
+        found: Mapping[Extent, _T] | None = self._found_in_python(span.file, find)
+        return None if found is None else found.get(_extent(span))
+
+    def _found_in_python(self, file: str, find: Callable[[str], Any]) -> Any:
+        return self.found_in(file, find) if front_end_of(file) is PYTHON else None
 
     def found_in(self, file: str, find: Callable[[str], Any]) -> Any:
         """Return what ``find`` finds in the text of a file; None if the file cannot be read."""

@@ -306,16 +306,15 @@ def _why_unread(
     is_clear = not any(map(_is_relative, chain(*described)))
     if not is_clear or not all(any(_are_nested(part, other) for other in described) for part in parts):
         return None
-    changed = {subject.required_quantity}
-    for hit, passage in _rehearsals(rule, subject, hits):
+    are_read = [part for part in subject.read if any(_are_nested(part.path.steps, own) for own in parts)]
+    if subject.quantity in are_read:
+        return None
+    for hit, passage in _rehearsals(rule, subject, hits):  # one operator may change several parts
         if passage is None or passage.received is None:
             return None
         before, after = hit.read, passage.received.values
-        changed |= {
-            part for part in subject.read if not part.is_same(after.get(part.name), before.get(part.name))
-        }
-    if any(_are_nested(part, quantity.path.steps) for part in parts for quantity in changed):
-        return None
+        if not all(part.is_same(after.get(part.name), before.get(part.name)) for part in are_read):
+            return None
     shown = sorted("".join(map(str, part)) for part in parts)
     return f"only these parts of the result are read: {', '.join(shown)}"
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import enum
 import functools
 import math
 import os
@@ -144,14 +145,25 @@ def collected(text: str) -> int:
     return len(text)
 
 
-KINDS, SEEN = {"D": "W"}, ["D1"]
+class Pin(enum.IntEnum):
+    LAMP = 3
+
+    def on(self) -> bool:
+        return bool(os.write(self, b"1"))
+
+
+def lit() -> bool:
+    return LAMP.on()
+
+
+KINDS, SEEN, LAMP = {"D": "W"}, ["D1"], Pin.LAMP
 ADDRESS = re.compile(r"([DM])([0-9]+)")
 
 
 @pytest.mark.parametrize(
     ("function", "expected"),
     [
-        (translated, True), (collected, False),
+        (translated, True), (collected, False), (lit, False),
         (Robot.__dict__["at"], True), (Robot.forward, True), (Robot.where, True), (filled, True),
         (table, True), (fetched, False), (checked, True), (packed, True),
         (commanded, False), (_refuse_nonsense, False),
