@@ -120,6 +120,19 @@ def turning(*angles: float) -> Recording:
     return recorder.recording
 
 
+def pressing(*pressures: float) -> Recording:
+    """A vacuum cup's pressure, kPa."""
+    recorder = recorders.begin()
+    now = [0]
+    feed = Feed(lambda: now[0] / 10)
+    feed.value("pressure", lambda: pressures[now[0]], unit="kPa")
+    for now[0] in range(len(pressures)):
+        feed.tick()
+    recorders.stop()
+    recorder.recording.is_simulated = True
+    return recorder.recording
+
+
 def test_a_tool_that_is_turned_on_its_way_is_described_by_the_angle_from_all_that_the_original_has() -> None:
     usual = turning(0, 30, 60, 90)
     assert told(turning(0, 30, 60, 200, 90), usual).story.startswith(
@@ -128,6 +141,25 @@ def test_a_tool_that_is_turned_on_its_way_is_described_by_the_angle_from_all_tha
     late = told(turning(0, 0, 30, 60, 90), usual)
     assert "turned by" not in late.story
     assert late.deviation <= 1.0
+
+
+def test_a_turn_on_the_way_counts_a_tenth_of_one_that_remains() -> None:
+    usual = turning(0, 30, 60, 90)
+    passing, remaining = turning(0, 30, 60, 140, 90), turning(0, 30, 60, 90, 140)
+    assert told(remaining, usual).deviation == pytest.approx(100.0)  # 50 deg, of which 0.5 count as none
+    assert told(passing, usual).deviation == pytest.approx(10.0)
+
+
+def test_a_small_turn_on_the_way_is_described_though_it_counts_little() -> None:
+    found = told(turning(0, 30, 60, 94, 90), turning(0, 30, 60, 90))
+    assert found.deviation < 1.0
+    assert found.story.startswith("tool was turned by up to 4 deg on its way")
+
+
+def test_a_value_that_leaves_its_range_alone_is_no_delay() -> None:
+    assert told(pressing(0, 40, 52, 40), pressing(0, 40, 48, 40)).story.startswith(
+        "pressure left its range in the original by up to 4 kPa"
+    )
 
 
 def test_things_that_left_their_paths_are_reported_together() -> None:

@@ -35,7 +35,7 @@ from mutabot.model.world_difference import Apart, Diverged, Measurement
 
 #: parts of a sentence, how many of them may be contacts, and differences that are kept
 _MOST_PARTS, _MOST_CONTACTS, _MOST = 3, 2, 8
-#: deg by which a thing must be turned on its way
+#: deg by which a thing must be turned on its way, if there is anything else to say
 _LEAST_TURN = 5.0
 #: things of which stories say how far they left their paths
 _MOST_PATHS = 2
@@ -148,7 +148,8 @@ class _ComparedRuns:
         ]
         others += _detours(significant, is_whole=not self.is_cut)
         parts += [text for _, text in sorted(others, key=lambda weighted_text: -weighted_text[0]) if text]
-        parts = parts or [self._delay()] if apart else parts
+        if apart and not parts:
+            parts = [*_asides(significant)] or [self._delay()]
         late = next((measurement for measurement in measured if measurement.name == DURATION), None)
         if late is not None and any(not deviation.is_delay for deviation in apart):  # else the delay says so
             parts.append(f"the test took {_beside(late, 3)}")
@@ -311,7 +312,8 @@ def _amount(value: float, unit: str = "m", digits: int = 2) -> str:
 
 def _is_significant(deviation: Apart) -> bool:
     """Return whether it is more than delay and the original's spread, and worth a sentence."""
-    return not deviation.is_delay and deviation.deviation > 1.0 and not deviation.name.endswith("margin")
+    is_beyond = max(deviation.of_end, deviation.of_way) > 1.0
+    return is_beyond and not deviation.is_delay and not deviation.name.endswith("margin")
 
 
 def _strayed(deviation: Apart, *, is_whole: bool) -> str:
@@ -343,11 +345,25 @@ def _detours(apart: Sequence[Apart], *, is_whole: bool) -> Iterator[tuple[float,
         its, plural = ("its path", "") if len(paths) == 1 else ("their paths", "s")
         end = f" but reached the correct end position{plural}" if is_whole else ""
         yield paths[0].deviation, f"{names} left {its} by up to {far}{end}"
-    for deviation in found:
-        if deviation.name.endswith(TURNED) and (deviation.aside or 0.0) > _LEAST_TURN:
-            thing = deviation.name.removesuffix(TURNED)
-            far = value_with_unit(deviation.aside or 0.0, deviation.unit)
-            yield deviation.deviation, f"{thing} was turned by up to {far} on its way"
+    yield from ((turn.deviation, _turned(turn)) for turn in found if _is_turn(turn, _LEAST_TURN))
+
+
+def _asides(apart: Sequence[Apart]) -> Iterator[str]:
+    """Describe turns of any size and values that left their range, where there is nothing else to say."""
+    for gap in apart:
+        if _is_turn(gap):
+            yield _turned(gap)
+        elif gap.is_value and gap.aside:
+            yield f"{gap.name} left its range in the original by up to {value_with_unit(gap.aside, gap.unit)}"
+
+
+def _is_turn(gap: Apart, least: float = 0.0) -> bool:
+    return gap.name.endswith(TURNED) and (gap.aside or 0.0) > least
+
+
+def _turned(gap: Apart) -> str:
+    far = value_with_unit(gap.aside or 0.0, gap.unit)
+    return f"{gap.name.removesuffix(TURNED)} was turned by up to {far} on its way"
 
 
 def value_with_unit(value: float, unit: str = "m") -> str:
