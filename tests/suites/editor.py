@@ -26,8 +26,9 @@ PLANTED = '__import__("_planted")'
 DEVIATIONS = {"position": (0.02, "m"), "distance": (0.02, "m"), "orientation": (0.05, "rad"),
               "angle": (0.05, "rad")}  # fmt: skip
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "rad": 1.0, "deg": math.pi / 180}
-_PURE = (ast.Constant, ast.Name, ast.Attribute, ast.UnaryOp, ast.BinOp, ast.Tuple, ast.List, ast.keyword,
-         ast.operator, ast.unaryop, ast.expr_context, ast.Dict)  # fmt: skip
+#: what can be evaluated twice, or not at all; an attribute may be a property
+_PURE = (ast.Constant, ast.Name, ast.UnaryOp, ast.BinOp, ast.Tuple, ast.List, ast.keyword, ast.operator,
+         ast.unaryop, ast.expr_context, ast.Dict)  # fmt: skip
 
 
 class CannotWriteError(Exception):
@@ -346,10 +347,11 @@ class CallEditor:
         """Whether the call can stand twice, or not at all, without a change of anything else."""
         if self.is_handed or self.meant is not None:
             return False
-        parts = [self.call.func, *self.call.args, *self.call.keywords]
         if self.is_async and self.awaited is None:
             return False
-        return all(isinstance(node, _PURE) for part in parts for node in ast.walk(part))
+        is_named = all(isinstance(node, (*_PURE, ast.Attribute)) for node in ast.walk(self.call.func))
+        given = [*self.call.args, *self.call.keywords]
+        return is_named and all(isinstance(node, _PURE) for part in given for node in ast.walk(part))
 
     def _callee(self) -> str:
         return self.source.text(self.callee)

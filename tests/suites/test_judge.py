@@ -130,6 +130,9 @@ EDITS = {
     ),
     "repeat": ("arm.move(0.5)", "Arm.move", None, "", "(arm.move(0.5), arm.move(0.5))[1]"),
     "repeat of a call in an argument": ("arm.move(f())", "Arm.move", None, "", f"{P}.twice(arm.move)(f())"),
+    "repeat of a call given an attribute, which may be a property": (
+        "arm.move(arm.goal)", "Arm.move", None, "", f"{P}.twice(arm.move)(arm.goal)"
+    ),
     "opposite": ("arm.open()", "Arm.open", None, "", "arm.close()"),
     "opposite of a value": (
         "arm.grip(closed=True)", "Arm.grip", "closed", "",
