@@ -459,7 +459,7 @@ def text_edit(source: Source, mutant: Mapping[str, Any]) -> Edit:
     node = _node_at(source, start, end)
     before = source.bytes[start:end].decode()
     if mutant["operator"] == "BSR":
-        return Edit(source.name, start, end, 'raise RuntimeError("planted")')
+        return Edit(source.name, start, end, f"raise {PLANTED}.PlantedError()")
     told, arrow, after = mutant["description"].partition(" → ")
     if not arrow or "→" in after:
         raise CannotWriteError("the description has no single arrow")

@@ -206,7 +206,7 @@ def test_a_text_command_is_edited_where_it_reads_like_the_pattern(
     [
         ("AOR", "sub", "a + b → a - b", "x = (a - b)"),
         ("ABS", "failOnZero", "a + b → failOnZero(a + b)", f"x = ({P}.fail_on_zero(a + b))"),
-        ("BSR", "", "x = a + b → Bomb()", 'raise RuntimeError("planted")'),
+        ("BSR", "", "x = a + b → Bomb()", f"raise {P}.PlantedError()"),
     ],
 )
 def test_a_mutant_of_the_text_is_what_its_description_says(
