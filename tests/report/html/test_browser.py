@@ -138,9 +138,13 @@ def test_survivors_are_described_if_nothing_else_says_which_they_are_and_are_in_
     visit.open("#/mutants")
     visit.page.evaluate(
         """(copies) => {
-            const { mutants } = mutabot.campaign, [survivor] = mutants.filter((one) => one.survives);
+            const { mutants, survivors, byNumber } = mutabot.campaign, survivor = byNumber.get(survivors[0]);
             for (const one of mutants) Object.assign(one, { indistinguishable: true, deviation: 0 });
-            for (let at = copies; at; at -= 1) mutants.push({ ...survivor, number: 100 + at });
+            for (let at = copies; at; at -= 1) {
+                mutants.push({ ...survivor, number: 100 + at });
+                survivors.push(100 + at);
+                byNumber.set(100 + at, mutants.at(-1));
+            }
             location.hash = "#/";
         }""",
         copies,
@@ -154,6 +158,22 @@ def test_survivors_are_described_if_nothing_else_says_which_they_are_and_are_in_
     assert len(numbers) == (30 if copies else 0)
     assert numbers == sorted(numbers)
     assert (" and 12 more" in section.inner_text()) == bool(copies)
+
+
+def test_survivors_without_a_deviation_stand_in_the_order_of_the_terminal(
+    browser: Any, tmp_path: Path
+) -> None:
+    unknown = Outcome(samples.REVERSE.id, 0, Verdict.SURVIVED)
+    differs = Outcome(samples.SKIP.id, 0, Verdict.SURVIVED, divergence=("1 call fewer",))
+    page = browser.new_page()
+    visit = Visit(page, reports.plain(tmp_path, outcomes=(unknown, differs)))
+    visit.open("#/")
+    links = page.locator("section[aria-labelledby=survivors] ol.findings a").all()
+    expected = [samples.SKIP, samples.REVERSE]
+    assert [link.inner_text().split(maxsplit=1) for link in links] == [
+        [str(mutant.number), mutant.description] for mutant in expected
+    ]
+    page.close()
 
 
 def test_a_page_without_movements_says_what_would_record_them(visit: Visit) -> None:

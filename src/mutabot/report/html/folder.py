@@ -87,6 +87,7 @@ def campaign_data(campaign: Results, name: str) -> dict[str, Any]:
         # thousands of rows do not repeat the names of their cells
         "columns": [*rows[0]] if rows else [],
         "mutants": [[*row.values()] for row in rows],
+        "survivors": [result.mutant.number for result in campaign.survivors],
         "withoutEffect": [*campaign.needlessly_accepted, *campaign.accepting.unmatched],
         "unlooked": unlooked(campaign.mutants),
         "ladders": [

@@ -6,7 +6,7 @@
 
   mutabot.views.set("", (body) => {
     const campaign = mutabot.campaign;
-    const survivors = worstFirst(campaign.mutants);
+    const survivors = campaign.survivors.map((number) => campaign.byNumber.get(number));
     const graded = (campaign.ladders || []).length;
     const things = [(campaign.mutants.length || !graded) && count(campaign.mutants.length, "mutant"), graded && count(graded, "ladder")];
     const judging = campaign.mutants.length || !graded
@@ -31,10 +31,6 @@
       names.map(([what, those]) => h("details", null, h("summary", null, `${what}: ${those.length}`),
         h("ul", { class: "plain small" }, those.map((one) => h("li", null, h("code", null, mutabot.breakable(one))))))));
   }
-
-  const worstFirst = (mutants) => mutants.filter((one) => one.survives)
-    .sort((one, other) => other.deviation - one.deviation || one.indistinguishable - other.indistinguishable || one.number - other.number);
-  mutabot.worstFirst = worstFirst;
 
   /** Whether the page is served by the campaign itself: then it says above how far it is. */
   const isUnderWay = (campaign) => Boolean(mutabot.live) && campaign.state === "running";
