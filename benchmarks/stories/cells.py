@@ -71,17 +71,20 @@ class Watched:
         """All that touch each other at any time."""
         return set().union(*self.cell["touching"])
 
-    def partners(self, part: str) -> tuple[Truth, dict[str, Truth]]:
-        """Whether a robot touches a part, per tick, and what else does, by its name."""
+    def partners(self, part: str, robot: str = "") -> tuple[Truth, dict[str, Truth]]:
+        """Whether a robot touches a part, per tick, and what else but robots does, by its name.
+
+        ``robot``: what the names of the robot's bodies begin with; any robot if that is empty.
+        """
         others = {next(member for member in pair if member != part) for pair in self.pairs if part in pair}
         held = np.zeros(len(self.times), dtype=bool)
         rest = {}
         for other in sorted(others):
             found = self.touches(part, other)
-            if other in self.cell["robots"]:
-                held |= found
-            else:
+            if other not in self.cell["robots"]:
                 rest[other] = found
+            elif other.startswith(robot):
+                held |= found
         return _bridged(held, self.times), rest
 
     def lowest(self, part: str) -> Array:
@@ -110,19 +113,17 @@ class Watched:
                 yield Release(self.times[last], max(0.0, low[last] - low[first]), name, speed)
 
     def slip(self, part: str) -> float:
-        """How far a part moved in a grip at most while nothing else touched it, m."""
-        held, rest = self.partners(part)
-        stands = np.any(list(rest.values()), axis=0) if rest else np.zeros_like(held)
+        """How far a part moved in a robot's grip at most while it touched nothing but robots, m."""
         worst = 0.0
-        for begin, end in _runs(held):
-            free = np.arange(begin, end)[~stands[begin:end]]
-            if len(free) < 2:
-                continue
-            start = self.poses[part][free[0], :3]
-            tool = min(self.tools, key=lambda name: np.linalg.norm(self.poses[name][free[0], :3] - start))
-            frames = self.poses[tool][free]
-            inside = _inside(frames, self.poses[part][free, :3])
-            worst = max(worst, float(np.linalg.norm(inside - inside[0], axis=1).max()))
+        for tool in self.tools:
+            held, rest = self.partners(part, tool.removesuffix("tool"))
+            stands = np.any(list(rest.values()), axis=0) if rest else np.zeros_like(held)
+            for begin, end in _runs(held):
+                free = np.arange(begin, end)[~stands[begin:end]]
+                if len(free) < 2:
+                    continue
+                inside = _inside(self.poses[tool][free], self.poses[part][free, :3])
+                worst = max(worst, float(np.linalg.norm(inside - inside[0], axis=1).max()))
         return worst
 
     def drag(self, part: str, other: str) -> float:

@@ -96,7 +96,8 @@ class Runs:
         begin = self.mutant.first_touch(told["one"], told["other"])
         if told["speed"] and begin is not None:
             tick = max(0, int(np.searchsorted(self.mutant.times, begin)) - 2)
-            fastest = max(float(self.mutant.speeds(name)[tick]) for name in self.mutant.tools)
+            own = [name for name in self.mutant.tools if told["one"].startswith(name.removesuffix("tool"))]
+            fastest = max(float(self.mutant.speeds(name)[tick]) for name in own)
             yield from off("speed", told["speed"], fastest, 0.1, 0.25)
 
     def slip(self, told: Told) -> Iterator[str]:

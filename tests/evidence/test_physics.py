@@ -11,7 +11,7 @@ from mutabot.evidence.feed import Feed
 from mutabot.evidence.paths import RecordedPaths
 from mutabot.evidence.physics import COLLISION, DRAG, DURATION, IMPACT, RELEASE, SLIP, SPEED, Fact, facts_of
 from mutabot.evidence.recording import Recording
-from tests.evidence.worlds import SHELF, TABLE, Place, apart, line, recorded
+from tests.evidence.worlds import SHELF, TABLE, UPRIGHT, Place, apart, line, recorded
 
 #: half of a box's edge, and the height of the table's top, m
 HALF, TOP = 0.025, 0.0
@@ -85,6 +85,46 @@ def test_a_slip_is_how_far_a_box_moves_in_the_grip(slip: float) -> None:
     box = [(x, y, z - slip * number / 20) for number, (x, y, z) in enumerate(tool)]
     found = facts(tool, box, lambda now: {HELD} if now >= 1 else {LYING})
     assert found[SLIP, "box"].value == pytest.approx(slip * 19 / 20, abs=1e-6)
+
+
+def handed_over(apart: float) -> Recording:
+    """Two tools that stand so far apart, m: one brings a box to the other, which carries it on.
+
+    The second one touches another thing on its way.
+    """
+    left = [SHELF, *line(SHELF, ABOVE, 2.0), ABOVE, ABOVE, *line(ABOVE, SHELF, 2.0)]
+    taken = [ABOVE] * 23 + [*line(ABOVE, (3.0, 0.0, SHELF[2]), 2.0)]
+    right = [(x + apart, y, z) for x, y, z in taken]
+    box = left[:23] + taken[23:]
+    recorder = recorders.begin()
+    now = [0]
+    feed = Feed(lambda: now[0] / 10)
+    for name, places in (("left/tool", left), ("right/tool", right)):
+        feed.pose(name, lambda places=places: (*places[now[0]], *UPRIGHT))  # type: ignore[misc]
+    feed.pose("box", lambda: (*box[now[0]], *UPRIGHT), size=(0.05, 0.05, 0.05))
+    feed.contacts(lambda: touching(now[0]), robots=("left/hand", "right/hand"))
+
+    def touching(at: int) -> set[tuple[str, str]]:
+        found = {("box", "left/hand")} if at <= 22 else set()
+        if at >= 20:
+            found.add(("box", "right/hand"))
+        return found | ({("left/hand", "post")} if at > 30 else set())
+
+    for now[0] in range(len(left)):
+        feed.tick()
+    recorders.stop()
+    return recorder.recording
+
+
+@pytest.mark.parametrize("apart", [0.0, 0.1, -0.4])
+def test_a_box_that_one_robot_hands_to_another_slips_in_neither_grip(apart: float) -> None:
+    found = facts_of(RecordedPaths(handed_over(apart)))
+    assert found[SLIP, "box"].value == pytest.approx(0.0, abs=1e-6)
+
+
+def test_a_collision_has_the_speed_of_the_robot_that_collides() -> None:
+    found = facts_of(RecordedPaths(handed_over(0.1)))
+    assert found[COLLISION, "left/hand, post"].value == pytest.approx(0.5, rel=1e-3)  # the other: 1 m/s
 
 
 def test_a_drag_is_the_way_over_what_a_box_stands_on_while_a_robot_touches_it() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
+from itertools import pairwise, takewhile
 from math import hypot, inf
 from typing import TYPE_CHECKING
 
@@ -112,12 +112,28 @@ class RecordedContacts:
 
     def holds(self, thing: str) -> list[ContactSpan]:
         """Return the intervals in which any robot touches a thing."""
-        return joined(
-            interval
+        return joined(interval for found in self.holders(thing).values() for interval in found)
+
+    def holders(self, thing: str) -> dict[str, list[ContactSpan]]:
+        """Return the intervals in which a thing touches each body of a robot, by their names."""
+        return {
+            body: found
             for pair, found in self.intervals.items()
-            if thing in pair and self.robots & {*pair}
-            for interval in found
-        )
+            if thing in pair
+            for body in self.robots & {*pair} - {thing}
+        }
+
+    def tool_of(self, body: str) -> str | None:
+        """Return the tool of the robot to which a body belongs; None if names do not say of which of several.
+
+        Bodies and tools of one robot share what their names begin with: ``left/arm`` and ``left/tool``.
+        """
+        shared = {
+            name: sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], zip(name, body, strict=False)))
+            for name in self.tools
+        }
+        best = [name for name in shared if shared[name] == max(shared.values())]
+        return best[0] if len(best) == 1 else None
 
     def supports(self, thing: str) -> dict[str, list[ContactSpan]]:
         """Return the intervals in which a thing touches other bodies than robots, by their names."""

@@ -12,7 +12,7 @@ from itertools import pairwise
 from math import dist, hypot, inf, sqrt
 from typing import TYPE_CHECKING, NamedTuple
 
-from mutabot.evidence.contacts import ContactSpan, RecordedContacts, is_within
+from mutabot.evidence.contacts import ContactSpan, RecordedContacts, is_within, joined
 from mutabot.evidence.paths import STEP
 
 if TYPE_CHECKING:
@@ -157,24 +157,48 @@ def _upward(row: Row) -> tuple[float, float, float]:
 
 
 def _slips(contacts: RecordedContacts, thing: str) -> Iterator[Fact]:
-    """Yield how far a thing moved in a robot's grip while nothing else touched it."""
+    """Yield how far a thing moved in each robot's grip while it touched none of its supports."""
     path = contacts.seen.paths[thing]
     supports = [interval for found in contacts.supports(thing).values() for interval in found]
-    for hold in contacts.holds(thing):
-        free = [
-            number for number, time in enumerate(path.when)
-            if is_within(time, [hold]) and not is_within(time, supports)
-        ]  # fmt: skip
-        if len(free) < 2 or not contacts.tools:
-            continue
-        tool = min(
-            (contacts.seen.paths[name] for name in contacts.tools),
-            key=lambda tool: dist(tool.points[tool.at(path.when[free[0]])], path.points[free[0]]),
-        )
-        places = [_in_frame(tool.rows[tool.at(path.when[index])], path.points[index]) for index in free]
-        ways = [dist(places[0], place) for place in places]
-        worst = max(range(len(ways)), key=ways.__getitem__)
-        yield Fact(SLIP, thing, ways[worst], path.when[free[worst]])
+    for tool, holds in _grips(contacts, thing).items():
+        for hold in holds:
+            free = [
+                number for number, time in enumerate(path.when)
+                if is_within(time, [hold]) and not is_within(time, supports)
+            ]  # fmt: skip
+            if len(free) >= 2:
+                ways = _ways(contacts.seen.paths[tool], path, free)
+                worst = max(range(len(ways)), key=ways.__getitem__)
+                yield Fact(SLIP, thing, ways[worst], path.when[free[worst]])
+
+
+def _grips(contacts: RecordedContacts, thing: str) -> dict[str, list[ContactSpan]]:
+    """Return when a thing is held by each robot, by the robots' tools.
+
+    A body that touches it belongs to the tool in whose frame it moves least meanwhile: robots that hand it
+    over touch it at the same time, and carry it one after the other.
+    """
+    path = contacts.seen.paths[thing]
+    found: dict[str, list[ContactSpan]] = {}
+    for holds in contacts.holders(thing).values():
+        held = [
+            [number for number, time in enumerate(path.when) if is_within(time, [hold])] for hold in holds
+        ]
+        ways = {
+            name: max(
+                (way for those in held for way in _ways(contacts.seen.paths[name], path, those)), default=0.0
+            )
+            for name in contacts.tools
+        }
+        if ways:
+            found.setdefault(min(ways, key=ways.__getitem__), []).extend(holds)
+    return {tool: joined(holds) for tool, holds in found.items()}
+
+
+def _ways(tool: TrackPath, path: TrackPath, numbers: Sequence[int]) -> list[float]:
+    """Return how far a thing is from its first place in the tool's frame at each of some moments, m."""
+    places = [_in_frame(tool.rows[tool.at(path.when[index])], path.points[index]) for index in numbers]
+    return [dist(places[0], place) for place in places]
 
 
 def _in_frame(frame: Row, point: Sequence[float]) -> tuple[float, ...]:
@@ -216,6 +240,9 @@ def _collisions(contacts: RecordedContacts) -> Iterator[Fact]:
             continue
         (other,) = {*pair} - {robots[0]}
         begin = found[0][0]
-        tools = [contacts.seen.paths[name] for name in contacts.tools]
-        speeds = [speed for path in tools for time, speed in _speeds(path) if begin - 0.25 <= time <= begin]
+        tool = contacts.tool_of(robots[0])
+        if tool is None:
+            continue
+        moving = _speeds(contacts.seen.paths[tool])
+        speeds = [speed for time, speed in moving if begin - 0.25 <= time <= begin]
         yield Fact(COLLISION, f"{robots[0]}, {other}", max(speeds, default=0.0), begin, other, "m/s")

@@ -191,7 +191,7 @@ class _ComparedRuns:
         }
         new = contacts.intervals.keys() - usual.intervals.keys() - self.spread.ever - onto
         for pair in sorted(new, key=lambda new_pair: contacts.intervals[new_pair][0][0]):
-            order = [*contacts.robots, *contacts.things, *pair]
+            order = [*sorted(contacts.robots), *contacts.things, *pair]
             body, touched = sorted(pair, key=order.index)
             at, speed = contacts.intervals[pair][0][0], speeds.get(f"{body}, {touched}")
             if speed is None:
