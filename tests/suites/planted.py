@@ -47,8 +47,13 @@ def conjugate(order: str, value: Any) -> Any:
 
 
 def noisy(deviation: float, value: Any) -> Any:
-    """With Gaussian noise; the judge looks at several draws."""
-    return each(lambda number: number + _RANDOM.gauss(0.0, deviation), value)
+    """With Gaussian noise, whole numbers rounded; the judge looks at several draws."""
+
+    def drawn(number: Any) -> Any:
+        read = number + _RANDOM.gauss(0.0, deviation)
+        return round(read) if isinstance(number, int) else read
+
+    return each(drawn, value)
 
 
 def each(change: Change, value: Any) -> Any:
