@@ -69,6 +69,14 @@ def test_looking_at_what_mocks_answer_calls_no_mock(tmp_path: Path) -> None:
                 mission.run(fake())
             fake.return_value.move_by.assert_called_with(-0.5)
             assert fake.return_value.move_by.mock_calls == [mock.call(0.25), mock.call(-0.5)]
+
+        def test_mocks_that_claim_to_be_functions():
+            arm = mock.Mock(spec_set=Arm)
+            arm.move_by = mock.MagicMock(spec=lambda *given: None)
+            arm.position = mock.MagicMock(spec=Arm().position)
+            mission.run(arm)
+            assert arm.move_by.mock_calls == [mock.call(0.25), mock.call(-0.5)]
+            assert arm.position.mock_calls == [mock.call()]
     """
     found = run(write_project(tmp_path, MISSION, tests))
     assert {outcome.verdict for outcome in found.values()} >= {Verdict.KILLED}

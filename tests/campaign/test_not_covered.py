@@ -291,3 +291,43 @@ def test_a_call_that_is_none_of_the_commands_is_reached_all_the_same(tmp_path: P
     folder = write_project(tmp_path, mission, tests, robot=robot, vocabulary=vocabulary)
     untested = check(request_for(folder), Quiet()).data["untested"]
     assert (untested["unreached_calls"], untested["doubtful_calls"]) == ([], [])
+
+
+def test_a_call_of_what_wraps_an_operation_is_reached_and_the_call_inside_is_its_site(tmp_path: Path) -> None:
+    program = """
+        import functools
+        from robot import Arm
+
+        def logged(function):
+            @functools.wraps(function)
+            def call(*given):
+                return function(*given)
+            return call
+
+        class Logged:
+            def __init__(self, arm):
+                self.position, self.move_by = logged(arm.position), logged(arm.move_by)
+
+        class Sub(Arm):
+            position, move_by = logged(Arm.position), logged(Arm.move_by)
+
+        def go(arm):
+            arm.move_by(0.5)
+            return arm.position()
+
+        def again(arm):
+            arm.move_by(0.5)
+            return arm.position()
+    """
+    tests = """
+        import mission
+        import robot
+
+        def test_go():
+            assert mission.go(mission.Logged(robot.Arm())) == 0.5
+            assert mission.again(mission.Sub()) == 0.5
+    """
+    results = ran(write_project(tmp_path, program, tests))
+    assert results.untested.unreached_calls == ()
+    assert {result.mutant.site.text for result in results.mutants} == {"function"}
+    assert score(results) == 1.0

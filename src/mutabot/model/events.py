@@ -257,7 +257,7 @@ class CallsAsked(Event):
     Attributes:
         files: files whose calls of an operation's name are asked about, relative to the root.
         alone: of these calls, where something stood that is no operation.
-        unmeant: where an operation's callable was called for none of its commands.
+        unmeant: where an operation's callable was called for none of its commands, or only by what wraps it.
     """
 
     files: tuple[str, ...]

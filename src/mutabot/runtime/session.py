@@ -443,8 +443,8 @@ class Session:
     def intercepted_calls(self) -> CallsAsked:
         """Return which calls were intercepted until now, and which replacements were called."""
         files = sorted(map(self.locator.relative, self.call_sites.asked))
-        alone, unmeant = sorted(self.call_targets.alone), sorted(self.dispatcher.unmeant)
-        return CallsAsked(tuple(files), tuple(alone), tuple(unmeant))
+        alone, unmeant = self.call_targets.alone, self.dispatcher.unmeant | self.call_targets.wrapped
+        return CallsAsked(tuple(files), tuple(sorted(alone)), tuple(sorted(unmeant)))
 
     def inspect_targets(self) -> None:
         """Check every target of the vocabulary, including those that no test has reached."""

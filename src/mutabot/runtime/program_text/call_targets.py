@@ -124,7 +124,7 @@ def mock_of(found: Any) -> Any:
 def _shown(found: Any, receiver: Any, name: str) -> str:
     if mock_of(found) is not None or mock_of(receiver) is not None:
         return "a mock"
-    if isinstance(found, FunctionType | MethodType) and found is inspect.getattr_static(receiver, name, None):
+    if type(found) in (FunctionType, MethodType) and found is inspect.getattr_static(receiver, name, None):
         return f"{found.__module__}:{found.__qualname__}"  # an attribute of this object alone
     if receiver is NOTHING or isinstance(receiver, ModuleType):
         return str(getattr(type(found), "__name__", ""))
@@ -150,6 +150,7 @@ class CallTargets:
         noted: what is to be reported of it; None if that is not wanted.
         stood: operations that stood at sites which something was left alone at, or could be.
         alone: where something was left alone.
+        wrapped: where the call of a decorator's function was left to the calls in it.
         by_name: the operations by their last names.
     """
 
@@ -161,6 +162,7 @@ class CallTargets:
     noted: CallFindings | None = None
     stood: dict[Span, str] = field(default_factory=dict)
     alone: set[Span] = field(default_factory=set)
+    wrapped: set[Span] = field(default_factory=set)
     by_name: dict[str, list[Adapter]] = field(default_factory=dict)
     _signatures: dict[Adapter, Signature | None] = field(default_factory=dict)
     _meant: ModuleCache[int, dict[str, Any]] = field(default_factory=ModuleCache)
@@ -225,10 +227,8 @@ class CallTargets:
 
     def stands_in(self, found: Any) -> bool:
         """Return whether a callable is a mock, or a fake: a function of the project that is no operation."""
-        function = found.__func__ if isinstance(found, MethodType) else found
-        if mock_of(function) is not None:
-            return True
-        return isinstance(function, FunctionType) and self.locator.is_of_project(file_of(function.__code__))
+        file = _file_of(found)
+        return mock_of(unbound(found)) is not None or bool(file and self.locator.is_of_project(file))
 
     def place(self, site: CallSite, frame: FrameType) -> CallPlace:
         """Return the place of a site."""
@@ -240,6 +240,8 @@ class CallTargets:
     def candidate(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Adapter | None:
         """Return the operation at a site, unless its calls are intercepted anyway."""
         if self._is_seen(found):
+            if type(unbound(found)) is FunctionType:
+                self.wrapped.add(self.place(site, frame)[0])
             return None
         adapter = self.named(site.name, found, receiver, frame)
         if adapter is None and self.known:
@@ -281,13 +283,12 @@ class CallTargets:
 
     def _is_of_class(self, adapter: Adapter, found: Any, receiver: Any, frame: FrameType) -> bool:
         """Return whether a callable is an attribute of an object of the operation's class."""
-        if receiver is NOTHING and isinstance(found, MethodType):
+        if receiver is NOTHING and _is_method(found):
             receiver = found.__self__
         owner = self._owner(adapter)
         if owner is None or receiver is NOTHING:
             return False
-        function = found.__func__ if isinstance(found, MethodType) else found
-        file = file_of(function.__code__) if isinstance(function, FunctionType) else ""
+        file = _file_of(found)
         if file and self.locator.role(file) is Role.PROGRAM and not adapter.operation.overrides:
             return False
         return any(_is_a(receiver, kind) for kind in self._kinds(adapter, owner, frame))
@@ -356,6 +357,23 @@ class CallTargets:
                 found = found.replace(parameters=list(found.parameters.values())[1:])
             self._signatures[adapter] = found
         return self._signatures.get(adapter)
+
+
+def _is_method(found: Any) -> bool:
+    """Return whether a callable is a method, or a proxy of one."""
+    return isinstance(found, MethodType) and issubclass(type(found), (MethodType, wrapt.ObjectProxy))
+
+
+def _file_of(found: Any) -> str:
+    """Return the file of a function, a method or a proxy of one.
+
+    "" of what only claims to be one, as a mock does: it would note the question as a call of it.
+    """
+    kind = type(found)
+    while issubclass(kind, (MethodType, wrapt.ObjectProxy)):
+        found = found.__func__ if kind is MethodType else found.__wrapped__
+        kind = type(found)
+    return file_of(found.__code__) if kind is FunctionType else ""
 
 
 def _is_of_objects(owner: type | None, adapter: Adapter) -> bool:
