@@ -144,7 +144,7 @@ class Judge:
                 return Judgement("unwritable", text="equal runs end differently")
             return runs[0]
         found = self._run(edits, first=first)
-        if not look_for_refusals:
+        if not look_for_refusals or _is_of_reading(mutant):
             return found
         span = mutant["span"]
         place = f"{mutant['file']}|{span['line']}|{span['end_line']}" if mutant["operation"] else "||"
@@ -161,12 +161,7 @@ class Judge:
         return all((self.folder / f"{file}.py").is_file() for file in files)
 
     def _names_a_refusal(self, output: str, mutant: Mapping[str, Any]) -> bool:
-        """Whether each test that fails ends in a refusal, whose traceback goes through the mutated call.
-
-        What is read is never refused: what the program makes of it may be, and may stand in the same line.
-        """
-        if mutant["operation"] and ": reads " in mutant["description"]:
-            return False
+        """Whether each test that fails ends in a refusal, whose traceback goes through the mutated call."""
         names = [name.rpartition(":")[2].rpartition(".")[2] for name in Facts.of(self.folder).refusals]
         lines = range(mutant["span"]["line"], mutant["span"]["end_line"] + 1)
         places = [rf"^{re.escape(mutant['file'])}:{line}: in " for line in lines]
@@ -288,6 +283,14 @@ def is_drawn(mutant: Mapping[str, Any]) -> bool:
     return mutant["operator"] in ("noise", "sensor-noise") or (
         "%" in mutant["variant"] and mutant.get("magnitude") is None
     )
+
+
+def _is_of_reading(mutant: Mapping[str, Any]) -> bool:
+    """Whether it changes what is read, which is never refused.
+
+    What the program makes of it may be, and may stand in the same line.
+    """
+    return bool(mutant["operation"]) and ": reads " in mutant["description"]
 
 
 def is_raced(mutant: Mapping[str, Any]) -> bool:

@@ -409,9 +409,24 @@ def test_a_mutant_is_refused_if_its_own_call_is_wherever_a_test_fails(
     assert judge_says is is_refused
 
 
-def test_a_command_made_of_a_mutated_reading_in_its_line_is_no_refusal_of_the_reading(tmp_path: Path) -> None:
-    source = "arm.move(arm.pose())\n"
-    judge = Judge(project(tmp_path, source))
-    found = mutant("arm.pose()", source, operator="negate", operation="robot:Arm.pose", file="mission.py")
-    found |= {"call": "arm.pose", "description": "arm.pose: reads z -0.2 m instead of 0.2 m"}
-    assert not judge._names_a_refusal(REFUSED.format(1), found)
+@pytest.mark.parametrize("is_robots_own", [False, True])
+def test_a_command_made_of_a_mutated_reading_in_its_line_is_no_refusal_of_the_reading(
+    tmp_path: Path, is_robots_own: bool
+) -> None:
+    source = "def back(arm): arm.move(-arm.where())\n"
+    tests = """
+        import mission, robot
+
+        def test_back():
+            arm = robot.Arm()
+            arm.x = 6
+            mission.back(arm)
+    """
+    folder = project(tmp_path, source, tests)
+    if not is_robots_own:  # as if another package defined it
+        file = folder / "robot.toml"
+        file.write_text(file.read_text().replace("robot:Refused", "another:Refused"))
+    found = mutant("arm.where()", source, operator="negate", operation="robot:Arm.where", quantity="result")
+    found["description"] = "arm.where: reads result (x) -6 m instead of 6 m"
+    judged = Judge(folder).mutant(found, look_for_refusals=True)
+    assert (judged.state, judged.refused) == ("fails", False)
