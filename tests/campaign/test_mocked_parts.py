@@ -330,3 +330,54 @@ def test_a_misspelt_step_is_refused_where_tests_have_fakes_alone(tmp_path: Path)
     project = write_project(tmp_path, mission, tests, robot=robot, vocabulary=vocabulary)
     with pytest.raises(UnknownNameError, match=r"did you mean '\.x'"):
         run(project)
+
+
+COUNTING = """
+    class Arm:
+        def __init__(self):
+            self.x, self.asked = 0.0, 0
+
+        def move_by(self, dx):
+            self.x += dx
+
+        def position(self):
+            self.asked += 1
+            return self.x
+"""
+WHERE = """
+    [[operation]]
+    call = "robot:Arm.move_by"
+    arguments.dx = { kind = "translation", axis = "x", unit = "m", mode = "by" }
+    current = "robot:Arm.position"
+
+    [[operation]]
+    call = "robot:Arm.position"
+    result = { kind = "position", axis = "x", unit = "m" }
+"""
+
+
+@pytest.mark.parametrize("engine", ["auto", REPLAY])
+@pytest.mark.parametrize(
+    ("test", "verdict"),
+    [
+        ("assert arm.x == 0.25 and arm.asked == 0", Verdict.KILLED),
+        ("assert arm.x == 0.25", Verdict.NO_EFFECT),
+    ],
+)
+def test_a_robot_may_count_what_by_to_asks_it(
+    tmp_path: Path, test: str, verdict: Verdict, engine: str
+) -> None:
+    """At zero, by and to agree: the amount stays, and only that the robot was asked can be seen."""
+    tests = f"""
+        import mission
+        from robot import Arm
+
+        def test_it():
+            arm = Arm()
+            mission.run(arm)
+            {test}
+    """
+    mission = "def run(arm):\n    arm.move_by(0.25)\n"
+    project = write_project(tmp_path, mission, tests, robot=COUNTING, vocabulary=WHERE)
+    found = run(project, engine=engine)
+    assert found["mission.py:run:arm.move_by#1:dx:by-to"].verdict is verdict

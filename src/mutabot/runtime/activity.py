@@ -22,6 +22,7 @@ class Activity:
     Attributes:
         hits: calls at its site.
         acted: hits at which it changed something.
+        asked: whether it asked the robot something, which robots and mocks may count.
         example: value before and after, at the first hit at which it acted.
         refusals: how the robot refused mutated calls by exceptions, the latest last; not all of many.
         refusing_answer: the answer by which the robot refused a mutated call; None if there was none.
@@ -34,6 +35,7 @@ class Activity:
 
     hits: int = 0
     acted: int = 0
+    asked: bool = False
     example: tuple[Any, ...] | None = None
     refusals: tuple[Refusal, ...] = ()
     refusing_answer: str | None = None

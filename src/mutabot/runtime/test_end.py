@@ -86,13 +86,15 @@ def of_activity(end: TestEnd, activity: Activity, cause: TestEnd | None = None) 
         refusal = None
     # what follows a refusal that is data follows from what the program makes of it
     is_caught = refusal is not None and activity.refusing_answer is None
+    # a test that looks at what the robot was asked fails by that, even if nothing changed
+    is_asking = activity.asked and end.outcome == FAILED
     return {
         "failure": activity.failure or cause.failure,
         "invalid": cause.invalid,
         "refused": refusal,
         "caught": is_caught and end.outcome == FAILED and cause.refused is None,
         "hits": activity.hits,
-        "acted": activity.acted,
+        "acted": activity.acted or int(is_asking),
         "away": activity.away,
         "example": activity.example,
     }

@@ -301,6 +301,8 @@ class MutatedSite:
             elif mutated.is_own(error):
                 self._fails(error)
             raise
+        finally:
+            self.activity.asked |= adapter.asks > 0
         return await handed(), last
 
     async def catch_up(self, is_async: bool, hits: int) -> None:

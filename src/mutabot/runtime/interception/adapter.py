@@ -188,6 +188,7 @@ class Adapter:
         handler: what stands around the operation.
         remembers: the commands, by the texts of their patterns, whose last answers may be asked for.
         commands: how often the robot was made to do this, if it does anything.
+        asks: how often a mutant asked the robot where it is.
         guard: what is asked before each call; None without guards.
     """
 
@@ -201,6 +202,7 @@ class Adapter:
     handler: Handler = field(init=False)
     remembers: Collection[str | None] = ()
     commands: int = 0
+    asks: int = 0
     guard: CallCheck | None = None
 
     def __post_init__(self) -> None:
@@ -218,7 +220,7 @@ class Adapter:
         self._last_answers.clear()
         self._last_written.clear()
         self.lately.clear()
-        self.commands = 0
+        self.commands = self.asks = 0
 
     def to_call(self, invocation: Invocation) -> Call:
         """Return the call as operators see it."""
@@ -466,6 +468,7 @@ class Adapter:
     async def _ask(self, reading: Operation, invocation: Invocation) -> Any:
         value = self._other(reading.target, invocation)
         if callable(value):
+            self.asks += 1
             value = value()
         return await value if inspect.isawaitable(value) else value
 
