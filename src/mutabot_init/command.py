@@ -24,7 +24,7 @@ def init(
     ] = None,
     template: tuple[str, Mapping[str, str]] | None = None,
 ) -> None:
-    """Draft a configuration and a vocabulary from one run of the tests, or start a project.
+    """Draft a configuration and a vocabulary from a run of the tests, or start a project.
 
     Robot programs in another language that have no tests get some, and a cell map.
     """

@@ -67,6 +67,10 @@ _TOPS = (1.0, 127.0, 255.0, 1023.0, 4095.0)
 _COUNT = re.compile(
     r"\b(?:number of(?! (?:milli|micro)?sec)|steps|samples|iterations|points)\b", re.IGNORECASE
 )
+#: a callable's words for a change, where what follows is no frame: ``move_to_relative_point``
+_RELATIVE = re.compile(r"\brel(?:ative)?\b(?! to\b)")
+#: words of docstrings for numbers in the units of a drive
+_RAW = re.compile(r"\b(?:encoder|(?:micro)?steps|counts|ticks|pulses|increments)\b", re.IGNORECASE)
 #: how the line of another argument begins
 _NEXT = re.compile(r"\s*(?:[:@]|[-*] |\w+\s*(?:\([^)]*\))?:|$)")
 #: more different numbers than these are no settings, but a scale
@@ -133,7 +137,8 @@ def guess_argument(name: str, setting: NameContext) -> Guess:
     """Return what an argument means; an empty guess if neither the callable's name nor its own shows it."""
     words, unit = _without_unit(words_of(name))
     noun = noun_of(words)
-    if not noun and unit in UNITS["length"] and len(words) == 1 and len(words[0]) > 1:
+    is_size = bool(SIZES & set(words))
+    if not noun and unit in UNITS["length"] and len(words) == 1 and len(words[0]) > 1 and not is_size:
         noun = "length"  # its name is a unit: metres, mm
     if noun == "none" or any(isinstance(value, str) for value in setting.values):
         return Guess()  # a text says how to do it, not what
@@ -231,6 +236,8 @@ def _moved(
 def _mode(setting: NameContext) -> str | None:
     if setting.relative:
         return "by" if True in setting.relative else "to"
+    if _RELATIVE.search(" ".join(setting.words)):
+        return "by"
     modes = {MODES[word] for word in setting.words if word in MODES}
     if len(modes) == 1 or "by" in setting.words:
         return "by" if "by" in setting.words else modes.pop()
@@ -243,6 +250,10 @@ def measured(table: TomlTable, dimension: str, unit: str | None, name: str, sett
     fitting = UNITS[dimension]
     if unit in fitting:
         return Guess({**table, "unit": unit})
+    if unit == "percent" and dimension in _SCALED:
+        are_shares = all(isinstance(value, int | float) and 0 <= value <= 1 for value in setting.values)
+        asked = ["the unit: percent, or a fraction?"] if are_shares else []
+        return Guess({"kind": "ratio", "unit": "percent"}, asked)
     if unit in UNITS["time"] and dimension in ("length", "angle"):
         return Guess()  # a gap in seconds is no distance
     about = _about(name, setting.doc)
@@ -264,10 +275,12 @@ def measured(table: TomlTable, dimension: str, unit: str | None, name: str, sett
     units = units or units_in(setting.doc, dimension)
     if len(units) == 1:
         return Guess({**table, "unit": units[0]})
-    shown = _unit_by_size(dimension, setting.values) if not units else None
+    is_raw = dimension != "time" and _RAW.search(about) is not None
+    shown = _unit_by_size(dimension, setting.values) if not (units or is_raw) else None
     if shown is not None:
         return Guess({**table, "unit": shown}, note="unit inferred from the values")
-    return Guess({**table, "unit": (units or fitting)[0]}, [f"the unit: {', '.join(units or fitting)}?"])
+    question = f"the unit: {', '.join(units or fitting)}{', or counts of the drive' if is_raw else ''}?"
+    return Guess({**table, "unit": (units or fitting)[0]}, [question])
 
 
 def _about(name: str, doc: str) -> str:

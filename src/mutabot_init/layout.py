@@ -5,11 +5,13 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from mutabot.api.reports import UsageError
+
+from .words import words_of
 
 #: folders that hold no code of the project
 _SKIPPED = frozenset(
@@ -17,6 +19,8 @@ _SKIPPED = frozenset(
 )
 _TEST_FOLDERS = ("tests", "test", "testing", "features")
 _TEST_FILES = ("conftest", "tests", "test")
+#: words in the names of files that stand in for a device
+_DOUBLES = frozenset({"mock", "mocks", "fake", "fakes", "stub", "stubs", "dummy", "dummies"})
 _NO_PROGRAMS = frozenset({"setup.py", "noxfile.py", "fabfile.py", "conftest.py", "__init__.py"})
 _MOST_FILES = 1000
 #: what stands at the top of a project
@@ -41,6 +45,7 @@ class Layout:
         tests: files on the tests' side: tests, their helpers, conftest.
         arguments: pytest arguments that name the tests.
         guessed: whether the program was guessed.
+        below: files that a guessed program imports and that import others in turn.
     """
 
     root: Path
@@ -48,6 +53,11 @@ class Layout:
     tests: list[Path]
     arguments: list[str]
     guessed: bool
+    below: list[Path]
+
+    def with_below(self) -> Layout:
+        """Return the layout with the files below the program as parts of it."""
+        return replace(self, program=[*self.program, *self.below], below=[])
 
     def relative(self, path: Path) -> str:
         """Return a path as the configuration writes it."""
@@ -61,8 +71,10 @@ def look(root: Path, given: Sequence[Path]) -> Layout:
     """
     files = _python_files(root)
     chosen = _named(root, given)
-    tests = [path for path in files if _is_test_side(path.relative_to(root)) and path not in chosen]
-    code = [path for path in files if path not in tests]
+    suites = [path for path in files if _is_test_side(path.relative_to(root)) and path not in chosen]
+    code = [path for path in files if path not in suites]
+    doubles = [path for path in _doubles(code, root) if path not in chosen]
+    tests, code = [*suites, *doubles], [path for path in code if path not in doubles]
     program = (
         chosen or _guess_program(code, tests, root) or [path for path in tests if path.name != "conftest.py"]
     )
@@ -71,8 +83,9 @@ def look(root: Path, given: Sequence[Path]) -> Layout:
             f"{root}: there is no Python file here; name the files of the program: mutabot init FILE…"
         )
     others = [path for path in tests if path not in program]
-    arguments = _arguments(root, tests)
-    return Layout(root, program, others, arguments, guessed=not chosen)
+    arguments = _arguments(root, suites)
+    below = [] if chosen else _below(program, code, root)
+    return Layout(root, program, others, arguments, guessed=not chosen, below=below)
 
 
 def other_files(root: Path, given: Sequence[Path]) -> list[Path]:
@@ -150,6 +163,13 @@ def _is_test_side(path: Path) -> bool:
     return in_folder or stem.startswith("test_") or stem.endswith(("_test", "_tests")) or stem in _TEST_FILES
 
 
+def _doubles(code: Sequence[Path], root: Path) -> list[Path]:
+    """Return files that stand in for a device, by their names, and that no code but the tests imports."""
+    named = [path for path in code if _DOUBLES & set(words_of(path.stem))]
+    used = _Modules(code, root).reached([path for path in code if path not in named])
+    return [path for path in named if path not in used]
+
+
 def _holds_tests(folder: str) -> bool:
     """Return whether a folder of this name holds tests: ``tests``, ``sys_test``, ``unit-tests``."""
     return folder in _TEST_FOLDERS or re.search(r"[_-]tests?$", folder) is not None
@@ -190,6 +210,13 @@ def _guess_program(code: Sequence[Path], tests: Sequence[Path], root: Path) -> l
     named = [path for path in free if _names_a_program(path.stem)]
     busy = [path for path in free if used[path]]
     return named or busy or [path for path in free if path in commanding] or free
+
+
+def _below(program: Sequence[Path], code: Sequence[Path], root: Path) -> list[Path]:
+    """Return the files of the project that the program imports and that import others of it in turn."""
+    modules = _Modules(code, root)
+    reached = modules.reached(program) - set(program)
+    return [path for path in code if path in reached and modules.reached([path]) - {path}]
 
 
 def _calls_methods(path: Path) -> bool:

@@ -14,15 +14,19 @@ from .guess import Guess, NameContext, guess_argument, guess_elements, guess_rea
 from .layout import with_compared
 from .observations import Command, Holder, Values, WatchedCallable, WatchedPart
 from .words import (
+    BOOKS,
+    BUILDERS,
     CALLBACKS,
     CAMERAS,
     CHANGES,
+    CODECS,
     COMMANDS,
     COMPUTERS,
     CONNECTION,
     GRIPPER,
     HELPERS,
     HOUSEKEEPING,
+    IMPERATIVES,
     LINKED,
     MODES,
     OPPOSITES,
@@ -37,6 +41,7 @@ from .words import (
     STEPS,
     SUBJECTS,
     TALK,
+    TYPES,
     VERBS,
     noun_of,
     words_of,
@@ -45,6 +50,8 @@ from .words import (
 _REFUSAL = re.compile(r"refus|reach|limit|reject|range|unable|collision|violation", re.IGNORECASE)
 #: how predicates begin
 _COMPARING = frozenset({"is", "has", "can"})
+#: how the name of a state ends that is no command: ``lights_on``
+_SWITCHED = frozenset({"on", "off", "open", "enable", "up", "down"})
 #: types of results that are made rather than read: the last are what ``with`` runs a block in
 _MADE = frozenset(
     {"property", "function", "type", "_GeneratorContextManager", "_AsyncGeneratorContextManager"}
@@ -68,6 +75,7 @@ class Proposal:
         current, opposite: targets of other operations, or None.
         reads_by_name: whether the text only says what to read.
         is_plain: whether it is proposed although its meaning is unknown.
+        doubt: why it may be no operation, a question; empty if nothing says so.
         is_taken: whether it is proposed.
     """
 
@@ -80,6 +88,7 @@ class Proposal:
     opposite: str | None = None
     reads_by_name: bool = False
     is_plain: bool = False
+    doubt: str = ""
     is_taken: bool = False
 
     @property
@@ -106,7 +115,7 @@ class Proposal:
     @property
     def is_operation(self) -> bool:
         """Whether it can be proposed as it is."""
-        if self.is_clock or self.call.problem or _is_setup(self.call):
+        if self.is_clock or self.call.problem or self.doubt or _is_setup(self.call):
             return False
         if self.call.is_set:  # without a line that holds, an entry means what is read
             is_sure = any(guess.is_sure for guess in self.arguments.values())
@@ -116,12 +125,14 @@ class Proposal:
         sure = any(guess.is_sure for guess in [*self.arguments.values(), *self.result.values()])
         is_moved = not VERBS.keys().isdisjoint(words_of(self.call.name))
         is_written = bool(self.arguments) and is_moved and not _reads(self.call)
-        return sure or is_written or bool(self.patterns) or self.is_plain or _is_command(self.call)
+        are_known = any(guess.table or not guess.questions for _, guess in self.patterns)
+        return sure or is_written or are_known or self.is_plain or _is_command(self.call)
 
 
 def proposals(calls: Sequence[WatchedCallable], groups: Sequence[Sequence[Any]] = ()) -> list[Proposal]:
     """Return the proposals for calls; ``groups``: constants that the program compares with the same thing."""
     found = [_proposal(call, groups) for call in calls if not (_is_housekeeping(call) or _computes(call))]
+    _doubt(found)
     assigned = {candidate.target for candidate in found if candidate.call.is_set and candidate.is_operation}
     found = [candidate for candidate in found if candidate.call.is_set or candidate.target not in assigned]
     taken = {candidate.target: candidate for candidate in found if candidate.is_operation}
@@ -135,7 +146,7 @@ def proposals(calls: Sequence[WatchedCallable], groups: Sequence[Sequence[Any]] 
 def _proposal(call: WatchedCallable, groups: Sequence[Sequence[Any]]) -> Proposal:
     proposal = Proposal(call)
     proposal.message = _message(call)
-    proposal.reads_by_name = proposal.message is not None and _reads(call)
+    proposal.reads_by_name = proposal.message is not None and _reads(call) and not is_exchange(call)
     for name, values in call.arguments.items():
         if name != proposal.message:
             for part in values.parts.values():
@@ -150,12 +161,29 @@ def _proposal(call: WatchedCallable, groups: Sequence[Sequence[Any]]) -> Proposa
     elif proposal.message is not None:
         texts = [value for part in call.arguments[proposal.message].parts.values() for value in part.values]
         proposal.patterns = patterns_of([str(text) for text in texts])
+        if is_exchange(call):
+            for notation, guess in proposal.patterns:
+                if not guess.table and "{" not in notation:
+                    guess.questions = ["does it command, or only ask?"]
     else:
         proposal.result = _result(call, groups)
         if (proposal.arguments or _is_command(call)) and call.name != "step":
             # what a command answers says whether it was carried out; no sensor reads it
             proposal.result = {}
     return proposal
+
+
+def _doubt(found: Sequence[Proposal]) -> None:
+    """Mark what closes, and nothing opens: a connection that is done with, or something of the robot."""
+    targets = {proposal.target for proposal in found}
+    for proposal in found:
+        call, holder = proposal.call, proposal.target.removesuffix(proposal.call.name)
+        words = words_of(call.name)
+        about = {*words_of(call.owner), *words_of(call.target.partition(":")[0].rpartition(".")[2])}
+        if CONNECTION.issuperset(words) and not (call.arguments or about & (GRIPPER | OUTPUT)):
+            others = {f"{holder}{other}" for other in _with_opposites(call.name)}
+            if not others & targets:
+                proposal.doubt = "does it move something of the robot, or only end or begin a connection?"
 
 
 def _is_row(part: WatchedPart, name: str) -> bool:
@@ -177,8 +205,8 @@ def _is_housekeeping(call: WatchedCallable) -> bool:
     """Return whether it is about a connection, or queries the state of a reply."""
     words, owner = set(words_of(call.name)), {*words_of(call.owner)}
     is_link = (call.is_managed and words & CONNECTION) or (owner & HELPERS and words & (CONNECTION | RUNNING))
-    is_started = HELPERS.intersection(words_of(call.name)[-1:]) and words & RUNNING
-    if (is_link or is_started) and not (GRIPPER | OUTPUT) & (words | owner):
+    is_started = HELPERS.intersection(words_of(call.name)[-1:]) and words & (RUNNING | CONNECTION)
+    if (is_link or is_started or owner & BOOKS) and not (GRIPPER | OUTPUT) & (words | owner):
         return True
     if LINKED.intersection(words_of(call.name)[:1]) and _types(call.result) <= {"bool"}:
         return True
@@ -191,8 +219,10 @@ def _computes(call: WatchedCallable) -> bool:
     is_constructor = is_constructor or call.result.type in _MADE
     if call.holder is Holder.CONTAINER or (call.holder is Holder.VALUE and call.only_computes):
         return True
-    is_called_so = not COMPUTERS.isdisjoint(words_of(call.name)[:1])
+    verb = set(words_of(call.name)[:1])
+    is_called_so = verb & (COMPUTERS if call.owner else COMPUTERS | BUILDERS)
     is_pure = bool(call.arguments) and (call.only_computes or is_called_so)
+    is_pure = bool(is_pure or verb & CODECS)
     # what computes from its arguments alone reads nothing, and nor does what compares with one
     may_read = _reads(call) and (bool(call.owner) or not call.only_computes)
     may_read = may_read and not (call.only_computes and _COMPARING & set(words_of(call.name)))
@@ -212,6 +242,8 @@ def _fills_buffer(call: WatchedCallable) -> bool:
 
 def _is_setup(call: WatchedCallable) -> bool:
     words = set(words_of(call.name))
+    if words_of(call.name)[:1] in (("on",), ("handle",)) and len(words) > 1:
+        return True  # something is told to the program
     is_of_timeout = words_of(call.name)[-1:] in (("timeout",), ("settimeout",))
     hands_over = bool(call.arguments) and call.arguments.keys() <= CALLBACKS
     return bool(SETUP & words) or {"pin", "mode"} <= words or is_of_timeout or hands_over
@@ -220,9 +252,15 @@ def _is_setup(call: WatchedCallable) -> bool:
 def _is_command(call: WatchedCallable) -> bool:
     words = set(words_of(call.name))
     is_picture = "grab" in words and bool(CAMERAS & {*words, *words_of(call.owner)})
-    if call.is_property or call.only_computes or is_picture:
+    is_state = _types(call.result) == {"bool"} and not call.arguments
+    first, last = words_of(call.name)[:1], words_of(call.name)[-1:]
+    is_asked = is_state and COMMANDS.isdisjoint(first) and not _SWITCHED.isdisjoint(last)
+    if call.is_property or call.only_computes or is_picture or is_asked:
         return False
-    return not (words & TALK or _reads(call)) and bool(words & COMMANDS)
+    if "raise" in words and words & {"for", "if", "error", "exception"}:
+        return False  # it raises an exception, and no part
+    is_verb = bool(words & COMMANDS) or bool(IMPERATIVES.intersection(words_of(call.name)[:1]))
+    return is_verb and not (words & TALK or _reads(call))
 
 
 def _reads(call: WatchedCallable) -> bool:
@@ -281,6 +319,8 @@ def _reading(call: WatchedCallable, part: WatchedPart, groups: Sequence[Sequence
     subject = noun_of(words_of(call.name))
     if SETTINGS & {*words_of(call.name)} or (part.name in ("x", "y", "z") and subject in SUBJECTS):
         return {}  # a velocity has parts that are no positions
+    if part.name and TYPES.intersection(words_of(part.name)[-1:]):
+        return {}  # what an object is, rather than what a sensor reads
     if part.name:  # a field says itself what it is
         setting = NameContext((), setting.owner, part.doc + setting.doc, values=part.values)
     if part.length is not None:
@@ -382,7 +422,9 @@ MESSAGES = frozenset({"message", "command", "cmd", "msg", "text", "line", "order
 _NUMBER = re.compile(r"(?<![\w{])[-+]?\d+(?:\.\d+)?(?!\w)")
 _FIELD = re.compile(r"\{(\w+):g\}")
 _FIELDS = {"lift": "height", "drop": "height", "turn": "angle", "rotate": "angle", "wait": "seconds"}
-_READS = re.compile(r"(?:^|_)(?:read|get)", re.IGNORECASE)
+_READS, _WRITES = frozenset({"read", "get"}), frozenset({"write", "send", "set"})
+#: how the argument is called that holds what is written, beside those that say how
+_WRITTEN = frozenset({"value", "values", "val", "data", "state"})
 #: arguments that say how to write rather than what
 _HOW = frozenset({"timeout", "wait", "device_id", "slave", "unit", "no_response_expected", "count", "qos"})
 #: more different numbers than these are no settings, but a scale
@@ -437,7 +479,12 @@ def has_discriminator(call: WatchedCallable) -> bool:
 
 def is_read(call: WatchedCallable) -> bool:
     """Return whether a callable's commands read."""
-    return _READS.search(call.name) is not None
+    return bool(_READS & set(words_of(call.name))) and not is_exchange(call)
+
+
+def is_exchange(call: WatchedCallable) -> bool:
+    """Return whether a callable writes and then reads, so that only its text says if that is a command."""
+    return bool(_READS & set(words_of(call.name))) and bool(_WRITES & set(words_of(call.name)))
 
 
 def commands_of(call: WatchedCallable, groups: Sequence[Sequence[Any]] = ()) -> list[tuple[str, Guess]]:
@@ -455,12 +502,24 @@ def commands_of(call: WatchedCallable, groups: Sequence[Sequence[Any]] = ()) -> 
 
 def _written(text: str, command: Command) -> dict[str, Any]:
     tables = {}
+    names = command.arguments.keys() & _WRITTEN or command.arguments.keys() - _HOW
     for name, values in command.arguments.items():
-        part = values.parts.get(name)
-        table = _value(text, part) if name not in _HOW and part is not None and values.always(part) else {}
-        if table:
-            tables[name] = table
+        part = _only_element(name, values) if name in names else None
+        table = _value(text, part) if part is not None else {}
+        if part is not None and table:
+            tables[part.path] = table
     return {"arguments": tables} if tables else {}
+
+
+def _only_element(name: str, values: Values) -> WatchedPart | None:
+    """Return a value that is written, or the only element of a list that always has one; else None."""
+    part = values.parts.get(name)
+    if part is not None and part.length == 1 and all(len(value) == 1 for value in part.values):
+        elements = list(dict.fromkeys(value[0] for value in part.values))
+        part = replace(part, path=f"{name}[0]", values=elements, length=None)
+    elif part is None and f"{name}[1]" not in values.parts:
+        part = values.parts.get(f"{name}[0]")
+    return part if part is not None and values.always(part) else None
 
 
 def _value(text: str, part: WatchedPart) -> dict[str, Any]:
@@ -478,16 +537,23 @@ def _value(text: str, part: WatchedPart) -> dict[str, Any]:
 
 
 def _read(text: str, command: Command, groups: Sequence[Sequence[Any]]) -> dict[str, Any]:
-    part = command.result.parts.get("")
-    if part is None or not command.result.always(part) or part.length is not None or not part.values:
+    part = _only_element("", command.result)
+    if part is None or part.length is not None or not part.values:
         return {}
-    if part.type == "bool":
-        return {"result": {"kind": "flag"}}
+    if part.type == "bool" or set(map(type, part.values)) == {bool}:
+        return _at(part, {"kind": "flag"})
+    if set(part.values) == {0, 1}:
+        return _at(part, {"kind": "flag", "values": [0, 1]})
     words = words_of(text)
     annotation = "str" if part.type == "str" else ""
     setting = NameContext(words, annotation=annotation, values=with_compared(part.values, groups))
     guess = guess_reading((words or ("",))[-1], setting)
-    return {"result": guess.table} if guess.is_sure else {}
+    return _at(part, guess.table) if guess.is_sure else {}
+
+
+def _at(part: WatchedPart, table: dict[str, Any]) -> dict[str, Any]:
+    """Return what a command's result is, or its only element."""
+    return {"result": {part.path: table} if part.path else table}
 
 
 def _seen(command: Command, reads: bool) -> str:

@@ -121,10 +121,30 @@ class _Findings:
     def __init__(
         self, root: Path, given: Sequence[Path], limit: float, notify: Callable[[str], None]
     ) -> None:
-        self.layout = look(root, given)
-        refuse_mistakes(self.layout)
+        layout = look(root, given)
+        refuse_mistakes(layout)
         notify("running the tests once, to see what the program calls")
-        self.run = watch(self.layout, limit)
+        self._watch(layout, limit)
+        if self.is_empty and layout.below and self.run.outcomes and not self.run.trouble:
+            notify("none of these calls looks like one of a robot; once more, with what the program imports")
+            self._watch(layout.with_below(), limit)
+        if self.is_empty:  # what is called at all may be skipped and repeated
+            for operation in self.operations:
+                may_be_robot = self._may_be_robot(operation.call)
+                operation.is_plain = may_be_robot and self._is_of_project(operation.call)
+                if may_be_robot and not operation.is_plain:
+                    operation.doubt = operation.doubt or "does it make the robot act?"
+                operation.is_taken = operation.is_operation
+        self.oracle = self._files_that_read()
+        self.beside = [
+            line
+            for name, proposer in brought_proposers().items()
+            for line in proposer.lines(self._seen_by(name))
+        ]
+
+    def _watch(self, layout: Layout, limit: float) -> None:
+        self.layout = layout
+        self.run = watch(layout, limit)
         mistake = next((problem for problem in self.run.problems if _MISTAKE.search(problem)), None)
         if mistake is not None and not self.run.outcomes:
             collected, _, what = mistake.partition(": ")
@@ -139,11 +159,7 @@ class _Findings:
         self.operations = proposals(self._new([call for call in mine if not call.own]), groups)
         if self.is_empty:  # program and robot share a file
             self.operations = proposals(mine, groups)
-        if self.is_empty:  # what is called at all can be skipped and repeated
-            for operation in self.operations:
-                operation.is_plain = self._may_be_robot(operation.call)
-                operation.is_taken = operation.is_operation
-        else:  # without an operation of the program, what its tests read is no robot
+        if not self.is_empty:  # without an operation of the program, what its tests read is no robot
             known = {_holder(call) for call in mine}
             self.operations += [
                 proposal
@@ -152,12 +168,6 @@ class _Findings:
                 and proposal.is_reading
                 and self._may_be_read(proposal, is_known=_holder(proposal.call) in known)
             ]
-        self.oracle = self._files_that_read()
-        self.beside = [
-            line
-            for name, proposer in brought_proposers().items()
-            for line in proposer.lines(self._seen_by(name))
-        ]
 
     @property
     def drafts(self) -> list[Proposal | MessageEntry]:
@@ -222,6 +232,13 @@ class _Findings:
     def _may_be_robot(self, call: WatchedCallable) -> bool:
         """Return whether a call of which nothing is known may be left out: one of another package."""
         return not call.problem and not call.is_property and call.package not in self._own_packages
+
+    def _is_of_project(self, call: WatchedCallable) -> bool:
+        """Return whether the project itself contains the callable, rather than an installed library."""
+        places = [folder / call.package for folder in (self.layout.root, self.layout.root / "src")]
+        return call.target.startswith(ANY) or any(
+            place.is_dir() or place.with_suffix(".py").is_file() for place in places
+        )
 
     @property
     def _own_packages(self) -> set[str]:

@@ -119,7 +119,9 @@ def operation_text(proposal: Proposal) -> str:
         lines.append(f"# {call.problem}")
     lines += _subject(proposal)
     is_asked = not any(guess.is_sure for guess in [*proposal.arguments.values(), *proposal.result.values()])
-    if proposal.is_plain:
+    if proposal.doubt:
+        lines.append(f"command = true  # question: {proposal.doubt}")
+    elif proposal.is_plain:
         lines.append(f"command = true{_PLAIN}")
     elif proposal.is_operation and is_asked and proposal.message is None:
         lines.append("command = true")
@@ -213,10 +215,13 @@ def _pattern_lines(proposal: Proposal) -> list[str]:
         fields = {} if asked else guess.table
         opposite = {key: value for key, value in guess.table.items() if key == "opposite"}
         rest = value_text({key: value for key, value in guess.table.items() if key != "opposite"})
-        notes = [f"question: {' '.join(guess.questions)} {rest}"] if asked else []
+        notes = [f"question: {' '.join(guess.questions)}{f' {rest}' if asked else ''}"] * bool(
+            guess.questions
+        )
         notes += [f"seen: {guess.note}"] if guess.note else []
+        is_open = guess.questions and not guess.table
         rows.append(
-            f"  {value_text({'text': text, **fields, **opposite})},"
+            f"  {'# ' if is_open else ''}{value_text({'text': text, **fields, **opposite})},"
             + (f"  # {'; '.join(notes)}" if notes else "")
         )
     lines = ["patterns = [", *rows, "]"]

@@ -5,12 +5,15 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 
+#: before which a word is two: ``batchwrite``, but no ``multithread``
+_JOINED = re.compile(r"(?<=[a-z]{4})(?<!th)(?<!sp)(?=(?:read|write)$)")
 _WORD = re.compile(r"(?<![A-Za-z])[A-Za-z]{1,2}\d+|[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
 
 
 def words_of(name: str) -> tuple[str, ...]:
     """Return the words of a name in lower case: ``set``, ``digital``, ``out``; ``move``, ``j``."""
-    return tuple(word.lower() for word in _WORD.findall(name))
+    words = [word.lower() for word in _WORD.findall(name)]
+    return tuple(part for word in words for part in _JOINED.sub(" ", word).split())
 
 
 def _words(text: str) -> frozenset[str]:
@@ -60,6 +63,11 @@ COMMANDS = _words(
     "forwards back backward backwards curve flip clockwise counterclockwise on off toggle blink "
     "emergency arm disarm pulse pause resume aspirate dispense halt activate deactivate shake"
 )
+#: words that are commands only where a name begins with them
+IMPERATIVES = _words(
+    "brake clamp unclamp extend retract engage disengage infuse withdraw prime tare eject inject hold "
+    "hover play"
+)
 READERS = _words(
     "read get getl getj query ask measure is has recv receive where locate detect scan actual current"
 )
@@ -71,10 +79,16 @@ PACKERS = _words("set put pack encode insert")
 COMPUTERS = _words(
     "calculate calc compute estimate parse format encode decode serialize deserialize check validate verify"
 )
+#: those that make no more than another form of what they are given
+CODECS = _words("parse format encode decode serialize deserialize")
+#: how functions are called that make a request, which something else sends
+BUILDERS = _words("build prepare construct generate")
+#: what counts what was done
+BOOKS = _words("metric metrics statistic statistics stats")
 #: what is made ready before the robot does anything, and the clock of a simulator
 SETUP = _words(
     "create connect disconnect load make init initialize configure configuration simulation reset safety "
-    "handler callback listener observer"
+    "handler callback listener observer username password login logout authenticate"
 )
 #: what a function is called that is handed over, to be called back
 CALLBACKS = _words("callback callbacks handler listener observer")
@@ -90,14 +104,17 @@ HELPERS = _words(
     "notifier listener thread timer logger socket connection transport interface serial port link session"
 )
 #: how long or wide something is, and not how far it goes, unless a verb says so
-SIZES = _words("length width")
+SIZES = _words("length width diameter thickness")
 #: words of settings, which no sensor reads
 SETTINGS = _words("max maximum min minimum default initial limit limits only supported supports configured")
+#: what something is, which never changes
+TYPES = _words("type kind category")
 #: words for a state that are no participles
 STATES = _words("in at found held lost stuck contact ready busy")
 #: predicates of replies and of connections, which no sensor reads
 HOUSEKEEPING = _words(
-    "error ok success connected alive valid failed exception setup installed reply response zero nan finite"
+    "error ok success connected alive valid failed exception setup installed reply response zero nan finite "
+    "update updates upgrade"
 )
 #: what is asked of a connection, whatever follows
 LINKED = _words("connected alive online reachable ping")
@@ -190,7 +207,7 @@ _SPELT: Mapping[str, str] = {
     "kg": r"kg|(?i:kilograms?)",
     "V": r"V|(?i:volts?)",
     "Hz": r"Hz|(?i:hertz)",
-    "percent": r"%|(?i:percent(?:ages?)?)",
+    "percent": r"%|(?i:perc|pct|percent(?:ages?)?)",
     "degC": r"°C|(?i:celsius)",
     "Pa": r"Pa|(?i:pascals?)",
     "kPa": r"kPa|(?i:kilopascals?)",

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from enum import Enum
-from types import BuiltinFunctionType, FunctionType, MethodType, ModuleType
+from types import BuiltinFunctionType, CodeType, FunctionType, MethodType, ModuleType
 from typing import Any
 
 from mutabot.api.values import parse_signature, resolve
@@ -222,7 +222,7 @@ def _nameable(target: str, raw: Any, owner: type | None) -> Callee | None:
 
 def _file_of(raw: Any) -> str:
     code = getattr(inspect.unwrap(_function(raw)), "__code__", None)
-    return os.path.realpath(code.co_filename) if code is not None else ""
+    return os.path.realpath(code.co_filename) if type(code) is CodeType else ""  # an AsyncMock has a mock
 
 
 def _function(raw: Any) -> Any:

@@ -34,6 +34,7 @@ from mutabot_init.watching.callee import (
     replaced_method,
 )
 from mutabot_init.watching.values import look, plain
+from mutabot_init.words import words_of
 
 #: calls of one callable whose values are looked at; more are only counted
 MOST_CALLS = 300
@@ -56,7 +57,9 @@ _DISTINGUISHING = frozenset(
         "variable",
     }
 )  # fmt: skip
-_TALKS = re.compile(r"(?:^|_)(?:read|write|get|set|send|publish)(?:_|$)", re.IGNORECASE)
+_TALKS = frozenset({"read", "write", "get", "set", "send", "publish"})
+#: how addresses in a controller look: ``Y10``, ``%MW4``, ``DB1.DBX0.2``
+_ADDRESS = re.compile(r"%?[A-Z]{1,3}\d[\w.:,]*")
 #: more commands than these, and longer texts, are no list of commands
 _MOST_COMMANDS, _LONGEST = 24, 60
 #: a larger key is the address of something, and no index
@@ -189,6 +192,9 @@ class Watch(Observer):
             where = f"{value.__name__}:" if isinstance(value, ModuleType) else f"{class_name(value)}."
             is_class = name[:1].isupper()
             return None if is_class else Callee(f"{where}{name}", None, None, "", stands_in=True)
+        if callee is None and _is_mock(found):  # an attribute of an object that a test replaced
+            kind = value if isinstance(value, type) else type(value)
+            return replaced_method(kind, name) or any_method(name)
         if callee is None or callee.owner is None or not self._is_of_tests(callee):
             return callee
         if _is_no_robot(callee.owner.__module__.partition(".")[0]):
@@ -368,14 +374,15 @@ _CallFacts = tuple[str, str, Mapping[str, Any]]
 def _identify_command(call: WatchedCallable, instance: Any, values: Mapping[str, Any]) -> _CallFacts:
     """Return what identifies a command; an empty path if nothing does."""
     is_item = call.name == "__setitem__"
-    if not (is_item or call.is_set or _TALKS.search(call.name)):
+    if not (is_item or call.is_set or _TALKS & set(words_of(call.name))):
         return "", "", {}
     for name, value in values.items():
         beside = {key: known_value for key, known_value in values.items() if key != name}
         if is_item:
             return (name, str(value), beside) if _is_address(value) else ("", "", {})
         is_plain = isinstance(value, str | int) and not isinstance(value, bool)
-        if _distinguishes(name.lower()) and (is_plain or _has_distinct_name(value)):
+        is_address = isinstance(value, str) and _ADDRESS.fullmatch(value) is not None
+        if is_address or (_distinguishes(name.lower()) and (is_plain or _has_distinct_name(value))):
             return name, str(value), beside
         pair = _pair(name, value)
         if pair is not None:

@@ -13,7 +13,7 @@ import mutabot_init.watching
 #: beside the standard library
 ALLOWED = (
     "mutabot.api.processes", "mutabot.api.values", "mutabot_init.proposers", "mutabot_init.observations",
-    "mutabot_init.watching",
+    "mutabot_init.watching", "mutabot_init.words",
 )  # fmt: skip
 
 

@@ -1,0 +1,269 @@
+"""What drivers, PLC clients and their users call: which lines are drafted, and which are comments."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from textwrap import dedent
+
+import pytest
+
+from mutabot.config.vocabulary import load_vocabulary
+from mutabot.model.operation import Operation
+from mutabot_init.guess import NameContext, guess_argument
+from mutabot_init.layout import look
+from mutabot_init.propose import propose
+from mutabot_init.words import words_of
+from tests.command import mutabot
+
+
+def draft(folder: Path, files: dict[str, str]) -> str:
+    """The vocabulary that init writes for a project."""
+    for name, text in files.items():
+        (folder / name).parent.mkdir(exist_ok=True, parents=True)
+        (folder / name).write_text(dedent(text))
+    propose(folder)
+    return (folder / "robot.toml").read_text()
+
+
+def operations(folder: Path) -> dict[str, Operation]:
+    """The operations of a draft, by their targets."""
+    return {found.target: found for found in load_vocabulary(["robot.toml"], folder).operations}
+
+
+PLC = {
+    "melsec.py": """
+        class Client:
+            def __init__(self): self.bits = {"X20": [1], "Y10": [0]}
+            def batchread_bits(self, device, size): return self.bits[device][:size]
+            def batchwrite_bits(self, device, values): self.bits.update({device: list(values), "X20": [0]})
+            def close(self): self.bits.clear()
+        """,
+    "filling.py": """
+        def fill(plc):
+            while plc.batchread_bits("X20", 1)[0]:
+                plc.batchwrite_bits("Y10", [1])
+            plc.batchwrite_bits(device="Y10", values=[0])
+            plc.close()
+        """,
+    "tests/test_filling.py": """
+        import filling, melsec
+        def test_it():
+            plc = melsec.Client()
+            filling.fill(plc)
+            assert plc.bits == {}
+        """,
+}
+
+
+def test_what_is_written_to_an_address_of_a_controller_is_a_command_whatever_the_argument_is_called(
+    tmp_path: Path,
+) -> None:
+    text = draft(tmp_path, PLC)
+    write, read = (operations(tmp_path)[f"melsec:Client.batch{name}_bits"] for name in ("write", "read"))
+    assert [(str(found.path), found.values) for found in write.patterns[0].arguments] == [
+        ("values[0]", (1, 0))
+    ]
+    assert write.command
+    assert write.patterns[0].text == "Y10"
+    assert [(str(found.path), found.values) for found in read.patterns[0].result] == [("[0]", (0, 1))]
+    assert not read.command
+    assert mutabot(tmp_path, "check").returncode == 0
+    # what closes, and nothing opens, may be a gate or a socket
+    assert '# call = "melsec:Client.close"\n# command = true  # question: does it move something' in text
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("batchread_bits", ("batch", "read", "bits")),
+        ("randomwrite", ("random", "write")),
+        ("multithread", ("multithread",)),
+        ("spread", ("spread",)),
+        ("rewrite", ("rewrite",)),
+    ],
+)
+def test_a_joined_word_that_ends_in_read_or_write_is_two(name: str, expected: tuple[str, ...]) -> None:
+    assert words_of(name) == expected
+
+
+METER = {
+    "flow/__init__.py": "",
+    "flow/mock.py": """
+        from flow.link import Link
+        class Fake(Link):
+            def write_and_read(self, command): return "1.5" if command == "A" else ""
+        """,
+    "flow/link.py": """
+        class Link:
+            def write_and_read(self, command): raise NotImplementedError
+        """,
+    "flow/driver.py": """
+        from flow import link
+        class Meter:
+            def __init__(self): self.link = link.Link()
+            def flow(self): return float(self.link.write_and_read("A"))
+            def set_flow(self, value): self.link.write_and_read(f"AS {value:.2f}")
+        """,
+    "flow/extra.py": "from flow.driver import Meter\nclass Other(Meter):\n    size = 2\n",
+    "tests/test_driver.py": """
+        from unittest import mock
+        from flow import driver, extra
+        from flow.mock import Fake
+        def test_it():
+            with mock.patch("flow.link.Link", Fake):
+                meter = extra.Other()
+                meter.set_flow(2.5)
+                assert meter.flow() == 1.5
+        """,
+}
+
+
+def test_a_file_that_stands_in_for_a_device_is_no_program(tmp_path: Path) -> None:
+    draft(tmp_path, METER)
+    layout = look(tmp_path, [])
+    assert "mock.py" not in {path.name for path in (*layout.program, *layout.below)}
+    assert "mock.py" in {path.name for path in layout.tests}
+    assert layout.arguments == ["tests"]
+
+
+def test_a_stand_in_that_the_program_imports_belongs_to_it(tmp_path: Path) -> None:
+    files = {**METER, "flow/extra.py": "from flow.mock import Fake\nclass Other(Fake):\n    size = 2\n"}
+    for name, text in files.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(dedent(text))
+    assert "mock.py" not in {path.name for path in look(tmp_path, []).tests}
+
+
+def test_where_the_program_calls_no_robot_what_it_imports_is_watched_as_well(tmp_path: Path) -> None:
+    draft(tmp_path, METER)
+    assert 'program = ["flow/extra.py", "flow/driver.py"]' in (tmp_path / "mutabot.toml").read_text()
+    assert [*operations(tmp_path)] == ["flow.link:Link.write_and_read"]
+
+
+def test_a_text_that_is_answered_is_a_command_if_it_says_a_number_and_else_a_question(tmp_path: Path) -> None:
+    text = draft(tmp_path, METER)
+    patterns = operations(tmp_path)["flow.link:Link.write_and_read"].patterns
+    assert [pattern.text for pattern in patterns] == ["AS {value:g}"]
+    assert '  # { text = "A" },  # question: does it command, or only ask?' in text
+
+
+def test_a_mock_in_the_place_of_an_objects_method_is_what_it_replaces(tmp_path: Path) -> None:
+    files = {
+        "link.py": "class Link:\n    def send_rpc(self, rpc): raise OSError\n",
+        "bot.py": """
+            class Bot:
+                def __init__(self, link): self.link = link
+                def water(self, plant): return self.link.send_rpc({"water": plant})
+            """,
+        "test_bot.py": """
+            from unittest.mock import AsyncMock, MagicMock, patch
+            from bot import Bot
+            from link import Link
+            def test_object():
+                link = Link()
+                link.send_rpc = MagicMock()
+                Bot(link).water(4)
+                link.send_rpc.assert_called_once()
+            def test_class():
+                with patch.object(Link, "send_rpc", new_callable=AsyncMock):
+                    Bot(Link()).water(5).close()
+            """,
+    }
+    draft(tmp_path, files)
+    assert [*operations(tmp_path)] == ["link:Link.send_rpc"]
+    assert "2 passed" in mutabot(tmp_path, "check").stdout
+
+
+NO_COMMANDS = {
+    "lab.py": """
+        class Metrics:
+            def __init__(self): self.total = 0.0
+            def record_write(self, duration): self.total += duration
+
+        class Reply:
+            def __init__(self, data): self.data = data
+            def parse(self): LOG.append(self.data); return {"type": self.data[0], "state": "ok"}
+
+        class Robot:
+            def __init__(self): self.on = False
+            def lights_on(self): LOG.append("?"); return self.on
+            def set_lights(self, on): self.on = on
+            def raise_for_error(self): LOG.append("!")
+            def open_transport(self): LOG.append("+"); return self
+            def modules(self): LOG.append("?"); return {"type": "shaker", "has_update": False}
+
+        class Handler:
+            def on_home(self, robot): LOG.append(robot)
+
+        def prepare_write(values): LOG.append(values); return bytes(values)
+
+        LOG = []
+        """,
+    "program.py": """
+        import lab
+        def run():
+            robot, metrics, handler = lab.Robot(), lab.Metrics(), lab.Handler()
+            robot.open_transport()
+            robot.set_lights(True)
+            assert robot.lights_on()
+            robot.modules()
+            robot.raise_for_error()
+            metrics.record_write(0.25)
+            handler.on_home(robot)
+            return lab.Reply(lab.prepare_write([1, 2])).parse()
+        """,
+    "test_program.py": "import program\ndef test_it(): assert program.run()['type'] == 1\n",
+}
+
+
+def test_what_counts_builds_decodes_raises_connects_or_is_told_is_no_command(tmp_path: Path) -> None:
+    text = draft(tmp_path, NO_COMMANDS)
+    found = operations(tmp_path)
+    assert [*found] == ["lab:Robot.set_lights", "lab:Robot.lights_on"]
+    assert not found["lab:Robot.lights_on"].command
+    assert re.findall(r"^\S*(?:type|update).*kind", text, re.MULTILINE) == []
+
+
+@pytest.mark.parametrize(
+    ("words", "name", "doc", "values", "expected"),
+    [
+        ("set_diameter", "diameter_mm", "", [14.4], None),
+        ("move_relative", "distance", "distance: in encoder steps", [17152], "counts of the drive"),
+        ("move_relative", "distance", "distance: how far", [17152], "mm"),
+        ("move", "speed_perc", "", [40], "percent"),
+        ("move", "speed_perc", "", [0.4], "percent, or a fraction?"),
+    ],
+)
+def test_a_size_is_no_way_and_counts_and_shares_are_no_units_of_length(
+    words: str, name: str, doc: str, values: list[float], expected: str | None
+) -> None:
+    guess = guess_argument(name, NameContext(words_of(words), doc=doc, values=values))
+    if expected is None:
+        assert not guess.table
+    elif guess.questions:
+        assert expected in guess.questions[0]
+    else:
+        assert guess.table["unit"] == expected
+
+
+@pytest.mark.parametrize(
+    ("call", "mode"), [("move_to_relative_point", "by"), ("move_relative_to", None), ("move_to_point", "to")]
+)
+def test_a_relative_move_is_a_change_unless_it_is_relative_to_something(call: str, mode: str | None) -> None:
+    guess = guess_argument("x", NameContext(words_of(call), values=[0.25]))
+    assert guess.table["mode"] == mode or any("a change" in question for question in guess.questions)
+
+
+def test_an_unknown_call_of_an_installed_library_is_asked_about(tmp_path: Path) -> None:
+    files = {
+        "program.py": "import yaml_like\ndef run(): yaml_like.frobnicate(1)\n",
+        "test_program.py": "import program\ndef test_it(): program.run()\n",
+        "../site/yaml_like.py": "LOG = []\ndef frobnicate(value): LOG.append(value)\n",
+        "pytest.ini": "[pytest]\npythonpath = . ../site\n",
+    }
+    (tmp_path / "project").mkdir()
+    text = draft(tmp_path / "project", files)
+    assert (
+        '# call = "yaml_like:frobnicate"\n# command = true  # question: does it make the robot act?' in text
+    )
