@@ -251,8 +251,8 @@ CHECKS: dict[str, Callable[[Runs, Told], Iterator[str]]] = {
     "the same movements happened at other times": Runs.late,
     rf"the test took {_BOTH}": Runs.duration,
     rf"(?P<part>.+) ended turned by (?P<far>{_AMOUNT})": Runs.ended_turned,
-    rf"(?P<part>.+) left its path by up to (?P<far>{_AMOUNT}) and ended (?P<end>{_AMOUNT}) from its original "
-    "position": Runs.left,
+    rf"(?P<part>.+) left its path by up to (?P<far>{_AMOUNT}) and ended (?P<end>{_AMOUNT}) from its "
+    "position in the original": Runs.left,
     rf"(?P<part>.+) ended (?P<end>{_AMOUNT}) from its (?:position|value) in the original": Runs.ended,
     rf"(?P<names>.+) left (?:its|their) paths? by up to (?P<far>{_AMOUNT}(?: and {_AMOUNT})?)"
     "(?P<end> but reached the correct end positions?)?": Runs.detour,

@@ -78,7 +78,12 @@ def _survivors_of(results: Results, selected: Sequence[MutantResult]) -> list[Mu
     # where no test comes, no check helps
     survivors = [survivor for survivor in results.survivors if survivor.status is not Verdict.NOT_COVERED]
     if not survivors:
-        raise NothingToSuggestError("no mutant survived: there is no check to suggest")
+        of = results.selected_of
+        which = (
+            "no mutant" if of is None else f"none of the {len(results.mutants)} mutants of the last campaign"
+        )
+        more = "" if of is None else f"; `mutabot run` runs all {of}"
+        raise NothingToSuggestError(f"{which} survived: there is no check to suggest{more}")
     chosen = [result for result in selected if result in survivors]
     if not chosen and any(result.is_accepted for result in selected):
         raise NothingToSuggestError("these survivors are accepted: `mutabot accept` lists them")

@@ -62,7 +62,7 @@ def check_lines(check: ProvenCheck, found: Suggestions, *, with_proof: bool = Tr
 def _proof_lines(check: ProvenCheck) -> Iterator[str]:
     """Yield how far the original spreads, and how often the check failed on it."""
     seen = f"{plural(check.runs, 'run')} of the original"
-    yield f"{seen} spread {check.spread:.3g}" if check.spread else f"equal in {seen}"
+    yield f"held in {seen}{f', whose values spread by {check.spread:.3g}' if check.spread else ''}"
     yield (
         f"false alarms: none in {plural(check.fresh, 'new seed')} "
         f"(so at most {100 * check.unseen:.2g} % of runs, 95 % confidence)"

@@ -122,7 +122,7 @@ def test_a_mutant_is_found_by_number_and_id_or_the_nearest_is_named(tmp_path: Pa
     found = results(tmp_path, OUTCOMES)
     assert found.mutant("2").mutant == SKIP
     assert found.mutant(SKIP.id).mutant == SKIP
-    with pytest.raises(SelectionError, match="numbered 1 to 5"):
+    with pytest.raises(SelectionError, match="mutants are between 1 and 5"):
         found.mutant("6")
     assert found.mutant(SKIP.id[:-1]).mutant == SKIP  # a part of it will do
     with pytest.raises(SelectionError, match="did you mean"):

@@ -245,6 +245,9 @@ def _write_beginning(
     journal.set_known((mutant, True) for mutant in carried)
     if plan.drawing is not None:
         journal.set_meta(records.DRAWING, plan.drawing)
+    if request.only or request.skip:
+        count = sum(not mutant.has_sizes for mutant in whole.mutants)
+        journal.set_meta(records.SELECTED_OF, count)
     journal.set_meta(records.SIMULATION, request.simulation)
     journal.set_meta(records.RAN_OVER, request.ran_over)
     journal.set_meta(records.OPERATORS, summaries(plan.mutants))

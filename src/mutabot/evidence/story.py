@@ -330,7 +330,7 @@ def _strayed(deviation: Apart, *, is_whole: bool) -> str:
         )
     if strayed > 2.0 * final:
         left = f"{deviation.name} left its path by up to {value_with_unit(strayed)}"
-        return f"{left} and ended {value_with_unit(final)} from its original position"
+        return f"{left} and ended {value_with_unit(final)} from its position in the original"
     return f"{deviation.name} ended {value_with_unit(final)} from its position in the original"
 
 

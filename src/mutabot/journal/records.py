@@ -16,6 +16,8 @@ from mutabot.model.suppression import Accepted
 
 #: keys of the journal's meta
 DRAWING = "drawing"
+#: of how many mutants ``--only`` and ``--skip`` selected those of the campaign; ladders are not counted
+SELECTED_OF = "selected_of"
 VERIFICATION, FLAKY = "verification", "flaky"
 REPEATS = "repeats"
 #: whether mutants were run at first without tests that do not reach them
@@ -480,6 +482,7 @@ PLAIN: Mapping[str, Any] = {
     "started": float,
     "seconds": float,
     "shards": int,
+    SELECTED_OF: int,
     SIMULATION: str,
     RAN_OVER: str,
     REMARKS: tuple[str, ...],

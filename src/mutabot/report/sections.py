@@ -102,7 +102,7 @@ def _scores(results: Results) -> Iterator[Section]:
         columns = (*columns, ">accepted")
         rows = [(*row, str(group.scores.accepted)) for row, group in zip(rows, results.groups, strict=True)]
     if rows:
-        lines = [_INTERVALS] if results.rounds > 1 else []
+        lines = [_INTERVALS] if any(group.scores.interval for group in results.groups) else []
         yield Section("Scores", columns, rows, [*lines, *results.bugs_caught])
     if results.drawing is not None:
         drawn = sum(group.mutants for group in results.drawn)
@@ -168,14 +168,12 @@ _FEW = 10
 
 def _survivors(results: Results, place: PlaceName) -> Iterator[Section]:
     """Yield survivors with an effect, the largest first, and a line with those without an effect."""
-    idle = [
-        survivor.mutant.number for survivor in results.survivors if survivor.status is Verdict.NOT_COVERED
-    ]
-    if idle:
-        yield Section(
-            f"{plural(len(idle), 'mutant')} not covered, since no test reaches the place",
-            lines=[numbered(idle)],
-        )
+    idle = [survivor for survivor in results.survivors if survivor.status is Verdict.NOT_COVERED]
+    for is_killed, where in ((False, ""), (True, " in some round; killed in the others")):
+        found = [each.mutant.number for each in idle if bool(each.kill_rate.killed) is is_killed]
+        if found:
+            text = f"{plural(len(found), 'mutant')} not covered, since no test reaches the place{where}"
+            yield Section(text, lines=[numbered(found)])
     survivors = [survivor for survivor in results.survivors if survivor.status is not Verdict.NOT_COVERED]
     if not survivors:
         if results.all.total.valid > len(idle) * results.rounds:
@@ -341,8 +339,10 @@ def numbered(numbers: Sequence[int]) -> str:
 
 
 def size_text(results: Results) -> str:
-    """Return ``24 mutants and 3 ladders × 5 rounds``."""
-    kinds = [plural(len(results.mutants), "mutant")] if results.mutants or not results.ladders else []
+    """Return ``24 mutants and 3 ladders × 5 rounds``; of a selection, ``24 of 70 mutants × 5 rounds``."""
+    count, of = len(results.mutants), results.selected_of
+    text = plural(count, "mutant") if of is None else f"{count} of {plural(of, 'mutant')}"
+    kinds = [text] if results.mutants or not results.ladders else []
     kinds += [plural(results.ladders, "ladder")] if results.ladders else []
     return f"{' and '.join(kinds)} × {plural(results.rounds, 'round')}"
 

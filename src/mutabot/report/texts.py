@@ -70,9 +70,18 @@ _SPECIAL = re.compile(r"([\\`*_\[\]|~$])")
 _START = re.compile(r"^(#+|[-+=]+)(?=\s|$)|^(\d+)([.)])(?=\s|$)")
 
 
+#: a command of mutabot's in a text
+_COMMAND = re.compile(r"(`mutabot(?: [\w.,…*=-]+)+`)")
+
+
 def escaped(text: str) -> str:
-    """Return a text as one line of Markdown that shows it unchanged, in any place."""
-    line = one_line(text).replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
+    """Return a text as one line of Markdown that shows it unchanged, in any place; commands as code."""
+    pieces = _COMMAND.split(one_line(text))
+    return "".join(piece if number % 2 else _escaped(piece) for number, piece in enumerate(pieces))
+
+
+def _escaped(line: str) -> str:
+    line = line.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
     line = _SPECIAL.sub(r"\\\1", line)
     # no link is made of an address that a program wrote
     line = line.replace("://", ":&#47;&#47;").replace("www.", "www&#46;")
@@ -84,7 +93,7 @@ T = TypeVar("T")
 #: facts of a campaign that reveal nothing of the machine and its folders
 _META = (
     "mutabot", "python", "versions", "seed", "rounds", "engine", "families", "order", "every_test", "started",
-    "seconds",
+    "seconds", "selected_of",
 )  # fmt: skip
 
 
@@ -194,7 +203,7 @@ def next_step(result: MutantResult, suggestion: Suggestion | None = None) -> str
     if not result.is_survivor or result.mutant.ladder:
         return ""
     if result.status is Verdict.NOT_COVERED:
-        return "Add a test that runs this line."
+        return f"Add a test that runs this line{' in every round' if result.kill_rate.killed else ''}."
     if suggestion is not None and suggestion.reason:
         return f"No check was found: {suggestion.reason}"
     number = result.mutant.number

@@ -97,18 +97,17 @@ class MutantResult:
     def status(self) -> Verdict | None:
         """The verdict over all rounds, also of an accepted survivor; None if it has not been run.
 
-        - *survived* if any round lets it through: that is what there is to act on;
-        - *not covered* if it is valid in some round, and no test reaches it in any of these;
+        - *survived* if it survives in any round: that is what there is to act on;
+        - *not covered* if no test reaches it in some round;
         - *killed* if every round in which it is valid kills it, *timeout* if all these only ran out of
           budget;
         - else, as no round was valid, the verdict outside the score that most needs a look.
         """
         found = {outcome.verdict for outcome in self.outcomes}
         valid = {verdict for verdict in found if verdict.is_valid}
-        if valid == {Verdict.NOT_COVERED}:
-            return Verdict.NOT_COVERED
-        if self.lets_through:
-            return Verdict.SURVIVED
+        for lets_through in (Verdict.SURVIVED, Verdict.NOT_COVERED):
+            if lets_through in valid:
+                return lets_through
         if valid:
             return Verdict.TIMEOUT if valid == {Verdict.TIMEOUT} else Verdict.KILLED
         return next((verdict for verdict in OUTSIDE if verdict in found), None)
@@ -211,6 +210,12 @@ class Results:
         return tuple(self.meta.get(records.ALTERED) or ())
 
     @property
+    def selected_of(self) -> int | None:
+        """The number of mutants from which ``--only`` and ``--skip`` selected these; None if they are all."""
+        of = self.meta.get(records.SELECTED_OF)
+        return of if of is not None and of > len(self.mutants) else None
+
+    @property
     def is_complete(self) -> bool:
         """Whether the campaign ran to its end."""
         return self.state == "complete"
@@ -218,7 +223,7 @@ class Results:
     @property
     def bugs_caught(self) -> list[str]:
         """What suites with such scores caught of real bugs; empty where only some mutants were run."""
-        if not self.is_complete or self.since is not None:
+        if not self.is_complete or self.since is not None or self.selected_of is not None:
             return []
         return [text for group in self.groups if (text := group.bugs_caught) is not None]
 
@@ -262,8 +267,12 @@ class Results:
         if not everything:
             raise SelectionError("the journal holds no mutants")
         if name.isdigit():
-            last = everything[-1].mutant.number
-            raise SelectionError(f"there is no mutant {name}; they are numbered 1 to {last}")
+            first, last = everything[0].mutant.number, everything[-1].mutant.number
+            many = plural(len(everything), "mutant")
+            raise SelectionError(
+                f"the last campaign has no mutant {name}: its {many} are between {first} and {last}, "
+                "and `mutabot list` numbers all that there are"
+            )
         found = [
             candidate
             for candidate in everything

@@ -13,7 +13,7 @@ import pytest
 
 import schemas
 from mutabot.errors import UsageError
-from mutabot.model import Diverged
+from mutabot.model import By, Diverged, Outcome, Verdict
 from mutabot.report.format import Material, format_of, names
 from mutabot.report.texts import portable
 from report.material import HOSTILE, ROOT, made, stored, with_text
@@ -138,3 +138,13 @@ def test_a_story_stands_beside_the_test_and_the_round_in_which_it_happened(tmp_p
     )
     text = made(name, stored(tmp_path, outcomes=outcomes)).replace("\\_", "_")
     assert set(re.findall(r"box ended 0\.3 m off(.{0,23})", text)) == {" (in test_far, round 2)"}
+
+
+@pytest.mark.parametrize("name", names())
+def test_a_mutant_that_only_some_rounds_reach_and_kill_is_in_every_format(tmp_path: Path, name: str) -> None:
+    verdicts = (Verdict.NOT_COVERED, Verdict.KILLED)
+    ends = tuple(
+        Outcome(samples.REVERSE.id, number, verdict, By.CHECK if verdict.is_killed else None, message="why")
+        for number, verdict in enumerate(verdicts)
+    )
+    assert made(name, stored(tmp_path, outcomes=ends))

@@ -31,7 +31,7 @@ def result(*verdicts: Verdict | None) -> MutantResult:
         ((K, T), K),
         ((K, S, K), S),
         ((S, N), S),
-        ((K, N), S),  # tests reach it, and one round lets it through
+        ((K, N), N),  # it is killed wherever a test reaches it
         ((N, N), N),
         ((N, R), N),
         ((K, R, E), K),

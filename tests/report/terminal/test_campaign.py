@@ -229,6 +229,29 @@ def test_a_survivor_is_counted_in_the_rounds_that_let_it_through(
     assert (said == "not covered in 1 of 2 rounds") is ("not covered in" in text)
 
 
+def test_a_mutant_that_every_test_reaching_it_kills_is_no_survivor(tmp_path: Path) -> None:
+    mutant = samples.REVERSE
+    ends = (
+        Outcome(mutant.id, 0, Verdict.NOT_COVERED, message="no test reaches the site in this round"),
+        Outcome(mutant.id, 1, Verdict.KILLED, By.CHECK, test=samples.TEST, message="assert 1 == 2"),
+    )
+    with Journal.open(samples.write_journal(tmp_path / "journal.sqlite", outcomes=ends)) as journal:
+        results = read_results(journal)
+        text = report(results, 200)
+    where = "since no test reaches the place in some round; killed in the others"
+    assert f"1 mutant not covered, {where}\n  mutant {mutant.number}" in text
+    assert "1 survivor" not in text
+
+
+def test_of_a_selection_the_title_says_of_how_many_it_is(tmp_path: Path) -> None:
+    path = samples.write_journal(tmp_path / "journal.sqlite", selected_of=70)
+    with Journal.open(path) as journal:
+        results = read_results(journal)
+        text = report(results)
+    assert f"{len(results.mutants)} of 70 mutants × " in text
+    assert not results.bugs_caught
+
+
 def test_that_no_probe_shows_how_the_world_ended_is_said_once(tmp_path: Path) -> None:
     ends = [Outcome(item.id, 0, Verdict.SURVIVED) for item in (samples.REVERSE, samples.SKIP)]
     with Journal.open(samples.write_journal(tmp_path / "journal.sqlite", outcomes=ends)) as journal:

@@ -18,7 +18,7 @@ from results import samples
 CHECK = Suggestion(
     "tests/test_box.py::test_arrives",
     "assert tracker.box_position().x == pytest.approx(0.5, abs=0.01)",
-    ("kills #4 in round 1", "22 runs of the original spread 0.002"),
+    ("kills #4 in round 1", "held in 22 runs of the original, whose values spread by 0.002"),
 )
 
 

@@ -51,7 +51,7 @@ def test_a_campaign_has_its_mutants_outcomes_and_scores(project: Path) -> None:
 def test_one_mutant_is_found_by_number_or_a_part_of_its_id(project: Path) -> None:
     campaign = mutabot.open(project)
     assert campaign.mutant("2") == campaign.mutant("gripper.command") == campaign.mutants[1]
-    with pytest.raises(SelectionError, match="numbered 1 to 5"):
+    with pytest.raises(SelectionError, match="mutants are between 1 and 5"):
         campaign.mutant("6")
 
 

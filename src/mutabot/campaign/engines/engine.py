@@ -87,6 +87,11 @@ def _write(
     campaign.progress.advance(f"{_name(mutant, outcome)}{by}")
 
 
+def _runs_text(runs: Sequence[MutantRun]) -> str:
+    rounds = len({round for _, round in runs})
+    return "mutants" if rounds <= 1 else f"mutants × {rounds} rounds"
+
+
 def _name(mutant: Mutant, outcome: Outcome) -> str:
     return f"#{mutant.number} round {outcome.round + 1}: {outcome.verdict}"
 
@@ -105,7 +110,7 @@ def _by_replay(campaign: Campaign, runs: Sequence[MutantRun]) -> Iterator[Outcom
     """Run controls first, then each mutant by itself."""
     yield from run_controls(campaign, {mutant.id: mutant for mutant, _ in runs}.values())
     is_all = campaign.request.engine == REPLAY
-    campaign.progress.stage("mutants" if is_all else "mutants by replay", len(runs))
+    campaign.progress.stage(f"{_runs_text(runs)}{'' if is_all else ' by replay'}", len(runs))
     yield from replay(campaign, runs)
 
 
@@ -115,7 +120,7 @@ def _by_fork(
     """Run one fork parent per round, with controls and mutants as its forks."""
     mutants = {mutant.id: mutant for mutant, _ in runs}
     controls = _forked_controls(campaign, mutants.values())
-    campaign.progress.stage("mutants", len(runs))
+    campaign.progress.stage(_runs_text(runs), len(runs))
     hindered: list[tuple[Mutant, Outcome]] = []
     trust, held = ForkTrust(campaign, controls), list[Outcome]()
     for outcome in run_forks(campaign, [*(control.run for control in controls.values()), *runs], left):

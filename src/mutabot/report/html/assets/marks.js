@@ -13,7 +13,7 @@
   };
   const ORDER = Object.keys(STATUS);
   const MEANING = {
-    survived: "at least one round let it through", "not covered": "no test reaches it", killed: "every valid round killed it",
+    survived: "at least one round let it through", "not covered": "no test reaches it in at least one round", killed: "every valid round killed it",
     timeout: "it exceeded its time limit in every round", error: "mutabot, a worker or the simulator failed", unstable: "equal runs gave different results",
     refused: "the robot refused the command", guarded: "a guard kept the command from the robot", invalid: "no valid program or command", "no effect": "it changed no value", accepted: "it survived, and that was accepted with a reason", "not run": "not run yet",
   };

@@ -269,15 +269,13 @@
 
   function checked(one, test, isOpen) {
     const many = test.checks.length + test.more;
-    const spares = test.checks.map((check) => check.spare).filter((spare) => spare !== undefined);
-    const nearest = Math.min(...spares);
     const conclusion = !test.acted ? "the mutant changed nothing in it" : !many ? "no check was seen after the fault; assertions that pytest does not rewrite are not seen"
-      : `${count(many, "check")} held${spares.length ? `, the nearest by ${number(nearest, 3)}` : ""}`;
+      : `${count(many, "check")} held`;
     if (!test.acted || !test.checks.length) return h("p", null, h("code", null, mutabot.breakable(test.test)), `: ${conclusion}`);
     return h("details", { class: "test-box", open: isOpen }, h("summary", null, h("code", null, mutabot.breakable(test.test)), `: ${conclusion}`),
       h("div", { class: "scroll", role: "region", tabindex: "0", "aria-label": `Checks of ${test.test}` }, h("table", { class: "checks" },
         h("thead", null, h("tr", null, h("th", { scope: "col" }, "place"), h("th", { scope: "col" }, "check"), h("th", { scope: "col" }, "with"), h("th", { scope: "col", class: "n" }, "to spare"))),
-        h("tbody", null, test.checks.slice(0, CHECKS).map(({ place, text, seen, spare, times }) => h("tr", { class: spare === nearest ? "nearest" : null },
+        h("tbody", null, test.checks.slice(0, CHECKS).map(({ place, text, seen, spare, times }) => h("tr", null,
           h("td", null, place.replace(/^.*\//, "")), h("td", null, h("code", null, text), times > 1 ? h("small", null, `${times} times, the nearest to fail`) : null),
           h("td", null, seen ? h("code", null, seen) : "–"), h("td", { class: "n" }, number(spare, 3))))))),
       many > CHECKS ? h("p", { class: "hint" }, `and ${count(many - CHECKS, "more check")}; \`mutabot show ${one.number} --json\` has those that were kept.`) : null);

@@ -8,7 +8,7 @@
     const campaign = mutabot.campaign;
     const survivors = campaign.survivors.map((number) => campaign.byNumber.get(number));
     const graded = (campaign.ladders || []).length;
-    const things = [(campaign.mutants.length || !graded) && count(campaign.mutants.length, "mutant"), graded && count(graded, "ladder")];
+    const things = [(campaign.mutants.length || !graded) && (campaign.meta.selected_of > campaign.mutants.length ? `${campaign.mutants.length} of ${count(campaign.meta.selected_of, "mutant")}` : count(campaign.mutants.length, "mutant")), graded && count(graded, "ladder")];
     const judging = campaign.mutants.length || !graded
       ? [toActOn(survivors, campaign), h("div", { class: "columns" }, unseen(campaign), outside(campaign))] : [];
     body.append(
@@ -113,12 +113,14 @@
   }
 
   function toActOn(all, campaign) {
-    const survivors = all.filter((one) => one.status !== "not covered"), idle = all.length - survivors.length;
-    const more = idle ? h("p", { class: "hint" }, h("a", { href: address(["mutants"], { status: "not covered" }) }, `${count(idle, "mutant")} not covered`), ", since no test reaches the place") : null;
+    const survivors = all.filter((one) => one.status !== "not covered"), uncovered = all.filter((one) => one.status === "not covered");
+    const idle = uncovered.length, partly = uncovered.filter((one) => one.killed).length;
+    const more = idle ? h("p", { class: "hint" }, h("a", { href: address(["mutants"], { status: "not covered" }) }, `${count(idle, "mutant")} not covered`), `, since no test reaches the place${partly ? ` (${partly === idle ? "" : `${partly} of them `}in some round; killed in the others)` : ""}`) : null;
     let [loud, calm] = [false, true].map((is) => survivors.filter((one) => one.indistinguishable === is));
+    const isRanked = loud.length > 1 && loud.some((one) => one.deviation);
     if (!loud.length && calm.length <= SHOWN) [loud, calm] = [calm, []]; // else nothing would say which faults these are
     calm.sort((one, other) => one.number - other.number);
-    const heading = h("h2", { id: "survivors" }, survivors.length ? `${count(survivors.length, "survivor")}${loud.length > 1 && loud.some((one) => one.deviation) ? ", largest deviation from the original first" : ""}` : "Survivors");
+    const heading = h("h2", { id: "survivors" }, survivors.length ? `${count(survivors.length, "survivor")}${isRanked ? ", largest deviation from the original first" : ""}` : "Survivors");
     if (!survivors.length) {
       const judged = campaign.mutants.some((one) => one.valid && one.status !== "not covered");
       return h("section", null, heading, more, judged
@@ -177,7 +179,7 @@
     if (found.length) {
       section.append(h("ul", { class: "plain" }, found.map(([name, many]) => h("li", null,
         h("a", { href: address(["mutants"], { status: name }) }, marks.status(name)), ` ${count(many, "mutant")}: ${marks.MEANING[name]}`))));
-    } else section.append(h("p", { class: "hint" }, campaign.done >= campaign.planned ? "Every planned mutant was run and is counted." : "No mutant is left out of the score so far."));
+    } else section.append(h("p", { class: "hint" }, campaign.done >= campaign.planned ? "Every mutant is counted." : "No mutant is left out of the score so far."));
     if (campaign.withoutEffect.length) section.append(h("h3", null, "Accepted or excluded without an effect"), h("ul", { class: "plain" }, campaign.withoutEffect.map((one) => h("li", null, one))));
     const nothing = "would change nothing";
     const headings = Map.groupBy(campaign.left_out, (one) => one.reason.startsWith(nothing) ? `Left out that ${nothing}` : `Left out: ${one.reason}`);
