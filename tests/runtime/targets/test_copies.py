@@ -1,4 +1,4 @@
-"""Operations are copied and pickled, alone and in other objects, as they are without anything around them."""
+"""Operations are shown, copied and pickled, alone and in other objects, as without anything around them."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import copy
 import pickle
 import sys
 from collections.abc import Callable
+from functools import partial
 from types import ModuleType
 from typing import Any
 from unittest.mock import create_autospec
@@ -109,3 +110,12 @@ def test_a_wrapped_method_has_the_attributes_of_the_method(robot: Any) -> None:
     assert vars(method) == {"axis": "x"}
     assert (method.__doc__, method.__annotations__) == ("Go.", {"dx": "float"})
     assert create_autospec(robot.Arm(), instance=True).move_by(0.5) is not None
+
+
+def test_what_is_wrapped_is_shown_as_it_is(robot: Any) -> None:
+    for name in ("tool", "Arm.move_by", "Arm.scaled", "Arm.made"):
+        shown = repr(eval(name, vars(robot)))
+        assert shown.startswith(("<function ", "<bound method ")), shown
+        assert name in shown
+    assert "<function Arm.move_by " in repr(partial(robot.Arm.move_by, 1))
+    assert repr(robot.Arm().move_by).startswith("<bound method Arm.move_by of <")

@@ -1,4 +1,4 @@
-"""What stands in the place of an operation, and is copied and pickled as the operation is."""
+"""What stands in the place of an operation, and is shown, copied and pickled as the operation is."""
 
 from __future__ import annotations
 
@@ -11,10 +11,13 @@ from typing import Any, cast
 import wrapt
 
 
-class _Copied:
-    """The copies of a wrapper: wrapt leaves them to subclasses."""
+class _Alike:
+    """The text and the copies of a wrapper: wrapt leaves copies to subclasses, and shows wrappers."""
 
     __slots__ = ()  # attributes are those of what is wrapped: no annotations either
+
+    def __repr__(self) -> str:
+        return repr(self.__wrapped__)  # type: ignore[attr-defined]
 
     def __copy__(self) -> Any:
         return self
@@ -30,7 +33,7 @@ class _Copied:
         return getattr, (owner, function.__name__)
 
 
-class BoundWrapper(_Copied, wrapt.BoundFunctionWrapper):  # type: ignore[type-arg]
+class BoundWrapper(_Alike, wrapt.BoundFunctionWrapper):  # type: ignore[type-arg]
     """A wrapped function as it is read from an object or a class."""
 
     def __deepcopy__(self, known: dict[int, Any]) -> Any:
@@ -41,7 +44,7 @@ class BoundWrapper(_Copied, wrapt.BoundFunctionWrapper):  # type: ignore[type-ar
         return self._self_parent.__get__(owner, type(owner))
 
 
-class Method(_Copied, wrapt.BoundFunctionWrapper):  # type: ignore[type-arg]
+class Method(_Alike, wrapt.BoundFunctionWrapper):  # type: ignore[type-arg]
     """A function of a class, whose calls a handler gets with the object as their instance.
 
     Python binds it as it binds the function: what is read from an object is a method, equal to the next one.
@@ -58,7 +61,7 @@ class Method(_Copied, wrapt.BoundFunctionWrapper):  # type: ignore[type-arg]
         return self if instance is None else MethodType(self, instance)
 
 
-class Wrapper(_Copied, wrapt.FunctionWrapper):  # type: ignore[type-arg]
+class Wrapper(_Alike, wrapt.FunctionWrapper):  # type: ignore[type-arg]
     """A function, or what a class holds, whose calls a handler gets."""
 
     __bound_function_wrapper__ = BoundWrapper
