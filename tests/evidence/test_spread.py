@@ -9,7 +9,7 @@ import pytest
 from mutabot.evidence import recorder as recorders
 from mutabot.evidence.feed import Feed
 from mutabot.evidence.paths import RecordedPaths, turned_aside
-from mutabot.evidence.recording import Recording
+from mutabot.evidence.recording import RecordedCall, Recording
 from mutabot.evidence.spread import spread_between
 from mutabot.evidence.story import diverged
 from mutabot.model import Outcome, Verdict
@@ -141,6 +141,27 @@ def test_a_tool_that_is_turned_on_its_way_is_described_by_the_angle_from_all_tha
     late = told(turning(0, 0, 30, 60, 90), usual)
     assert "turned by" not in late.story
     assert late.deviation <= 1.0
+
+
+def sorting(colour: str, x: float, place: str = "program.py:5") -> Recording:
+    """A box that ends at a distance from the table, by its colour, which a sensor reads."""
+    run = beside(x)
+    run.calls = [RecordedCall(0.1, 0.2, "Sensor.colour", place, None, {}, {"result": colour, ".x": x})]
+    return run
+
+
+@pytest.mark.parametrize(
+    "blue", [sorting("blue", 0.21), sorting("red", 0.21, "program.py:7")], ids=["reading", "place"]
+)
+def test_runs_in_which_something_else_was_to_be_done_are_no_spread(blue: Recording) -> None:
+    red, again = sorting("red", 0.0), sorting("red", 0.004)
+    found = told(sorting("red", 0.012), red, again, blue)
+    assert box_of(found) == pytest.approx(3.0, rel=0.05)
+    assert not found.scatters
+
+
+def test_where_no_two_runs_did_the_same_all_are_compared() -> None:
+    assert told(sorting("red", 0.42), sorting("red", 0.0), sorting("blue", 0.21)).scatters
 
 
 def test_a_turn_on_the_way_counts_a_tenth_of_one_that_remains() -> None:

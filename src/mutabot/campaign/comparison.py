@@ -17,7 +17,7 @@ from mutabot.campaign.probe_readings import keys_of, quantities_meant, readings_
 from mutabot.frozen import frozen
 from mutabot.model import Compared, Kind, Operation, Pattern, Probe, Quantity
 from mutabot.model.deviation import TOLERANCES, deviation_of
-from mutabot.model.quantity import distinct_texts, is_number, value_text
+from mutabot.model.quantity import distinct_texts, holds_number, is_number, value_text
 from mutabot.model.units import apart
 
 #: greatest difference of two equal numbers where the vocabulary names no probe
@@ -252,7 +252,13 @@ class ProbeSpread:
     def between(
         cls, first: Observation, others: Iterable[Observation], probes: Sequence[Probe]
     ) -> ProbeSpread:
-        """Return how far the other runs are from the first."""
+        """Return how far the other runs are from the first.
+
+        A seed may decide what there is to do, such as where a box belongs: only runs in which the same was
+        done are compared, if there are any.
+        """
+        others = [*others]
+        others = [other for other in others if _done(other) == _done(first)] or others
         ends: dict[str, float] = {}
         ways: dict[str, float] = {}
         for other in others:
@@ -262,6 +268,18 @@ class ProbeSpread:
                     if math.isfinite(difference.size):
                         sizes[difference.key] = max(difference.size, sizes.get(difference.key, 0.0))
         return cls(ends, ways)
+
+
+def _done(run: Observation) -> frozenset[Any]:
+    """Return what was done in a run: its calls, and what they read that is no number."""
+    found = set[Any]()
+    for call in run.events:
+        read = call.read.items() if isinstance(call.read, Mapping) else enumerate(call.read or ())
+        found |= {
+            call.key,
+            *((call.key, name, str(value)) for name, value in read if not holds_number(value)),
+        }
+    return frozenset(found)
 
 
 def _same_calls(original: Observation, mutant: Observation) -> int:

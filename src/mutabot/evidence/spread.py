@@ -1,17 +1,22 @@
-"""The original's own spread: how far its runs with different seeds are apart in one test."""
+"""The original's own spread: how far its runs with different seeds are apart in one test.
+
+A seed may also decide what there is to do, such as whether a box is red or blue, and so where it belongs.
+Only runs that did the same are compared, if any two did.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import combinations
 from math import dist
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from mutabot.evidence.contacts import intervals_of
 from mutabot.evidence.differences import Measure, Spread, aside_of, measures_of
 from mutabot.evidence.physics import facts_of
 from mutabot.evidence.recording import TrackKind
 from mutabot.model.deviation import spread_of
+from mutabot.model.quantity import holds_number
 
 if TYPE_CHECKING:
     from mutabot.evidence.paths import RecordedPaths, Row, TrackPath
@@ -26,23 +31,45 @@ def spread_between(runs: Sequence[RecordedPaths]) -> Spread:
         return Spread()
     ends: dict[str, float] = {}
     paths: dict[str, float] = {}
-    for first, second in combinations(runs, 2):
+    alike = _alike(runs)
+    pairs = [pair for those in alike for pair in combinations(those, 2)]
+    for first, second in pairs:
         for name in first.paths.keys() & second.paths.keys():
             before, after = first.paths[name], second.paths[name]
             for measure in measures_of(before) if before.track.kind is after.track.kind else ():
                 far = _end_distance(measure, before, after)
                 ends[measure.name] = max(far, ends.get(measure.name, 0.0))
-                beside = (aside_of(measure, *pair) or 0.0 for pair in ((before, after), (after, before)))
+                both_ways = ((before, after), (after, before))
+                beside = (aside_of(measure, *one_way) or 0.0 for one_way in both_ways)
                 paths[measure.name] = max(*beside, paths.get(measure.name, 0.0))
     touched = [intervals_of(run.recording).keys() for run in runs]
     return Spread(
         ends,
         paths,
-        _measured(runs),
+        _measured(alike),
         frozenset().union(*touched),
         frozenset(touched[0]).intersection(*touched[1:]),
         _scatters(runs, ends),
     )
+
+
+def _alike(runs: Sequence[RecordedPaths]) -> list[list[RecordedPaths]]:
+    """Return the runs grouped by what was done in them; as one group if no two did the same.
+
+    That is which calls were made where, and what they read that is no number.
+    """
+    found: dict[frozenset[Any], list[RecordedPaths]] = {}
+    for run in runs:
+        calls = run.recording.calls
+        read = {
+            (call.place, name, str(value))
+            for call in calls
+            for name, value in call.read.items()
+            if not holds_number(value)
+        }
+        made = {(call.place, call.operation, call.pattern) for call in calls}
+        found.setdefault(frozenset(made | read), []).append(run)
+    return [*found.values()] if len(found) < len(runs) else [[*runs]]
 
 
 def _end_distance(measure: Measure, before: TrackPath, after: TrackPath) -> float:
@@ -55,12 +82,15 @@ def _moved(path: TrackPath) -> Row:
     return tuple(end - start for start, end in zip(path.rows[0][:3], path.rows[-1][:3], strict=True))
 
 
-def _measured(runs: Sequence[RecordedPaths]) -> dict[tuple[str, str], float]:
-    found: dict[tuple[str, str], list[float]] = {}
-    for run in runs:
-        for key, fact in facts_of(run).items():
-            found.setdefault(key, []).append(fact.value)
-    return {key: spread_of(values) for key, values in found.items()}
+def _measured(alike: Sequence[Sequence[RecordedPaths]]) -> dict[tuple[str, str], float]:
+    found: dict[tuple[str, str], float] = {}
+    for runs in alike:
+        values: dict[tuple[str, str], list[float]] = {}
+        for run in runs:
+            for key, fact in facts_of(run).items():
+                values.setdefault(key, []).append(fact.value)
+        found |= {key: max(spread_of(those), found.get(key, 0.0)) for key, those in values.items()}
+    return found
 
 
 def _scatters(runs: Sequence[RecordedPaths], ends: dict[str, float]) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -157,3 +158,12 @@ def test_a_test_whose_end_scatters_comes_last() -> None:
     assert stable_first(both, {"lost"}) == Difference(False, 3.0, ("box.x: placed", "box.x: lost"), way=2.0)
     assert stable_first(both, set()).divergence[0] == "box.x: lost"
     assert stable_first({"lost": lost}, {"lost"}) == lost
+
+
+def test_runs_in_which_something_else_was_to_be_done_are_no_spread() -> None:
+    red, again, blue = (
+        replace(seen(tool__x=x), events=(TraceCall("mission.py:5 Sensor.colour", read={"result": colour}),))
+        for x, colour in ((0.5, "red"), (0.502, "red"), (0.7, "blue"))
+    )
+    assert spread(red, again, blue).ends[f"{TARGET}.tool.x"] == pytest.approx(0.002)
+    assert spread(red, blue).ends[f"{TARGET}.tool.x"] == pytest.approx(0.2)
