@@ -18,11 +18,9 @@ from .checks import (
     CheckProposal,
     MutantReadings,
     Trials,
-    is_clock,
-    last_name,
     rank_of,
 )
-from .forms import is_number
+from .forms import is_clock, is_number, last_name
 from .project import PlaceInTest, SuiteFiles, function_of
 from .readings import ORACLE, Measured, ReadExpression, ValuesRead, is_reading, reading_of
 from .suite import ReusableCheck, SuiteChecks

@@ -10,14 +10,11 @@ from typing import Any
 
 from .bands import digits_of
 from .editing import Addition, equal, within
-from .forms import SuiteCheck, is_number
+from .forms import SuiteCheck, is_number, last_name
 from .project import PlaceInTest, text_of
 from .readings import ReadExpression, ValuesRead
 
 _NAME = re.compile(r"[^\W\d]\w*")
-_CLOCK = re.compile(
-    r"(?:^|_)(?:time|clock|elapsed|duration|seconds|secs|now|timestamp|ticks?|cycle)(?:_|$)", re.I
-)
 PLACES = re.compile(
     r"(?:^|_)(?:[xyz]|pos|pose|position|place|height|distance|depth|gap|width)s?(?:_|$)", re.I
 )
@@ -230,13 +227,3 @@ def rank_of(text: str) -> int:
     if ANGLES.search(name):
         return ANGLE
     return PLACE if PLACES.search(name) else OTHER_KIND
-
-
-def is_clock(text: str) -> bool:
-    """Return whether a reading is a time, by its name; a difference in it may only mean a delay."""
-    return _CLOCK.search(last_name(text)) is not None
-
-
-def last_name(text: str) -> str:
-    """Return the last name in an expression, without indices: ``places`` for ``places[0][2]``."""
-    return str([text, *_NAME.findall(text)][-1])

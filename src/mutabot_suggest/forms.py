@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import ast
 import math
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeGuard
 
 from .project import text_of
 
+_NAME = re.compile(r"[^\W\d]\w*")
+_CLOCK = re.compile(
+    r"(?:^|_)(?:time|clock|elapsed|duration|seconds|secs|now|timestamp|ticks?|cycle)(?:_|$)", re.I
+)
 #: how the names of arguments and constants read that say how far something may be off
 _TOLERANCES = ("tol", "thresh", "within", "eps", "delta", "margin", "accuracy", "limit")
 #: keywords that are one
@@ -73,6 +78,16 @@ def _item(texts: tuple[str, ...], number: int) -> str:
 def is_number(value: Any) -> TypeGuard[float]:
     """Return whether a value is a number that can be compared with a tolerance."""
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def is_clock(text: str) -> bool:
+    """Return whether a reading is a time, by its name; a difference in it may only mean a delay."""
+    return _CLOCK.search(last_name(text)) is not None
+
+
+def last_name(text: str) -> str:
+    """Return the last name in an expression, without indices: ``places`` for ``places[0][2]``."""
+    return str([text, *_NAME.findall(text)][-1])
 
 
 class _Renaming(ast.NodeTransformer):

@@ -8,8 +8,8 @@ from typing import Any
 from mutabot.api.reports import MutantResult
 
 from .candidates import ONLY_TIME
-from .checks import CheckProposal, Monitor, is_clock, last_name
-from .forms import is_number
+from .checks import CheckProposal, Monitor
+from .forms import is_clock, is_number, last_name
 from .readings import Measured, is_reading, reading_of
 from .results import Unsolved
 from .suite import SuiteChecks

@@ -10,7 +10,7 @@ import builtins
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 
-from .forms import ACTUAL, EXPECTED, TOLERANCE, SuiteCheck, check_of, is_number, near_of, rename
+from .forms import ACTUAL, EXPECTED, TOLERANCE, SuiteCheck, check_of, is_clock, is_number, near_of, rename
 from .project import (
     UNITTEST,
     PlaceInTest,
@@ -188,6 +188,8 @@ class SuiteChecks:
                 is_own = own is not None and name == own.name
                 if statement in there or statement in found or is_own or name in helpers:
                     continue
+                if other is not None and _reads_clock(other, node):
+                    continue  # another test's deadline
                 near = next(
                     (check for check in self.checks if check.file == file and _is_at(check, node)), None
                 )
@@ -292,6 +294,32 @@ def assigned(target: ast.expr | None, value: ast.expr | None) -> Iterator[tuple[
 
 def _is_at(check: SuiteCheck, node: ast.stmt) -> bool:
     return any(inner is check.nodes[0] for inner in ast.walk(node))
+
+
+def _reads_clock(module: ast.Module, check: ast.stmt) -> bool:
+    """Return whether a check, or an assertion of its file's function that it calls, looks at a time."""
+    for inner in ast.walk(check):
+        name = (
+            inner.id
+            if isinstance(inner, ast.Name)
+            else inner.attr
+            if isinstance(inner, ast.Attribute)
+            else ""
+        )
+        if name and not name.isupper() and is_clock(name):
+            return True
+    called = {
+        inner.func.id
+        for inner in ast.walk(check)
+        if isinstance(inner, ast.Call) and isinstance(inner.func, ast.Name)
+    }
+    helpers = (
+        statement
+        for statement in module.body
+        if isinstance(statement, TestFunctionNode) and statement.name in called
+    )
+    asserted = (part for helper in helpers for part in ast.walk(helper) if isinstance(part, ast.Assert))
+    return any(_reads_clock(ast.Module([], []), part) for part in asserted)
 
 
 def _import_of(module: ast.Module, name: str) -> str | None:

@@ -10,8 +10,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from .checks import MutantReadings, last_name
-from .forms import SuiteCheck, is_number
+from .checks import MutantReadings
+from .forms import SuiteCheck, is_number, last_name
 from .project import text_of
 from .readings import ValuesRead
 from .stated_bounds import greatest_bound

@@ -162,14 +162,22 @@ def test_the_readme_explains_every_survivor(journal: Journal) -> None:
 
 
 @pytest.mark.usefixtures("journal")
-def test_the_page_on_reading_a_report_quotes_what_is_printed(
-    project: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize(
+    ("page", "start"),
+    [("reading-a-report.md", "7 survivors, largest"), ("what-is-it.md", "no.  place")],
+)
+def test_pages_quote_what_is_printed(
+    page: str,
+    start: str,
+    project: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.setenv("COLUMNS", "100")
     assert main(["-C", str(project), "results"]) == 0
     printed = {line.rstrip() for line in capsys.readouterr().out.splitlines()}
-    page = blocks((EXAMPLE.parents[1] / "docs" / "reading-a-report.md").read_text(encoding="utf-8"))
-    (quote,) = (block for block in page if "survivors, largest" in block.text)
+    text = (EXAMPLE.parents[1] / "docs" / page).read_text(encoding="utf-8")
+    (quote,) = (block for block in blocks(text) if block.text.startswith(start))
     for line in quote.text.splitlines():
         assert line in printed or line.strip() in {"", "…"}
 

@@ -145,6 +145,44 @@ def test_a_check_that_runs_the_program_or_commands_the_robot_is_not_asked_elsewh
     assert statements == ["assert is_within(HOME, arm.x, 0.02)"]
 
 
+@pytest.mark.parametrize(
+    "check",
+    [
+        "assert arm.time < TIME",
+        "assert arm.elapsed() < TIME",
+        "assert is_within(TIME, arm.time, 0.5)",
+        "in_time(arm)",
+    ],
+)
+def test_a_deadline_of_another_test_is_not_asked_elsewhere(tmp_path: Path, check: str) -> None:
+    text = f"""
+        TIME = 3.0
+
+
+        def is_within(expected, seen, threshold):
+            return abs(expected - seen) <= threshold
+
+
+        def in_time(arm):
+            assert arm.time < TIME
+
+
+        def test_goes(arm):
+            assert arm.x
+
+
+        def test_hurries(arm):
+            {check}
+            assert arm.z < TIME
+    """
+    folder = make(tmp_path, {"test_it.py": text})
+    configuration = load_configuration(folder)
+    vocabulary = load_vocabulary(configuration.vocabulary, folder)
+    request = Request(configuration, vocabulary, rounds=1, seed=1, jobs=1)
+    suite = SuiteChecks.of(SuiteFiles(request, tests=("tests/test_it.py",)))
+    assert [found.statement for found in suite.reusable_checks(place(suite))] == ["assert arm.z < TIME"]
+
+
 def test_a_check_of_another_test_that_a_survivor_breaks_is_suggested_as_it_stands(suite: SuiteChecks) -> None:
     at = place(suite)
     opened, _ = suite.reusable_checks(at)
