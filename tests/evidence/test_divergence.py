@@ -11,6 +11,7 @@ from mutabot.evidence.paths import RecordedPaths
 from mutabot.evidence.recording import RecordedCall, Recording, Track, TrackKind
 from mutabot.evidence.spread import spread_between
 from mutabot.evidence.story import diverged
+from mutabot.model.world_difference import Diverged
 from tests.evidence.worlds import SHELF, TABLE, Place, apart, line, recorded, story
 
 #: up from the shelf, over to the table, down, and away
@@ -91,6 +92,16 @@ def test_a_detour_is_as_far_as_it_leads() -> None:
     assert found.at == pytest.approx(2.0, abs=0.11)
 
 
+def ended_after_a_call(began: float) -> Diverged:
+    """A mutant's test that ends at 1.9 s; its last call took 0.3 s."""
+    calls = [RecordedCall(began, began + 0.3, "arm:move", "mission.py:8", None, {}, {})]
+    original = recorded(CARRIED, BOX, held_until(41), [*calls, *ORIGINAL.calls])  # type: ignore[arg-type]
+    mutant = recorded(CARRIED[:20], BOX[:20], held_until(41), calls)  # type: ignore[arg-type]
+    found = apart(original, mutant, is_cut=True)
+    assert found is not None
+    return found
+
+
 def test_of_a_test_that_was_cut_only_what_was_is_compared() -> None:
     found = apart(recorded(CARRIED), recorded(CARRIED[:20]), is_cut=True)
     assert found is None
@@ -98,6 +109,7 @@ def test_of_a_test_that_was_cut_only_what_was_is_compared() -> None:
     assert cut is not None
     assert cut.story == "the test ended at 1.9 s instead of 5.0 s"
     assert cut.what == "mission.py:9 open is no longer called"
+    assert ended_after_a_call(1.2).at == pytest.approx(1.5)
 
 
 def test_what_equal_runs_differ_by_is_no_difference() -> None:

@@ -19,14 +19,18 @@ _ROUNDING = 1e-6
 def first_difference(
     original: Sequence[RecordedCall], mutant: Sequence[RecordedCall]
 ) -> tuple[str, float | None] | None:
-    """Describe the first call that differs, and when it began; None if all calls are the same."""
+    """Describe the first call that differs, and when it began; None if all calls are the same.
+
+    A call that the mutant no longer makes has no time of its own: that is after the last one that it makes.
+    """
     for first, second in zip(original, mutant, strict=False):
         found = _difference(first, second)
         if found:
             return found, second.began
     if len(mutant) < len(original):
         first = original[len(mutant)]
-        return f"{_name(first)} is no longer called", first.began
+        last = mutant[-1] if mutant else first
+        return f"{_name(first)} is no longer called", last.began if last.ended is None else last.ended
     if len(original) < len(mutant):
         second = mutant[len(original)]
         return f"{_name(second)} is called once more", second.began

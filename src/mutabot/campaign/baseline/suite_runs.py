@@ -139,8 +139,8 @@ class _Suite:
             _refuse(result, self.request.arguments)
             counts = Counter(end.outcome for end in result.ends)
             counted = ", ".join(f"{count} {outcome}" for outcome, count in counts.items())
-            which = f"round {round + 1}, run {repetition + 1}"
-            self.progress.advance(f"baseline, {which}: {counted or 'nothing ran'}")
+            which = f"round {round + 1}{f', run {repetition + 1}' if repetition else ''}"
+            self.progress.advance(f"{which}: {counted or 'nothing ran'}")
 
     def _note(self, remark: Remark) -> None:
         self.remarks.append(remark)

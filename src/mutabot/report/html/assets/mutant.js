@@ -248,7 +248,7 @@
     return h("div", { class: "measured" },
       table("What was measured", ["", "mutant", "original", "at", "deviation"], diverged.measurements.map((one) => [`${one.name} of ${one.thing}`, known(one.value, one.unit), known(one.original, one.unit), one.at === null || one.at === undefined ? "–" : `${number(one.at, 3)} s`, one.unit === "s" ? "–" : units(one)])),
       table("How far apart", ["", "first", "largest", "at", "at the end", "off its path", "deviation"], diverged.apart.map((one) => [one.name, `${number(one.first, 3)} s`, amount(one.largest, one.unit), `${number(one.at, 3)} s`, amount(one.final, one.unit), known(one.aside, one.unit), units(one)])),
-      h("p", { class: "hint" }, "Deviation: the difference in units of the original's own spread over seeds, in this test."));
+      h("p", { class: "hint" }, "Deviation: the difference in units of the original's own spread over seeds in this test, or of 1 mm, 0.5 deg, 0.01 m/s or a hundredth of a value's range where that is less. A turn on the way only counts a tenth."));
   }
 
   // Who looked, suggestion, rounds
