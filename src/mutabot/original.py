@@ -105,14 +105,14 @@ def idle_of(operation: Operation, pattern: Pattern | None, answers: RecordedAnsw
     return Idle(tuple(map(json.loads, numbers)), of_test, tuple(answers.varying)).data()
 
 
-_HINT = "say in the vocabulary what to answer while the robot does nothing: idle = …"
+_HINT = "say in the vocabulary what it returns while the robot does nothing: idle = …"
 
 
 def _kept(note: Any) -> Any:
     if is_plain(note):
         return note
     if "kept" not in note:
-        raise NoAnswerError(f"what it answers cannot be kept ({note['opaque']}); {_HINT}")
+        raise NoAnswerError(f"it returns a {note['opaque']}, which cannot be stored; {_HINT}")
     return note["kept"]
 
 

@@ -268,8 +268,8 @@ def test_a_mutant_without_an_answer_is_left_out_with_the_reason(
     left_out = plan_only(request_for(folder), Quiet()).left_out
     (reason,) = [omission.reason for omission in left_out if omission.id.endswith(":skip")]
     assert reason == (
-        "what it answers cannot be kept (builtins:function); "
-        "say in the vocabulary what to answer while the robot does nothing: idle = …"
+        "it returns a builtins:function, which cannot be stored; "
+        "say in the vocabulary what it returns while the robot does nothing: idle = …"
     )
 
 

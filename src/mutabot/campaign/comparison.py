@@ -24,6 +24,8 @@ from mutabot.model.units import apart
 DEFAULT_TOLERANCE = 1e-6
 #: multiples of its tolerance that a difference counts which is not one of numbers
 OTHER_WORLD = 1e9
+#: a difference of an end so far below the original's own spread is not listed beside one that exceeds it
+_FAR_BELOW = 0.1
 #: an operation and the notation of its command
 CommandName = tuple[str, str | None]
 
@@ -181,9 +183,14 @@ def compare(
     distances = [difference.deviation(spread.ends) for difference in found]
     different = [difference for difference in found if difference.distance > 1.0]
     beyond = [difference.text for difference in different if difference.deviation(spread.ends) > 1.0]
-    within = [difference.text for difference in different if difference.deviation(spread.ends) <= 1.0]
-
     way, way_line, moments = _on_the_way(original, mutant, probes, spread)
+    # beside one that matters, what is far below the original's own spread is left out
+    least = _FAR_BELOW if beyond or (way or 0.0) > 1.0 else -1.0
+    within = [
+        difference.text
+        for difference in different
+        if difference.is_clock or least < difference.deviation(spread.ends) <= 1.0
+    ]
     is_same_end = original.outcome == mutant.outcome
     end_line = "" if is_same_end else f"the test ended {mutant.outcome} instead of {original.outcome}"
     probe_lines = (*beyond, way_line, *within) if (way or 0.0) > 1.0 else (*beyond, *within, way_line)

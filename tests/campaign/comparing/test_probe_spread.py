@@ -111,10 +111,10 @@ def first_words(found: Difference) -> list[str]:
 @pytest.mark.parametrize(
     ("end", "lines"),
     [
-        ({"tool__theta_z": 90.01}, ["on the way", "world.tool"]),
+        ({"tool__theta_z": 90.2}, ["on the way", "world.tool"]),
         ({"tool__theta_z": 91.0}, ["world.tool", "on the way"]),
-        ({"tool__theta_z": 90.01, "time": 11.7}, ["on the way", "the clock world.time", "world.tool"]),
-        ({"tool__theta_z": 90.01, "time": 10.05}, ["on the way", "world.tool", "the clock world.time"]),
+        ({"tool__theta_z": 90.2, "time": 11.7}, ["on the way", "the clock world.time", "world.tool"]),
+        ({"tool__theta_z": 90.2, "time": 10.05}, ["on the way", "world.tool", "the clock world.time"]),
     ],
 )
 def test_an_end_within_the_originals_spread_is_reported_after_a_detour_and_a_delay(
@@ -167,3 +167,12 @@ def test_runs_in_which_something_else_was_to_be_done_are_no_spread() -> None:
     )
     assert spread(red, again, blue).ends[f"{TARGET}.tool.x"] == pytest.approx(0.002)
     assert spread(red, blue).ends[f"{TARGET}.tool.x"] == pytest.approx(0.2)
+
+
+@pytest.mark.parametrize(("x", "expected"), [(0.8, ["world.tool.x"]), (0.5, ["world.tool"])])
+def test_beside_what_matters_differences_far_below_the_spread_are_left_out(
+    x: float, expected: list[str]
+) -> None:
+    found = compare(seen(), seen(tool__x=x, tool__theta_z=90.005), [MARKED])
+    assert [line.partition(":")[0] for line in found.divergence] == expected
+    assert not found.indistinguishable

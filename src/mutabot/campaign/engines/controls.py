@@ -192,7 +192,7 @@ def _settled(campaign: Campaign, control: Control, outcome: Outcome) -> Iterator
                 "must when it was tried again"
             )
         outcome = again
-    campaign.progress.advance(f"{control.name}, {control.subject}: {wrong or 'passed'}")
+    campaign.progress.advance(f"{control.name}, {control.subject}: {wrong or 'as expected'}")
     yield control.end(outcome)
     if wrong is not None:
         where, advice = "", ""
