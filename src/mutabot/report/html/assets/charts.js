@@ -48,7 +48,7 @@
     low < 0 && high > 0 ? svg("line", { class: "zero", x1: 0, x2: WIDE, y1: y(0), y2: y(0) }) : null,
     fault !== null && fault !== undefined ? svg("line", { class: "fault", x1: x(fault), x2: x(fault), y1: 0, y2: HIGH }) : null,
     lines.map((line, index) => svg("polyline", { class: index ? "of-mutant" : "of-original", points: line.map(([time, value]) => `${x(time).toFixed(1)},${y(value).toFixed(1)}`).join(" ") })), cursor);
-    const now = h("span", { class: "now" });
+    const now = h("span", { class: "now", title: "original → mutant, at the moment shown" });
     clock.on((time) => {
       cursor.setAttribute("x1", x(time));
       cursor.setAttribute("x2", x(time));

@@ -286,7 +286,7 @@
     if (!found && !page.next) return "";
     if (!found) return h("section", { "aria-labelledby": "suggestion" }, h("h2", { id: "suggestion" }, "What to do"), h("p", null, mutabot.coded(page.next)));
     return h("section", { class: "suggestion", "aria-labelledby": "suggestion" }, h("h2", { id: "suggestion" }, "A check that would catch it"), found.test ? h("p", null, "In ", h("code", null, found.test), ":") : null,
-      h("pre", { tabindex: "0" }, h("code", null, found.code)), h("ul", { class: "plain" }, (found.notes || []).map((note) => h("li", null, note))));
+      h("pre", { tabindex: "0" }, h("code", null, found.code)), h("ul", { class: "plain" }, (found.notes || []).map((note) => h("li", null, mutabot.coded(note)))));
   }
 
   function rounds(one, page) {

@@ -115,7 +115,7 @@
   function toActOn(all, campaign) {
     const survivors = all.filter((one) => one.status !== "not covered"), uncovered = all.filter((one) => one.status === "not covered");
     const idle = uncovered.length, partly = uncovered.filter((one) => one.killed).length;
-    const more = idle ? h("p", { class: "hint" }, h("a", { href: address(["mutants"], { status: "not covered" }) }, `${count(idle, "mutant")} not covered`), `, since no test reaches the place${partly ? ` (${partly === idle ? "" : `${partly} of them `}in some round; killed in the others)` : ""}`) : null;
+    const more = idle ? h("p", { class: "hint" }, h("a", { href: address(["mutants"], { status: "not covered" }) }, `${count(idle, "mutant")} not covered`), `, since no test reaches the place${partly ? `${partly === idle ? "" : `; ${partly} of them`} in some round; killed in the others` : ""}`) : null;
     let [loud, calm] = [false, true].map((is) => survivors.filter((one) => one.indistinguishable === is));
     const isRanked = loud.length > 1 && loud.some((one) => one.deviation);
     if (!loud.length && calm.length <= SHOWN) [loud, calm] = [calm, []]; // else nothing would say which faults these are
