@@ -381,3 +381,36 @@ def test_a_robot_may_count_what_by_to_asks_it(
     project = write_project(tmp_path, mission, tests, robot=COUNTING, vocabulary=WHERE)
     found = run(project, engine=engine)
     assert found["mission.py:run:arm.move_by#1:dx:by-to"].verdict is verdict
+
+
+@pytest.mark.parametrize("engine", ["auto", REPLAY])
+@pytest.mark.parametrize(
+    "arm",
+    [
+        "mock.Mock()",
+        "mock.Mock(**{'position.return_value': None})",
+        "SimpleNamespace(move_by=print)",
+        "SimpleNamespace(move_by=print, position=lambda: 'here')",
+        "type('Fake', (Arm,), {'position': lambda self: [1.0]})()",
+        "type('Fake', (Arm,), {'position': lambda self: 1 / 0})()",
+    ],
+)
+def test_by_to_leaves_what_does_not_tell_where_it_is(tmp_path: Path, arm: str, engine: str) -> None:
+    tests = f"""
+        from types import SimpleNamespace
+        from unittest import mock
+
+        import mission
+        from robot import Arm
+
+        def test_the_robot():
+            mission.run(Arm())
+
+        def test_what_stands_in():
+            mission.run({arm})
+    """
+    mission = "def run(arm):\n    arm.move_by(0.25)\n"
+    project = write_project(tmp_path, mission, tests, robot=COUNTING, vocabulary=WHERE)
+    found = run(project, engine=engine)["mission.py:run:arm.move_by#1:dx:by-to"]
+    assert (found.verdict, found.hits) == (Verdict.NO_EFFECT, 2)
+    assert "a mock or a fake stands here, and does not tell where it is" in found.away

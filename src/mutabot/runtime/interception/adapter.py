@@ -33,6 +33,7 @@ from mutabot.model.signature import ANYTHING, parse_signature, signature_of
 from mutabot.runtime.interception.call_faults import why_not
 from mutabot.runtime.interception.live import copied
 from mutabot.runtime.targets.target import NOWHERE, CallPlace, Handler, Where, resolve
+from mutabot.runtime.targets.wrapper import WRAPPERS, Method, unbound
 
 #: containers that a program may change after it got them
 _CHANGEABLE = frozenset({list, dict, set, bytearray})
@@ -449,13 +450,28 @@ class Adapter:
         return getattr(owner, name)
 
     async def _where_is(self, invocation: Invocation, pattern: Pattern | None, quantity: Quantity) -> float:
-        """Return the current value of a quantity: ask the robot; for a topic, take the last message."""
+        """Return the current value of a quantity: ask the robot; for a topic, take the last message.
+
+        Raises Unchanged where a mock or a fake stands in for the robot, and does not tell it.
+        """
         own = pattern.current if pattern is not None else None
         reading = self.readings.get(own or self.operation.current or "")
         if reading is None:
             raise LookupError(f"{self.operation.target} names no reading of where {quantity.name} is")
+        if reading.named is not None:
+            return self._place(reading, quantity, None)
+        found = self._other(reading.target, invocation)
+        is_own = not callable(found) or (type(found) is not Method and type(unbound(found)) in WRAPPERS)
+        try:
+            return self._place(reading, quantity, await self._ask(found))
+        except Exception as error:
+            if isinstance(error, Unchanged) or (is_own and not invocation.where.stands_in):
+                raise
+            raise Unchanged("a mock or a fake stands here, and does not tell where it is") from error
+
+    def _place(self, reading: Operation, quantity: Quantity, value: Any) -> float:
+        """Return the current value of a quantity from what its reading gave, or what last came by."""
         is_named = reading.named is not None
-        value = None if is_named else await self._ask(reading, invocation)
         lately = self.lately.get(reading.target, {})
         for part in reading.readings if is_named else reading.result:
             if is_reading_of(part, quantity):
@@ -465,8 +481,7 @@ class Adapter:
                 return quantity.from_unit(float(number), part.unit) if part.unit else float(number)
         raise Unchanged(f"{reading.target} does not read the {quantity.axis} of a {quantity.kind}")
 
-    async def _ask(self, reading: Operation, invocation: Invocation) -> Any:
-        value = self._other(reading.target, invocation)
+    async def _ask(self, value: Any) -> Any:
         if callable(value):
             self.asks += 1
             value = value()
