@@ -192,6 +192,15 @@ def test_things_that_left_their_paths_are_reported_together() -> None:
     )
 
 
+@pytest.mark.parametrize(("waits", "is_named"), [(6, True), (1, False)])
+def test_that_a_test_took_much_longer_is_named_before_lesser_differences(waits: int, is_named: bool) -> None:
+    goals = ((1.0, 0.3, 0.025), (1.2, 0.4, 0.025))
+    tool, box = ([SHELF] * waits + [SHELF, *line(SHELF, goal, 1.0), *[goal] * 10] for goal in goals)
+    parts = told(recorded(tool, box), recorded(WAY, WAY)).story.split("; ")
+    assert len(parts) == 3
+    assert any(part.startswith("the test took 2.6 s (original: 2 s)") for part in parts) is is_named
+
+
 def test_what_turns_the_same_way_at_other_moments_is_not_turned_aside() -> None:
     usual = turning(*range(0, 180, 10))
     found = diverged("test", RecordedPaths(usual), RecordedPaths(turning(*range(5, 175, 10), 170)))

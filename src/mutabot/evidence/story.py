@@ -45,6 +45,8 @@ _EARLY, _OTHER_TIME = 1.0, 0.5
 _SLOW = 0.3
 #: share of its range by which fingers move that let something go, and the s before and after that
 _OPENED, _BEFORE, _AFTER = 0.05, 0.3, 0.2
+#: share of a test's duration that is named before lesser differences
+_MUCH = 0.1
 #: s that is no delay
 _NO_DELAY = 0.1
 
@@ -152,7 +154,8 @@ class _ComparedRuns:
             parts = [*_asides(significant)] or [self._delay()]
         late = next((measurement for measurement in measured if measurement.name == DURATION), None)
         if late is not None and any(not deviation.is_delay for deviation in apart):  # else the delay says so
-            parts.append(f"the test took {_beside(late, 3)}")
+            where = _MOST_PARTS - 1 if _is_long(late) else len(parts)
+            parts.insert(where, f"the test took {_beside(late, 3)}")
         text = "; ".join(list(dict.fromkeys(parts))[:_MOST_PARTS])
         if text and self.spread.scatters:
             return f"only in a test whose end the original itself scatters ({self.spread.scatters}): {text}"
@@ -308,6 +311,12 @@ def _beside(measurement: Measurement, digits: int = 2) -> str:
 
 def _amount(value: float, unit: str = "m", digits: int = 2) -> str:
     return value_with_unit(float(f"{value:.{digits}g}"), unit)
+
+
+def _is_long(late: Measurement) -> bool:
+    """Return whether a test took so much more or less time that a reader must be told."""
+    usual = late.original or 0.0
+    return abs((late.value or 0.0) - usual) > _MUCH * usual
 
 
 def _is_significant(deviation: Apart) -> bool:
