@@ -15,6 +15,7 @@ from typing import Any
 
 import pytest
 
+from tests.forked_processes import Interpreter, forked_processes
 from tests.processor_time import ProcessorTime
 
 
@@ -85,6 +86,13 @@ def parsed_once() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(PathDistribution, "metadata", property(metadata))
         yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def interpreter(bare: None) -> Iterator[Interpreter]:
+    """Campaigns import pytest once for a thousand of their processes."""
+    with forked_processes() as interpreter:
+        yield interpreter
 
 
 @pytest.fixture

@@ -26,6 +26,7 @@ from mutabot.execution.interruption import (
 )
 from mutabot.journal.journal import Journal
 from tests.campaign.project import REPLAY, Quiet, request_for, write_project
+from tests.forked_processes import Interpreter
 
 #: what happened in the present test
 passed: list[str] = []
@@ -39,6 +40,11 @@ def press() -> None:
 def descriptors() -> set[str]:
     """The open descriptors, and where they lead."""
     return {str(path.readlink()) for path in Path("/proc/self/fd").iterdir() if path.exists()}
+
+
+def children() -> list[str]:
+    """The processes that this one has started and not yet waited for."""
+    return Path(f"/proc/self/task/{os.getpid()}/children").read_text(encoding="ascii").split()
 
 
 def kept(work: Callable[[], None]) -> list[str]:
@@ -173,18 +179,18 @@ MOMENTS = {
 @pytest.mark.parametrize("engine", ["fork", REPLAY])
 @pytest.mark.parametrize("moment", MOMENTS)
 def test_an_interruption_at_any_moment_leaves_nothing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, moment: str, engine: str
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, interpreter: Interpreter, moment: str, engine: str
 ) -> None:
     mission = "def run(arm):\n    arm.move_by(0.25)\n"
     tests = "import mission\nfrom robot import Arm\n\ndef test_run():\n    mission.run(Arm())\n"
     write_project(tmp_path, mission, tests)
     request = request_for(tmp_path, engine=engine)
-    before = descriptors()
+    interpreter.start()
+    before = descriptors(), children()
     owner, name = MOMENTS[moment]
     monkeypatch.setattr(owner, name, after(getattr(owner, name)))
     is_there = engine == "fork" or ("fork server" not in moment and "copy" not in moment)
     with pytest.raises(KeyboardInterrupt) if is_there else nullcontext():
         run_campaign(request, Quiet())
-    assert descriptors() == before
+    assert (descriptors(), children()) == before
     assert not list((tmp_path / ".mutabot").glob("work-*"))
-    assert not Path(f"/proc/self/task/{os.getpid()}/children").read_text(encoding="ascii").split()

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests import command
 
 PACKAGE = Path(__file__).parent / "package"
 SCORE_TOO_LOW, USAGE, ERRORS = 1, 2, 4
@@ -169,9 +170,8 @@ def python(path: Path | None, *arguments: str) -> subprocess.CompletedProcess[st
 
 
 def mutabot(path: Path | None, project: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    """Run mutabot's command line on a project."""
-    code = "import sys; from mutabot.cli.app import main; sys.exit(main())"
-    return python(path, "-c", code, "-C", str(project), *arguments)
+    """Run mutabot's command line on a project, with ``path`` among the places where packages are found."""
+    return command.mutabot(project, *arguments, beside=path)
 
 
 def broken_plug_in(folder: Path, name: str, code: str) -> Path:

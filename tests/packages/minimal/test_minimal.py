@@ -26,6 +26,13 @@ PLANTED = st.tuples(
     st.sampled_from("xy"),
     st.frozensets(st.sampled_from("abcd")),
 )
+APPROACH = """import robot
+
+def run():
+    for _ in range(5):
+        if robot.distance() > 0.101:
+            robot.forward(0.01)
+"""
 Planted = tuple[str, int, str, frozenset[str]]
 
 
@@ -105,6 +112,8 @@ def test_a_campaign_that_stopped_at_the_first_test_has_no_minimal_set() -> None:
 
 
 def test_a_campaign_of_two_families_has_one_set(project: Path) -> None:
+    # without the loop, which mutants make endless: each of those computes until its time is up
+    (project / "approach.py").write_text(APPROACH, encoding="utf-8")
     done = mutabot(None, project, "minimal", "--family", "robot,conventional", "--json")
     assert done.returncode == 0, done.stderr
     found: Mapping[str, object] = json.loads(done.stdout)
