@@ -161,12 +161,12 @@ def test_a_second_world_in_a_test_is_no_leap() -> None:
     assert facts_of(RecordedPaths(recording))[SPEED, "tool"].value == 0.0
 
 
-def with_margin(*margins: float) -> Recording:
-    """A tool that stands still, beside a limit."""
+def with_margin(*margins: float, rises: float = 0.0) -> Recording:
+    """A tool beside a limit, which stands still until it rises at last, m."""
     recorder = recorders.begin()
     now = [0]
     feed = Feed(lambda: now[0] / 10)
-    feed.point("tool", lambda: (0.0, 0.0, 1.0))
+    feed.point("tool", lambda: (0.0, 0.0, 1.0 + (rises if now[0] == len(margins) - 1 else 0.0)))
     feed.value("joint limit margin", lambda: margins[now[0]], unit="deg")
     for now[0] in range(len(margins)):
         feed.tick()
@@ -187,3 +187,10 @@ def test_how_near_to_a_limit_is_reported_if_it_is_much_nearer(margins: tuple[flo
     found = apart(with_margin(40.0, 38.0, 40.0), with_margin(*margins))
     assert found is not None
     assert found.story == story
+
+
+def test_the_first_difference_is_where_the_robot_is_rather_than_how_near_to_a_limit() -> None:
+    found = apart(with_margin(40.0, 38.0, 40.0), with_margin(40.0, 30.0, 40.0, rises=0.1))
+    assert found is not None
+    assert found.what == "tool is at a different position than in the original run"
+    assert found.at == pytest.approx(0.2)

@@ -70,7 +70,10 @@ def diverged(
     """
     both = _ComparedRuns(original, mutant, spread or Spread(), is_cut)
     apart = differences(original.paths, mutant.paths, noise or {}, both.spread, both.until)
-    found = [(deviation.first, _first_text(deviation)) for deviation in apart]
+    places = [
+        gap for gap in apart if not gap.name.endswith("margin")
+    ]  # a margin follows from where the robot is
+    found = [(gap.first, _first_text(gap)) for gap in places or apart]
     call = first_difference(original.recording.calls, mutant.recording.calls)
     if call is not None and call[1] is not None:
         found.append((call[1], call[0]))
