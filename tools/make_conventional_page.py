@@ -23,7 +23,7 @@ HEAD = """\
 
 The operators of textbooks change program text and know nothing of robots. Use them to compare with the
 [robot operators](operators.md): `--family conventional`, `text` or `robot,conventional,text`. Family `bugs`
-has what [real bugs](real-bugs.md) of robot programs ask for beyond these. It is planted only on request.
+has what [real bugs](real-bugs.md) of robot programs ask for beyond these; it runs only if it is named.
 
 No file is changed: while the program is imported, each place is compiled as *the original, unless an
 alternative is chosen*. Tracebacks show your text. Values computed during import (constants, taught points,
@@ -99,7 +99,7 @@ def _code(text: str) -> str:
 
 def _note(example: TextExample) -> str:
     kinds = [kind.partition(":")[2] or kind for kind in example.kinds.values()]
-    seen = f"of type {kinds[0]}" if kinds and example.after else ""
+    seen = f"where the value is of type {kinds[0]}" if kinds and example.after else ""
     others = [f"`{name}` has the type of {_listed(found)}" for name, found in example.variables.items()]
     return "; ".join(part for part in (example.note, seen, *(others if example.after else [])) if part)
 

@@ -44,20 +44,22 @@ TEXT = """\
 <!-- Written by tools/make_scaling_page.py from benchmarks/scaling.json. Do not edit. -->
 
 A campaign of {mutants} mutants × {rounds} rounds on 1 to 1,000 workers, simulated event by event with
-measured costs (nobody has run one yet). Efficiency is the speed-up per worker: at 100 workers {replay} with
-replay, {fork} with fork.
+measured costs (nobody has run one yet). The speed-up is against one worker without chance, which never dies
+and whose runs take their mean time: with fork it takes {alone} h. Efficiency is the speed-up per worker: at
+100 workers {replay} with replay, {fork} with fork.
 
 ![Speed-up curves, and bars of what time is lost to](img/scaling.svg)
 
 Time is lost to *the original's own runs* (each part of a fork parent runs its tests again), *shipping*, *the
-controller* (a worker whose answer waits is idle), *stragglers* (idle time at the end that equal units and no
-deaths would avoid) and *the last unit*.
+controller* (a worker whose answer waits is idle), *beginning* (a worker starts and gets the project), *dead
+workers* (what they had done of a unit), *stragglers* (idle time at the end that equal units and no deaths
+would avoid) and *the last unit*.
 
 {curve}
 
 The controller is the limit: one process that takes {replay_ms} ms or {fork_ms} ms per outcome. Mutants that
 take longer than here (a few seconds with replay, a quarter of a second with fork) keep as many more workers
-busy. With one worker, a death in the uncut fork parent loses half a round.
+busy. With one worker, each death in an uncut fork parent loses half a round: hence 0.63.
 
 ## How large should a unit be?
 
@@ -136,7 +138,7 @@ def bars(found: Mapping[str, Any]) -> Iterator[str]:
             x += part
         y += 27
     for number, (words, colour) in enumerate(LOST.values()):
-        x, y = left - 70 + 145 * (number % 3), top + 276 + 20 * (number // 3)
+        x, y = left - 70 + (0, 175, 300)[number % 3], top + 276 + 20 * (number // 3)
         yield f'<rect x="{x:.1f}" y="{y - 10:.1f}" width="12" height="12" fill="{colour}"/>'
         yield text(x + 18, y, words, 12)
 
@@ -186,6 +188,7 @@ def page(data: Mapping[str, Any]) -> str:
         rounds=found["rounds"],
         replay=f"{row_of(found, 'replay', 100)['efficiency']:.2f}",
         fork=f"{row_of(found, 'fork', 100)['efficiency']:.2f}",
+        alone=f"{row_of(found, 'fork', 1)['hours'] * row_of(found, 'fork', 1)['speed_up']:.0f}",
         curve=_curve_table(found),
         sizes=_size_table(found),
         baselines=_baselines(found),
@@ -216,7 +219,7 @@ def _curve_table(found: Mapping[str, Any]) -> str:
     rows = [
         (
             engine, f"{row['workers']:,}", f"{row['units']:,}", f"{row['hours']:,.1f}",
-            f"{row['speed_up']:,.0f}", f"{row['efficiency']:.2f}",
+            f"{row['speed_up']:,.1f}", f"{row['efficiency']:.2f}",
             f"{row['controller']:.0%}",
         )
         for engine in ENGINES

@@ -144,7 +144,7 @@ class Arm:
                 allowed = low if target[index] < low else high
                 excess = math.degrees(abs(target[index] - allowed))
                 raise MotionRefused(
-                    f"motion refused: joint {index + 1} would go to {math.degrees(target[index]):.1f} deg, "
+                    f"joint {index + 1} would go to {math.degrees(target[index]):.1f} deg, "
                     f"{excess:.1f} deg beyond its limit of {math.degrees(allowed):.1f} deg",
                     limit=f"joint {index + 1}",
                     value=math.degrees(target[index]),
@@ -267,7 +267,7 @@ class Arm:
         pace, limit = abs(belt.speed()), self._model.tool_limits.speed
         if pace > limit:
             raise MotionRefused(
-                f"motion refused: the belt's {pace:.3f} m/s are {pace - limit:.3f} m/s more than the "
+                f"the belt's {pace:.3f} m/s are {pace - limit:.3f} m/s more than the "
                 f"tool's limit of {limit} m/s",
                 limit="tool speed",
                 value=pace,
@@ -438,16 +438,14 @@ class Arm:
 
     def _check_ready(self) -> None:
         if self._stop is not None:
-            raise MotionRefused(
-                f"motion refused: not acknowledged: {self._stop}", limit="protective stop"
-            ) from self._stop
+            raise MotionRefused(f"not acknowledged: {self._stop}", limit="protective stop") from self._stop
 
         if self._move is not None or self._lost is not None:
-            raise MotionRefused("motion refused: another one is under way", limit="motion under way")
+            raise MotionRefused("another motion is under way", limit="motion under way")
 
     def _check_base(self) -> None:
         if self._tracking is not None:
-            raise MotionRefused("motion refused: the arm tracks a belt", limit="tracking")
+            raise MotionRefused("the arm tracks a belt", limit="tracking")
 
     def is_under_way(self, move: Move) -> bool:
         """Return whether a motion has not ended; see `Move.done`."""

@@ -75,7 +75,7 @@ class ToolPath:
             MotionRefused: some point of the path is out of reach or limits; nothing has moved.
         """
         if self._path is not None:
-            raise MotionRefused("motion refused: the path was travelled already", limit="path")
+            raise MotionRefused("the path was travelled already", limit="path")
         path = RoundedPath([Waypoint(*self._begin(), 0.0), *self._points])
         move = self._start(path, speed)
         self._path, self._speed, self._looked = path, speed, self._clock()

@@ -28,7 +28,7 @@ def vocabulary_text(drafts: Sequence[Proposal | MessageEntry], program: Sequence
     """Return the text of the vocabulary file; what would not load is at its end, as comments."""
     head = (
         f"# Drafted by `mutabot init` from {', '.join(program)}. Lines follow from names, docstrings and\n"
-        "# values that were seen. To answer a question, correct the line and take its number sign away."
+        "# values that were seen. Where a line asks a `question:`, correct it and take its number sign away."
     )
     texts = [
         (entry_text(draft) if isinstance(draft, MessageEntry) else operation_text(draft), draft)

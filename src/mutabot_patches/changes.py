@@ -123,7 +123,7 @@ def _is_same_program(file: ChangedFile) -> bool:
         after = ast.parse(file.after)
     except (SyntaxError, ValueError) as error:
         line = f", line {error.lineno}" if isinstance(error, SyntaxError) and error.lineno else ""
-        raise PatchError(f"it leaves {file.path} no Python: {error.args[0]}{line}") from None
+        raise PatchError(f"{file.path} would no longer be valid Python: {error.args[0]}{line}") from None
     if file.before is None:
         return False
     try:

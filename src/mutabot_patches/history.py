@@ -60,7 +60,7 @@ def reverted(root: Path, commits: str, match: str, paths: Sequence[str]) -> Iter
     Args:
         root: the project's folder.
         commits: a range as git writes it: ``v1.0..HEAD``.
-        match: a regular expression that a message fits in any place, whatever the case.
+        match: a regular expression to search for in messages, ignoring case.
         paths: files and folders of the program, relative to ``root``; all if empty.
 
     Raises UsageError.

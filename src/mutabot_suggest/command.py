@@ -74,7 +74,7 @@ def _survivors_of(results: Results, selected: Sequence[MutantResult]) -> list[Mu
             f"the journal holds no mutants ({results.state}): run `mutabot run` first"
         )
     if not results.done:
-        raise NothingToSuggestError("no mutant has been run yet: continue with `mutabot run`")
+        raise NothingToSuggestError("no mutant has been run yet: `mutabot run` runs them")
     # where no test comes, no check helps
     survivors = [survivor for survivor in results.survivors if survivor.status is not Verdict.NOT_COVERED]
     if not survivors:

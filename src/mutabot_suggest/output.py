@@ -55,7 +55,8 @@ def check_lines(check: ProvenCheck, found: Suggestions, *, with_proof: bool = Tr
         where = f"where `{check.after}` is made" if check.after else "where it ends"
         lines = check.statement.splitlines()
         imports = [f"  {line}" for line in check.by_hand.splitlines() if line not in lines]
-        yield f"another tool makes this test: add the check by hand {where}{', with' if imports else ''}"
+        with_imports = ", with" if imports else ""
+        yield f"this test is generated, as by pytest-bdd: add the check by hand {where}{with_imports}"
         yield from imports
 
 

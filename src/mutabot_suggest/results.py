@@ -89,7 +89,7 @@ class Suggestions:
         numbers: number of each survivor by its id.
         descriptions: what each survivor does, by its id.
         rounds: rounds of the campaign.
-        seeds: fresh seeds that were run for the bands, and as many others for the proof.
+        seeds: fresh seeds that were run to find values and tolerances, and as many others for the proof.
     """
 
     checks: tuple[ProvenCheck, ...] = ()

@@ -65,7 +65,7 @@ def suggest(
         request: as the campaign's was.
         chosen: the survivors that are to be killed.
         progress: shows what is going on.
-        seeds: how many fresh seeds are run for the bands, and as many others for the proof.
+        seeds: how many fresh seeds are run to find values and tolerances, and as many others for the proof.
 
     Raises NothingToSuggestError if there is nothing to kill or to look at, and what a campaign raises.
     """

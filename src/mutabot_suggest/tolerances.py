@@ -130,9 +130,10 @@ class StatedTolerances:
 
 
 def stated_in(module: ast.AST | None) -> tuple[set[str], dict[str, float]]:
-    """Return what tests compare, and the largest tolerances that their text states.
+    """Return the expressions that tests compare, and the largest tolerance that their text states for each.
 
-    By the last name of what they look at, and by all of it with an equals sign before it.
+    Keys of the tolerances are the last name of what is compared, ``x``, and the whole expression after an
+    equals sign, ``=tool.x``.
     """
     compared: set[str] = set()
     tolerances: dict[str, float] = {}

@@ -128,7 +128,7 @@ class WorldLadder:
 
     @property
     def robust_to(self) -> float | None:
-        """The magnitude up to which all are lived with; None if the smallest is not."""
+        """The largest magnitude that is lived with, as are all smaller ones; None if the smallest is not."""
         lived = takewhile(lambda pair: pair[1] is WorldEnd.LIVED, self.ends.items())
         return max((size for size, _ in lived), default=None)
 

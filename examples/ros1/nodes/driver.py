@@ -78,7 +78,7 @@ class Driver:
 
     def _move(self, message: TwistStamped) -> None:
         if message.header.frame_id != FRAME:
-            raise MotionRefused(f"motion refused: no frame {message.header.frame_id!r}", limit="frame")
+            raise MotionRefused(f"no frame {message.header.frame_id!r}", limit="frame")
         linear, angular = message.twist.linear, message.twist.angular
         angles = (math.degrees(angle) for angle in (angular.x, angular.y, angular.z))
         self._cell.arm.move_by(linear.x, linear.y, linear.z, *angles)

@@ -34,7 +34,7 @@ from .streams import guarded_streams
 _LONGEST = 400
 #: mutabot's own commands: their module in this folder, and what ``--help`` says of them
 _OWN = {
-    "check": ("campaign:check", "Try the set-up without running mutants."),
+    "check": ("campaign:check", "Try the set-up: tests, sites, and the two control mutants."),
     "list": ("campaign:list_", "List the mutants that would run."),
     "operators": ("campaign:operators", "List the operators and the bugs they stand for."),
     "run": ("campaign:run", "Run the campaign, or continue it."),

@@ -36,7 +36,7 @@ def operators(context: CommandContext, family: options.Families = None, json: bo
 
 
 def check(context: CommandContext, request: Annotated[Request, options.Setting], json: bool = False) -> None:
-    """Try the set-up without running mutants."""
+    """Try the set-up: tests, sites, and the two control mutants."""
     with context.progress() as progress:
         report = checking.check(request, progress)
     context.print_json(report.data) if json else context.print("\n".join(report.lines))

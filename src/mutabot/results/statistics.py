@@ -205,7 +205,7 @@ class _Cells:
         return squares / (size * (size - 1))
 
     def variance(self) -> tuple[float, float]:
-        """V of ``crossed`` with its degrees of freedom."""
+        """Return the variance of the score (V of ``crossed``) with its degrees of freedom."""
         of_mutants, of_rounds = self.variance_of_mutants(), self.mean_square_of_rounds()
         excess = max(0.0, of_rounds - self.variance_of_cells())
         variance = of_mutants + excess

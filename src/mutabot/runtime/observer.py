@@ -199,7 +199,7 @@ class _Uses(Messages):
         super().__init__(lambda target, finding: None)
 
     def find(self, form: Form, name: str, node: str | None) -> Handler | None:
-        """Return the observer's handler of a use; None for a set-up, which is reported at once."""
+        """Return what carries a use out and reports it; None for a set-up, which is reported at once."""
         observer, locator = self._observer, self._locator
         if form not in _PASSING:
             caller = _caller(locator.locate(_getframe(1)))

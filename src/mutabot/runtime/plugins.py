@@ -195,7 +195,13 @@ def timers_held() -> Iterator[None]:
 
 
 def watched(test: str, seconds: float, by: str) -> Watched:
-    """Return the event that ``by`` ends this process with exit code 1 unless ``test`` ends in time."""
+    """Return the limit at which ``by`` ends this process with exit code 1 unless ``test`` has ended.
+
+    Args:
+        test: node id.
+        seconds: of wall clock, from now on.
+        by: what sets the limit: the name of the plug-in or option.
+    """
     until = monotonic() + left_out() + seconds
     return Watched(test, until, f"no end after {seconds:g} s of wall clock ({by})")
 

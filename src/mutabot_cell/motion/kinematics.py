@@ -110,7 +110,7 @@ class Kinematics:
                 return knots
             if count >= _MOST_KNOTS:
                 raise MotionRefused(
-                    "motion refused: the line passes a singularity, where joints would have to jump by "
+                    "the line passes a singularity, where joints would have to jump by "
                     f"{math.degrees(largest_step):.0f} deg",
                     limit="singularity",
                     excess=math.degrees(largest_step),
@@ -128,7 +128,7 @@ class Kinematics:
             if now * side < 0:
                 fraction = (index - 1) / (len(knots) - 1)
                 raise MotionRefused(
-                    f"motion refused: at {fraction:.0%} of the line the arm would go through a singularity "
+                    f"at {fraction:.0%} of the line the arm would go through a singularity "
                     "into another configuration of elbow or wrist; move the joints there first",
                     limit="singularity",
                     fraction=fraction,
@@ -222,7 +222,7 @@ class _Solver:
             if over[worst] > 0:
                 allowed = self._upper[worst] if free[worst] > self._upper[worst] else self._lower[worst]
                 return MotionRefused(
-                    f"motion refused: joint {worst + 1} would need {math.degrees(free[worst]):.1f} deg {at}, "
+                    f"joint {worst + 1} would need {math.degrees(free[worst]):.1f} deg {at}, "
                     f"{math.degrees(over[worst]):.1f} deg beyond its limit of "
                     f"{math.degrees(allowed):.1f} deg",
                     limit=f"joint {worst + 1}",
@@ -237,7 +237,7 @@ class _Solver:
         gap = float(np.linalg.norm(error[:3]))
         turn = math.degrees(float(np.linalg.norm(error[3:])))
         return MotionRefused(
-            f"motion refused: no joint angles within the limits reach the line {at}; the tool would stay "
+            f"no joint angles within the limits reach the line {at}; the tool would stay "
             f"{gap * 1000:.0f} mm and {turn:.1f} deg away from it",
             limit="reach",
             excess=gap,

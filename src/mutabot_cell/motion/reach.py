@@ -62,7 +62,7 @@ class WristReach:
             return
         fraction = next(part for part, away in zip(fractions, distances, strict=True) if away > length)
         raise MotionRefused(
-            f"motion refused: out of reach from {fraction:.0%} of the line: the wrist would be "
+            f"out of reach from {fraction:.0%} of the line: the wrist would be "
             f"{farthest:.3f} m from the shoulder, {(farthest - length) * 1000:.0f} mm more than the arm's "
             f"{length:.3f} m",
             limit="reach",

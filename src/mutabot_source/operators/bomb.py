@@ -24,7 +24,7 @@ _STATEMENTS = (
 
 
 class Bomb(ConventionalOperator):
-    """A statement raises as soon as it is reached: does any test get there, and would it notice?"""
+    """A statement becomes one that raises `Bomb`: does any test get there, and would it notice?"""
 
     name = "BSR"
     rank = 110

@@ -19,7 +19,7 @@ from mutabot_source.operator import (
 
 
 class ConditionalReplacement(ConventionalOperator):
-    """A condition's and becomes or, xor, one of its operands, always true, or always false."""
+    """A condition's `and` becomes `or`, exclusive or, one of its operands, always true, or always false."""
 
     name = "COR"
     is_common = True

@@ -45,7 +45,7 @@ HERE = "here = get_actual_tcp_pose()\n"
     ],
 )
 def test_a_motion_out_of_reach_is_refused(tmp_path: Path, name: str, text: str, place: str) -> None:
-    with pytest.raises(MotionRefused, match=rf"^{place}.*: motion refused: out of reach from .* \(in "):
+    with pytest.raises(MotionRefused, match=rf"^{place}.*: out of reach from .* \(in "):
         run(tmp_path, name, text)
 
 

@@ -141,7 +141,7 @@ def test_why_a_program_does_not_run_is_said(tmp_path: Path, monkeypatch: pytest.
     [
         ("ProgramError: a.script:1: movej(p): unreachable: no joint angles", "none of the arms gen3, ur5e, "),
         (
-            "MotionRefused: a.script:1: movel(p): motion refused: out of reach",
+            "MotionRefused: a.script:1: movel(p): out of reach",
             "none of the arms gen3, ur5e, ",
         ),
         (

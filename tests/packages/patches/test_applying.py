@@ -96,7 +96,7 @@ NONE = {
     ),
     "no Python": (
         HEAD + "@@ -1,2 +1,2 @@\n-line1 = 1\n+line1 = (1\n line2 = 2\n",
-        "it leaves x.py no Python: '(' was never closed, line 1",
+        "x.py would no longer be valid Python: '(' was never closed, line 1",
     ),
     "binary": (
         "diff --git a/x.png b/x.png\nindex 1234567..89abcde 100644\n"

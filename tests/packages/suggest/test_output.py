@@ -30,14 +30,14 @@ def test_a_check_to_add_by_hand_stands_once_with_its_imports_below() -> None:
     lines = [*check_lines(CHECK, FOUND)]
     assert lines.count(CHECK.statement) == 1
     assert lines[-2:] == [
-        "another tool makes this test: add the check by hand where it ends, with",
+        "this test is generated, as by pytest-bdd: add the check by hand where it ends, with",
         "  from expected import is_near",
     ]
 
 
 def test_a_check_to_add_by_hand_without_imports_says_where_it_stands() -> None:
     lines = [*check_lines(replace(CHECK, by_hand=CHECK.statement, after="cell"), FOUND)]
-    assert lines[-1] == "another tool makes this test: add the check by hand where `cell` is made"
+    assert lines[-1] == "this test is generated, as by pytest-bdd: add the check by hand where `cell` is made"
 
 
 def printed(found: Suggestions) -> list[str]:

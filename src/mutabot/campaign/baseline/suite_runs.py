@@ -359,7 +359,7 @@ def _refuse(result: Result, arguments: Sequence[str]) -> None:
     if kept is not None:
         raise BaselineError(
             f"{kept.test}: a guard keeps a command of the original program from the robot: {kept.guarded}; "
-            "widen the guard if the command is right, and mend the program if it is not"
+            "widen the guard if the command is right, and correct the program if it is not"
         )
     broken = [end for end in result.ends if end.failure is not None and end.outcome == "failed"]
     if broken:

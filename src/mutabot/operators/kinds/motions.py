@@ -109,7 +109,7 @@ class Reverse(ValueOperator):
 
 
 class ByTo(ValueOperator):
-    """A relative amount is taken for an absolute target, or the reverse.
+    """A relative amount is taken for an absolute target, or an absolute target for a relative amount.
 
     Where: written translations and rotations whose operation has a current that reads them.
 

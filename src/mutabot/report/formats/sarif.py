@@ -69,8 +69,9 @@ def _rule(name: str, mutant: Mutant, material: Material) -> dict[str, Any]:
     return {
         "id": name,
         "shortDescription": {
-            "text": _message(f"No test notices {name}: {summary.partition('. ')[0].rstrip('.')}")
+            "text": _message(f"{summary.partition('. ')[0].rstrip('.')}: no test notices it")
         },
+        "fullDescription": {"text": _message(summary)},
         "help": {"text": _message(f"{summary}\n\n{_HELP}")},
         "properties": {"tags": ["mutation-testing", mutant.family]},
     }

@@ -449,7 +449,7 @@ class Recorded:
                 }
 
     def count(self, result: MutantResult) -> int:
-        """Count the recordings of a mutant."""
+        """Return how many recordings a mutant has."""
         return sum(len(self.evidence.tests(result.mutant.id, number)) for number in range(len(result.rounds)))
 
     def _places(self, result: MutantResult) -> Iterator[tuple[int, str]]:

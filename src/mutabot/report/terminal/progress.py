@@ -233,7 +233,7 @@ class Bar:
 class Lines:
     """Plain lines: the start and end of each stage, survivors, and the progress every half minute.
 
-    That line comes also while nothing ends: a CI that sees no output for minutes ends a job.
+    The progress is also printed while no mutant ends: a CI ends a job that prints nothing for minutes.
     """
 
     def __init__(self, console: Console, *, every: float = EVERY) -> None:

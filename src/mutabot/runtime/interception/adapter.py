@@ -479,7 +479,8 @@ class Adapter:
                 if number is None and is_named:
                     raise Unchanged("the position of the robot is not known yet")
                 return quantity.from_unit(float(number), part.unit) if part.unit else float(number)
-        raise Unchanged(f"{reading.target} does not read the {quantity.axis} of a {quantity.kind}")
+        missing = f"no {quantity.axis or 'value'} for a {quantity.kind}"
+        raise Unchanged(f"the result of {reading.target} has {missing}: describe it in the vocabulary")
 
     async def _ask(self, value: Any) -> Any:
         if callable(value):
