@@ -381,15 +381,15 @@ class Quantity:
         The container's type is kept: lists stay lists, tuples tuples, arrays arrays. An array of whole
         numbers becomes one of floating-point numbers.
         """
+        kind = getattr(getattr(value, "dtype", None), "kind", "")
         if cls.is_scalar(value):
-            is_unsigned = getattr(getattr(value, "dtype", None), "kind", "") == "u"  # which has no other sign
-            return change(int(value) if is_unsigned else value)
+            return change(int(value) if kind == "u" else value)  # an unsigned number has no other sign
         if isinstance(value, list | tuple) and value and all(cls.is_scalar(item) for item in value):
             return type(value)(change(item) for item in value)
         if isinstance(value, array) and len(value):
             return array(value.typecode if value.typecode in "fd" else "d", [change(item) for item in value])
-        if hasattr(value, "dtype") and getattr(value, "ndim", 0) == 1:
-            changed = value.copy() if value.dtype.kind == "f" else value.astype(float)
+        if kind in ("f", "i", "u") and getattr(value, "ndim", 0) == 1:
+            changed = value.copy() if kind == "f" else value.astype(float)
             for index in range(len(changed)):
                 changed[index] = change(changed[index])
             return changed

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from array import array
 from typing import Any
 
+import numpy as np
 import pytest
 
 from mutabot.model import Kind, Path, Quantity
@@ -70,3 +72,21 @@ def test_two_values_are_printed_with_as_many_digits_as_distinguish_them(
 def test_long_numbers_are_written_without_a_power_of_ten() -> None:
     numbers = {12345: "12345", 1000.0: "1000", -98765.4: "-98765", 0.00012345: "0.000123", 2.5e12: "2.5e+12"}
     assert {number: value_text(number, 3) for number in numbers} == numbers
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        np.array(["left"]), np.array([True]), np.array([1j]), np.array([None]), np.array(["now"], "M8[s]"),
+        np.zeros((2, 2)), np.array([(1.0,)], [("x", float)]), array("d"),
+    ],
+)  # fmt: skip
+def test_an_array_of_other_things_than_numbers_is_none_of_numbers(value: Any) -> None:
+    """A fake may get or give anything in the place of numbers."""
+    assert Quantity.map_numbers(value, lambda number: -number) is None
+
+
+@pytest.mark.parametrize("value", [np.array([1.5, -2.0], "f4"), np.array([3, 4], "u1"), array("b", [1])])
+def test_each_number_of_an_array_is_changed(value: Any) -> None:
+    changed: Any = Quantity.map_numbers(value, lambda number: -number)
+    assert list(changed) == [-float(number) for number in value]
