@@ -68,8 +68,8 @@ PAGE = """\
 What the [disturbances](world.md) of the simulated cell do to one test of each example, in one round. "Lived
 with" and "suffered unseen" go by what the test itself allows; in examples/paper, by 1 mm and 0.5°.
 The last column says what happened at the largest magnitude that is suffered unseen, else at the threshold,
-else at the largest one tried; a protective stop names what touched at that moment, however lightly. `vacuum
-leak` is an opening in m² (1e-06: a hole of 1.1 mm).
+else at the largest one tried; a protective stop names what touched at that moment, however lightly. Long
+values in messages are cut by pytest. `vacuum leak` is an opening in m² (1e-06: a hole of 1.1 mm).
 """
 
 

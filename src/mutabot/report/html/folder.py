@@ -60,7 +60,7 @@ _LADDERS = 200
 _MARK_TEXT = "A report of mutabot: open index.html. `mutabot report --html` replaces it.\n"
 #: what a report consists of
 _PAGE, _ASSETS, _DATA = "index.html", "assets", "data"
-#: bytes that all data may take; recordings make room
+#: bytes that data may take beside the original's recordings; those of mutants make room
 LIMIT = 23_000_000
 #: bytes that all films may take beside the data
 FILMS_LIMIT = 40_000_000
@@ -173,7 +173,8 @@ def write_folder(folder: Path, contents: Contents, limit: int = LIMIT) -> Writte
     """Write the report; it replaces an older one in the folder. Raises UsageError if it cannot be written.
 
     Args:
-        limit: bytes that all data may take; recordings that have no room are left out.
+        limit: bytes that data may take beside the original's recordings; a mutant's recordings that have no
+            room are left out.
     """
     check_folder(folder)
     try:
