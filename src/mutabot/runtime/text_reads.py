@@ -14,6 +14,7 @@ import sys
 from collections.abc import Callable, Iterable, Iterator
 from functools import wraps
 from glob import glob
+from itertools import chain
 from sys import _getframe
 from types import FrameType
 from typing import Any
@@ -21,7 +22,7 @@ from typing import Any
 from mutabot.extensions import packages
 from mutabot.languages.registry import unit_parser
 from mutabot.runtime.paths import real_folder
-from mutabot.runtime.processes.environment import FRAMES, STARTS, listen
+from mutabot.runtime.processes.environment import FRAMES, STARTS, listen, why_unseen
 
 #: our own audit event: lines of a file are taken, from the cache or not
 _LINES = "mutabot.getlines"
@@ -42,6 +43,7 @@ _HARMLESS = (
 #: between the words of a command line, which a shell may read
 _BETWEEN_WORDS = re.compile(r"[\s;|&<>()='\"]+")
 _PYTHON = re.compile(r"python[\d.]*")
+_NAME = re.compile(r"[^\W\d]\w*(\.\w+)*")
 
 
 class TextReads:
@@ -98,7 +100,8 @@ class TextReads:
     def _on_start(self, event: str, arguments: tuple[Any, ...]) -> None:
         """Report program files that the command line of another program names, as it may read them.
 
-        Python is none: it runs them with the mutant in them.
+        Python is none: it runs them with the mutant in them, unless it cannot join the campaign. What it then
+        runs or imports, it reads.
         """
         if is_own(_getframe(FRAMES)):
             return
@@ -107,10 +110,13 @@ class TextReads:
         # of anything else the start itself will say what is wrong with it
         lines = [os.fsdecode(part) for part in parts if isinstance(part, str | bytes | os.PathLike)]
         words = [word for line in lines for word in _BETWEEN_WORDS.split(line) if word]
+        folder = os.fsdecode(arguments[2] if event == "subprocess.Popen" and arguments[2] else ".")
+        found: Iterable[str] = _python_files(folder, words[1:] if len(lines) > 1 else words)
         if any(_PYTHON.fullmatch(os.path.basename(word)) for word in words):
-            return
-        folder = arguments[2] if event == "subprocess.Popen" and arguments[2] else "."
-        for path in _python_files(os.fsdecode(folder), words[1:] if len(lines) > 1 else words):
+            if event == "os.system" or why_unseen(event, arguments) is None:
+                return
+            found = chain(found, _modules(folder, words))
+        for path in found:
             name = self.name(path)
             if name is not None:
                 self._on_read(name, True)
@@ -122,6 +128,15 @@ def _python_files(folder: str, words: Iterable[str]) -> Iterator[str]:
         for path in glob(os.path.join(folder, word)) if word.endswith(".py") else ():
             if os.path.isfile(path) and not os.access(path, os.X_OK):
                 yield path
+
+
+def _modules(folder: str, words: Iterable[str]) -> Iterator[str]:
+    """Yield the files of modules in a folder that words name: ``-m cell``, ``import cell``, ``cell.go()``."""
+    for word in filter(_NAME.fullmatch, words):
+        parts = word.split(".")
+        for number in range(1, len(parts) + 1):
+            place = os.path.join(folder, *parts[:number])
+            yield from filter(os.path.isfile, (f"{place}.py", *glob(os.path.join(place, "*.py"))))
 
 
 def _audit_line_reads() -> None:

@@ -78,6 +78,15 @@ READERS = """
         subprocess.run("cat package/p*.py > other.txt", shell=True, cwd=HERE, check=True)
     def starts_python():
         subprocess.run([sys.executable, "mission.py"], cwd=HERE, check=True)
+    def starts_a_python_apart():
+        subprocess.run([sys.executable, "-S", "mission.py"], cwd=HERE, check=True)
+    def starts_a_module_apart():
+        subprocess.run([sys.executable, "-S", "-m", "mission"], cwd=HERE, check=True)
+    def starts_a_line_apart():
+        code = "import sys; sys.path.insert(0, ''); import mission; mission.fail"
+        subprocess.run([sys.executable, "-I", "-c", code], cwd=HERE, check=True)
+    def starts_python_without_the_campaigns_environment():
+        os.waitpid(os.posix_spawn(sys.executable, ["python", "mission.py"], {}), 0)
     def has_python_started():
         os.system(f"{sys.executable} mission.py")
     def starts_the_file():
@@ -139,7 +148,7 @@ def test_whatever_else_reads_has_the_text(found: dict[str, list[str]]) -> None:
     others = {name: read for name, read in found.items() if name not in NONE}
     wanted = {name: ["package/part.py"] if name in OF_PACKAGE else ["mission.py"] for name in others}
     wanted["copies_everything"] = ["package/__init__.py", "package/part.py"]
-    assert len(others) == 19
+    assert len(others) == 23
     assert others == wanted
 
 

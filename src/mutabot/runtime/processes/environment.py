@@ -356,11 +356,11 @@ class ProcessWatch:
         else:
             if starts_a_killer(event, arguments):
                 self.signalled.add(ANY_PROCESS)
-            if event != "os.system" and (why := _why_unseen(event, arguments)):
+            if event != "os.system" and (why := why_unseen(event, arguments)):
                 self._on_unseen(" ".join(_words(*arguments[:2])[:3]), why)
 
 
-def _why_unseen(event: str, arguments: tuple[Any, ...]) -> str | None:
+def why_unseen(event: str, arguments: tuple[Any, ...]) -> str | None:
     """Return why a Python process that is being started cannot join the campaign; None if it can."""
     command_line = _words(*arguments[:2])
     if not command_line or not os.path.basename(command_line[0]).startswith("python"):
