@@ -156,6 +156,8 @@ def test_fields_are_read_as_they_are_stored() -> None:
         ([Decimal(1), 2.0], [0.5, 3.0], [Decimal("0.5"), 3.0]),
         (Point(1.0, Decimal(2)), (0.5, 3.0), Point(0.5, Decimal("3.0"))),
         ("red", "blue", "blue"),
+        (np.array(2.0), 3.5, np.float64(3.5)),
+        (np.array(2.0, "f4"), False, np.float32(0.0)),
         (Fraction(1, 2), math.nan, None),
         # the digits that a floating-point number has no place for
         (Fraction(1, 3), -1 / 3, Fraction(-1, 3)),

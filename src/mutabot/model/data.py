@@ -129,7 +129,7 @@ def in_place_of(before: Any, value: Any) -> Any:
         return _exactly(before, value) if type(value) in (int, float) else value
     if is_of_numpy(before):
         is_scalar = not is_of_numpy(value) and not before.shape
-        return kind(value) if is_scalar and before.dtype.kind == "f" else value
+        return before.dtype.type(value) if is_scalar and before.dtype.kind == "f" else value
     is_subclass = any(issubclass(kind, base) and type(value) is base for base, _ in _PLAINLY)
     return _made(kind, value, value) if is_subclass else value
 
