@@ -11,6 +11,7 @@ from pathlib import Path
 from textwrap import dedent
 
 import pytest
+from tests import command
 
 import mutabot
 from campaign.project import write_project
@@ -125,7 +126,9 @@ def package(site: Path, extension: str, parts: str = "") -> Path:
 
 def mutabot_with(site: Path, folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
     """The command line, where packages in ``site`` are installed."""
-    return python(site, "-m", "mutabot", "-C", str(folder), *words)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("COLUMNS", "100")
+        return command.mutabot(folder, *words, beside=site)
 
 
 def python(site: Path, *words: str) -> subprocess.CompletedProcess[str]:

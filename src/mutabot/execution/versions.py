@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import platform
 import sys
+from functools import cache
 from importlib.metadata import distributions
 from pathlib import Path
 
@@ -30,8 +31,12 @@ def versions() -> dict[str, str]:
     return {**found, "mutabot": mutabot.__version__, "mutabot's own code": f"#{_own_code()}"}
 
 
+@cache
 def _own_code() -> str:
-    """Return a digest of mutabot's own code, where the version alone does not identify it."""
+    """Return a digest of mutabot's own code, where the version alone does not identify it.
+
+    It is that of this process, however many campaigns it runs.
+    """
     home = Path(mutabot.__file__).parent
     places = (*(home / part for part in _PARTS), *home.parent.glob("mutabot_*"))
     files = sorted(file for place in places for file in place.rglob("*.py"))

@@ -72,7 +72,13 @@ AFTER_ANOTHER = """
 
 @pytest.mark.parametrize("engine", ["auto", REPLAY])
 @pytest.mark.parametrize(
-    "tests", [INSIDE, BESIDE, BELOW, AFTER_ANOTHER], ids=["in", "beside", "below", "two"]
+    "tests",
+    [
+        pytest.param(INSIDE, id="in", marks=pytest.mark.whole),
+        pytest.param(BESIDE, id="beside"),
+        pytest.param(BELOW, id="below"),
+        pytest.param(AFTER_ANOTHER, id="two"),
+    ],
 )
 def test_what_comes_after_long_polling_is_judged(tmp_path: Path, tests: str, engine: str) -> None:
     write_project(tmp_path, PROGRAM, tests)

@@ -176,7 +176,7 @@ def test_it_does_not_come_that_far(new_cell, mutabot_seed):
     ("motion", "suite", "verdict"),
     [
         ("MoveL FAR,v200", "", "refused"),
-        ("MoveJ FAR,v200", "", "refused"),
+        pytest.param("MoveJ FAR,v200", "", "refused", marks=pytest.mark.whole),
         pytest.param("MoveL FAR,v200", CAUGHT, "killed", marks=pytest.mark.whole),
         # the function that asks for joint angles raises an error of the program: no motion was asked for
         ("MoveAbsJ CalcJointT(FAR,tool0),v200", "", "killed"),

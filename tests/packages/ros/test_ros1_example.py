@@ -53,6 +53,7 @@ def test_mutants_in_the_mission_node_end_as_they_must(project: Path) -> None:
     assert {mutant: outcome.verdict for mutant, outcome in found.items()} == EXPECTED
 
 
+@pytest.mark.whole
 def test_a_mission_in_the_tests_own_process_ends_alike(project: Path, tmp_path: Path) -> None:
     copy = tmp_path / "here"
     shutil.copytree(project, copy, ignore=shutil.ignore_patterns(".*", "__pycache__"))
