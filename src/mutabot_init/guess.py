@@ -15,6 +15,7 @@ from .observations import WatchedPart
 from .words import (
     ASKING,
     DIRECTIONS,
+    FRAMES,
     GRIPPER,
     HOUSEKEEPING,
     INPUTS,
@@ -222,7 +223,7 @@ def _moved(
     if kind not in ("translation", "rotation"):
         return measured(table, kind, unit, name, setting)
     guess = measured(table, "angle" if kind == "rotation" else "length", unit, name, setting)
-    if guess.table["kind"] != kind:
+    if guess.table.get("kind") != kind:
         return guess
     mode = mode or _mode(setting)
     if mode is None:
@@ -360,7 +361,8 @@ def guess_reading(name: str, setting: NameContext) -> Guess:
         words = words[1:]
     noun, stem = noun_of(words), "_".join(words)
     is_predicate = bool({"is", "has", "can"} & about)
-    is_reply = about & HOUSEKEEPING and (is_predicate or REPLIES & set(setting.owner))
+    is_reply = bool(about & HOUSEKEEPING) and (is_predicate or bool(REPLIES & set(setting.owner)))
+    is_reply = is_reply or (is_predicate and bool(FRAMES & set(setting.owner)))  # which message it is
     if noun == "none" or INPUTS & set(setting.owner) or is_reply or SETTINGS & set(words):
         return Guess()
     if _are_truth(setting) or (is_predicate and all(value in (0, 1) for value in setting.values)):

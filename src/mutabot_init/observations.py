@@ -100,6 +100,7 @@ class WatchedCallable:
         problem: why its calls cannot be intercepted; empty if they can.
         raised: exceptions that it raised, or that its text raises.
         stands_in: whether it was seen on a mock or a fake.
+        reaches: whether it is a call of a mock or a fake, or leads to one.
         leads_to_names: whether it uses a name of a middleware.
         sites: ``file:line`` to the number of calls there.
         arguments: values by argument.
@@ -129,6 +130,7 @@ class WatchedCallable:
     problem: str = ""
     raised: list[str] = field(default_factory=list)
     stands_in: bool = False
+    reaches: bool = False
     leads_to_names: bool = False
     sites: dict[str, int] = field(default_factory=dict)
     arguments: dict[str, Values] = field(default_factory=dict)

@@ -48,6 +48,7 @@ def _add_call(calls: dict[tuple[str, bool, bool], WatchedCallable], call: Watche
     first = calls.setdefault((call.target, call.of_tests, call.is_set), call)
     if first is not call:
         first.leads_to_names |= call.leads_to_names
+        first.reaches |= call.reaches
         first.sites = dict(Counter(first.sites) + Counter(call.sites))
 
 

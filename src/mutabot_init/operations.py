@@ -161,7 +161,7 @@ def _proposal(call: WatchedCallable, groups: Sequence[Sequence[Any]]) -> Proposa
     elif proposal.message is not None:
         texts = [value for part in call.arguments[proposal.message].parts.values() for value in part.values]
         proposal.patterns = patterns_of([str(text) for text in texts])
-        if is_exchange(call):
+        if is_exchange(call) or _answers(call):
             for notation, guess in proposal.patterns:
                 if not guess.table and "{" not in notation:
                     guess.questions = ["does it command, or only ask?"]
@@ -480,6 +480,13 @@ def has_discriminator(call: WatchedCallable) -> bool:
 def is_read(call: WatchedCallable) -> bool:
     """Return whether a callable's commands read."""
     return bool(_READS & set(words_of(call.name))) and not is_exchange(call)
+
+
+def _answers(call: WatchedCallable) -> bool:
+    """Return whether its answers are different texts, as of questions, rather than one that confirms."""
+    part = call.result.parts.get("")
+    texts = [value for value in part.values if isinstance(value, str)] if part is not None else []
+    return len(texts) > 1
 
 
 def is_exchange(call: WatchedCallable) -> bool:

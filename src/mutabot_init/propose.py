@@ -127,7 +127,10 @@ class _Findings:
         self._watch(layout, limit)
         if self.is_empty and layout.below and self.run.outcomes and not self.run.trouble:
             notify("none of these calls looks like one of a robot; once more, with what the program imports")
-            self._watch(layout.with_below(), limit)
+            first = dict(vars(self))
+            self._watch(layout.with_below(), limit, reaching=True)
+            if self.is_empty:
+                vars(self).update(first)
         if self.is_empty:  # what is called at all may be skipped and repeated
             for operation in self.operations:
                 may_be_robot = self._may_be_robot(operation.call)
@@ -142,7 +145,8 @@ class _Findings:
             for line in proposer.lines(self._seen_by(name))
         ]
 
-    def _watch(self, layout: Layout, limit: float) -> None:
+    def _watch(self, layout: Layout, limit: float, *, reaching: bool = False) -> None:
+        """Watch a program; ``reaching``: only what reaches a mock or a fake of the tests may be a robot's."""
         self.layout = layout
         self.run = watch(layout, limit)
         mistake = next((problem for problem in self.run.problems if _MISTAKE.search(problem)), None)
@@ -156,6 +160,7 @@ class _Findings:
         self.named = entries(self.seen.uses)
         groups = compared_with(self.layout)
         mine, rest = _by_side([call for call in self.calls if not call.leads_to_names])
+        mine = [call for call in mine if call.reaches or not reaching]
         self.operations = proposals(self._new([call for call in mine if not call.own]), groups)
         if self.is_empty:  # program and robot share a file
             self.operations = proposals(mine, groups)

@@ -118,6 +118,7 @@ HOUSEKEEPING = _words(
 )
 #: what is asked of a connection, whatever follows
 LINKED = _words("connected alive online reachable ping")
+FRAMES = _words("frame packet pdu message telegram datagram")
 REPLIES = _words("response reply result error exception future pdu packet message status")
 #: what a person moves, and not the robot
 INPUTS = _words("joystick gamepad stick xbox keyboard mouse")

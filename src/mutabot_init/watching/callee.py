@@ -121,8 +121,12 @@ def method_of(value: Any, name: str) -> Callee | None:
     elif isinstance(value, type):
         classes = value.__mro__
     else:
-        if name in getattr(value, "__dict__", ()):
-            return function_of(getattr(value, name))
+        attributes = getattr(value, "__dict__", {})
+        if name in attributes:
+            found = attributes[name]
+            is_own = isinstance(found, MethodType) and found.__self__ is value
+            # a method put in the place of another one, which has its name
+            return function_of(found.__func__ if is_own and found.__name__ in attributes else found)
         classes = type(value).__mro__
     owner = next((cls for cls in classes if name in vars(cls)), None)
     if owner is None:

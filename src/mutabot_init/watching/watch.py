@@ -6,6 +6,7 @@ Every call, and every attribute that is read, comes here first. Nothing changes 
 from __future__ import annotations
 
 import inspect
+import os
 import re
 import sys
 import threading
@@ -97,6 +98,7 @@ class Watch(Observer):
         self._method_of = cache(method_of)
         self._function_of = lru_cache(_MOST_FUNCTIONS)(function_of)
         self._classes_named = cache(_classes_named)
+        self._is_fake_class = cache(self._is_of_test_side)
         self._uses: dict[tuple[Form, str, bool, bool], Use] = {}
         self._lock = threading.RLock()
         self._beside = {name: proposer.watch() for name, proposer in brought_proposers().items()}
@@ -105,18 +107,25 @@ class Watch(Observer):
         """Return what is called in the place of ``found``, which was read from ``receiver``."""
         if isinstance(found, type):
             return found
-        callee = self._function(found) if receiver is None else self._method(receiver, name)
-        if receiver is not None and not caller.is_test:
-            callee = self._replaced_callee(receiver, name, callee, found)
-        return self._wrapped(found, self._of(callee, caller), caller)
+        with suppress(Exception):  # looking at objects must not disturb the program
+            callee = self._function(found) if receiver is None else self._method(receiver, name)
+            if receiver is not None and not caller.is_test:
+                callee = self._replaced_callee(receiver, name, callee, found)
+            seen = self._of(callee, caller)
+            if not caller.is_test and (_is_mock(found) or _is_mock(receiver) or self._is_fake(receiver)):
+                for one in (*_under_way.get(), *filter(None, [seen])):
+                    one.call.reaches = True
+            return self._wrapped(found, seen, caller)
+        return found
 
     def read(self, name: str, found: Any, receiver: Any, caller: CallOrigin) -> None:
         """Record that an attribute was read from ``receiver``."""
-        raw = inspect.getattr_static(type(receiver), name, None)
-        if isinstance(raw, property | cached_property):
-            seen = self._of(method_of(receiver, name), caller)
-            if seen is not None and self._counts(seen, caller):
-                self._answer(seen, found)
+        with suppress(Exception):  # as above
+            raw = inspect.getattr_static(type(receiver), name, None)
+            if isinstance(raw, property | cached_property):
+                seen = self._of(method_of(receiver, name), caller)
+                if seen is not None and self._counts(seen, caller):
+                    self._answer(seen, found)
 
     def assigned(self, name: str, receiver: Any, values: Sequence[Any], caller: CallOrigin) -> None:
         """Record what is assigned to a property, or to an item of an object that is no plain container."""
@@ -157,6 +166,14 @@ class Watch(Observer):
 
     def _is_of_tests(self, callee: Callee) -> bool:
         return self.is_test(callee.file) is True
+
+    def _is_fake(self, value: Any) -> bool:
+        """Return whether an object's class, or a class itself, is one of the tests."""
+        return self._is_fake_class(value if isinstance(value, type) else type(value))
+
+    def _is_of_test_side(self, kind: type) -> bool:
+        module = sys.modules.get(kind.__module__)
+        return self.is_test(os.path.realpath(getattr(module, "__file__", None) or "")) is True
 
     def _is_test_class(self, callee: Callee) -> bool:
         """Return whether it is a method of a class of tests, which the program may call back."""

@@ -10,7 +10,7 @@ import pytest
 
 from mutabot.config.vocabulary import load_vocabulary
 from mutabot.model.operation import Operation
-from mutabot_init.guess import NameContext, guess_argument
+from mutabot_init.guess import NameContext, guess_argument, guess_reading
 from mutabot_init.layout import look
 from mutabot_init.propose import propose
 from mutabot_init.words import words_of
@@ -141,6 +141,36 @@ def test_where_the_program_calls_no_robot_what_it_imports_is_watched_as_well(tmp
     assert [*operations(tmp_path)] == ["flow.link:Link.write_and_read"]
 
 
+def test_of_what_the_program_imports_only_what_reaches_a_stand_in_of_the_tests_is_an_operation(
+    tmp_path: Path,
+) -> None:
+    driver = """
+        from flow import codec, link
+        class Meter:
+            def __init__(self): self.link = link.Link()
+            def flow(self): return float(self.link.write_and_read("A"))
+            def set_flow(self, value): self.link.write_and_read(f"AS {codec.push_down(value)}")
+        """
+    codec = "LOG = []\ndef push_down(value):\n    LOG.append(value)\n    return f'{value:.2f}'\n"
+    draft(tmp_path, {**METER, "flow/driver.py": driver, "flow/codec.py": codec})
+    assert [*operations(tmp_path)] == ["flow.link:Link.write_and_read"]
+
+
+def test_where_what_the_program_imports_reaches_no_stand_in_either_the_first_draft_is_kept(
+    tmp_path: Path,
+) -> None:
+    files = {
+        "tool/__init__.py": "",
+        "tool/top.py": "from tool import middle\nSIZE = middle.SIZE\n",
+        "tool/middle.py": "from tool import low\nSIZE = 1\ndef run(): low.push_down(2)\n",
+        "tool/low.py": "LOG = []\ndef push_down(value): LOG.append(value)\n",
+        "tests/test_top.py": "from tool import middle, top\ndef test_it(): middle.run()\n",
+    }
+    text = draft(tmp_path, files)
+    assert 'program = ["tool/top.py"]' in (tmp_path / "mutabot.toml").read_text()
+    assert "push_down" not in text
+
+
 def test_a_text_that_is_answered_is_a_command_if_it_says_a_number_and_else_a_question(tmp_path: Path) -> None:
     text = draft(tmp_path, METER)
     patterns = operations(tmp_path)["flow.link:Link.write_and_read"].patterns
@@ -223,6 +253,41 @@ def test_what_counts_builds_decodes_raises_connects_or_is_told_is_no_command(tmp
     assert [*found] == ["lab:Robot.set_lights", "lab:Robot.lights_on"]
     assert not found["lab:Robot.lights_on"].command
     assert re.findall(r"^\S*(?:type|update).*kind", text, re.MULTILINE) == []
+
+
+def test_texts_with_different_answers_are_asked_about_and_those_that_are_confirmed_are_commands(
+    tmp_path: Path,
+) -> None:
+    files = {
+        "link.py": """
+            class Link:
+                def __init__(self): self.sent = []
+                def send(self, command):
+                    self.sent.append(command)
+                    return {"ver": "9.4", "curpos": "1;2"}.get(command, "ok")
+                def send_order(self, order): self.sent.append(order); return "ok"
+            """,
+        "program.py": """
+            def run(link):
+                link.send("ver"); link.send("curpos"); link.send("lift 4")
+                link.send_order("open"); link.send_order("stop")
+            """,
+        "test_program.py": "import link, program\ndef test_it(): program.run(link.Link())\n",
+    }
+    draft(tmp_path, files)
+    found = {name: [pattern.text for pattern in one.patterns] for name, one in operations(tmp_path).items()}
+    assert found == {"link:Link.send": ["lift {height:g}"], "link:Link.send_order": ["open", "stop"]}
+
+
+def test_what_kind_of_message_it_is_is_no_reading() -> None:
+    assert not guess_reading(
+        "is_sensor", NameContext(("is", "sensor"), ("sensor", "frame"), values=[True])
+    ).table
+    assert guess_reading("is_moving", NameContext(("is", "moving"), ("arm",), values=[True])).table
+
+
+def test_a_time_beside_a_verb_of_motion_is_no_motion() -> None:
+    assert not guess_argument("x_ms", NameContext(("move",), values=[20])).table
 
 
 @pytest.mark.parametrize(

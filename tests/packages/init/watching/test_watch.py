@@ -72,6 +72,21 @@ import builtins
         module.refuse()
 
 
+def test_a_method_that_is_put_in_the_place_of_itself_is_called(monkeypatch: pytest.MonkeyPatch) -> None:
+    source = """
+class Command:
+    def execute(self): return 1
+def wrapped(command):
+    execute = command.execute
+    def other(self): return 1 + execute()
+    other.__name__ = "execute"
+    command.execute = other.__get__(command)
+    return command.execute()
+"""
+    module, _ = run(source, "wrapped.py", monkeypatch)
+    assert module.wrapped(module.Command()) == 2
+
+
 def test_what_cannot_be_looked_at_disturbs_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     class Wild:
         @property
