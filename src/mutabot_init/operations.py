@@ -27,6 +27,7 @@ from .words import (
     HELPERS,
     HOUSEKEEPING,
     IMPERATIVES,
+    KEEPERS,
     LINKED,
     MODES,
     OPPOSITES,
@@ -242,7 +243,8 @@ def _fills_buffer(call: WatchedCallable) -> bool:
 
 def _is_setup(call: WatchedCallable) -> bool:
     words = set(words_of(call.name))
-    if words_of(call.name)[:1] in (("on",), ("handle",)) and len(words) > 1:
+    first = words_of(call.name)[:1]
+    if first in (("handle",), ("notify",), ("emit",)) or (first == ("on",) and len(words) > 1):
         return True  # something is told to the program
     is_of_timeout = words_of(call.name)[-1:] in (("timeout",), ("settimeout",))
     hands_over = bool(call.arguments) and call.arguments.keys() <= CALLBACKS
@@ -254,6 +256,8 @@ def _is_command(call: WatchedCallable) -> bool:
     is_picture = "grab" in words and bool(CAMERAS & {*words, *words_of(call.owner)})
     is_state = _types(call.result) == {"bool"} and not call.arguments
     first, last = words_of(call.name)[:1], words_of(call.name)[-1:]
+    if not KEEPERS.isdisjoint(first):
+        return False
     is_asked = is_state and COMMANDS.isdisjoint(first) and not _SWITCHED.isdisjoint(last)
     if call.is_property or call.only_computes or is_picture or is_asked:
         return False
@@ -420,6 +424,7 @@ def _truth_values(name: str, call: WatchedCallable) -> frozenset[bool]:
 #: names of arguments that hold a text command
 MESSAGES = frozenset({"message", "command", "cmd", "msg", "text", "line", "order"})
 _NUMBER = re.compile(r"(?<![\w{])[-+]?\d+(?:\.\d+)?(?!\w)")
+_LETTER = re.compile(r"[^\W\d_]")
 _FIELD = re.compile(r"\{(\w+):g\}")
 _FIELDS = {"lift": "height", "drop": "height", "turn": "angle", "rotate": "angle", "wait": "seconds"}
 _READS, _WRITES = frozenset({"read", "get"}), frozenset({"write", "send", "set"})
@@ -434,7 +439,7 @@ _MOST_VALUES = 5
 def patterns_of(texts: Sequence[str]) -> list[tuple[str, Guess]]:
     """Return notations that match these texts, each with the meaning of its only field, if it has one."""
     notations: dict[str, list[float]] = {}
-    for text in filter(str.strip, texts):
+    for text in filter(_LETTER.search, texts):  # a number alone is no command
         numbers = [float(number) for number in _NUMBER.findall(text)]
         notations.setdefault(_notation(text), []).extend(numbers)
     found = []

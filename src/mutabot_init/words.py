@@ -83,6 +83,8 @@ COMPUTERS = _words(
 CODECS = _words("parse format encode decode serialize deserialize")
 #: how functions are called that make a request, which something else sends
 BUILDERS = _words("build prepare construct generate")
+#: how callables begin that keep something for later
+KEEPERS = _words("save store record remember adopt")
 #: what counts what was done
 BOOKS = _words("metric metrics statistic statistics stats")
 #: what is made ready before the robot does anything, and the clock of a simulator

@@ -225,6 +225,9 @@ NO_COMMANDS = {
 
         class Handler:
             def on_home(self, robot): LOG.append(robot)
+            def handle(self, message): LOG.append(message)
+            def notify(self, event, delay): LOG.append((event, delay))
+            def adopt_park(self, place): LOG.append(place)
 
         def prepare_write(values): LOG.append(values); return bytes(values)
 
@@ -241,6 +244,9 @@ NO_COMMANDS = {
             robot.raise_for_error()
             metrics.record_write(0.25)
             handler.on_home(robot)
+            handler.handle("stop 4")
+            handler.notify("moved", delay=0.5)
+            handler.adopt_park("left")
             return lab.Reply(lab.prepare_write([1, 2])).parse()
         """,
     "test_program.py": "import program\ndef test_it(): assert program.run()['type'] == 1\n",
@@ -269,7 +275,7 @@ def test_texts_with_different_answers_are_asked_about_and_those_that_are_confirm
             """,
         "program.py": """
             def run(link):
-                link.send("ver"); link.send("curpos"); link.send("lift 4")
+                link.send("ver"); link.send("curpos"); link.send("lift 4"); link.send("100.0")
                 link.send_order("open"); link.send_order("stop")
             """,
         "test_program.py": "import link, program\ndef test_it(): program.run(link.Link())\n",
