@@ -7,11 +7,9 @@ import os
 import signal
 import sys
 from collections.abc import Iterator
-from importlib.metadata import PathDistribution
 from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
 
 import pytest
 
@@ -69,23 +67,6 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 def bare() -> None:
     """Campaigns load no plug-in that is only there for our own tests: it takes longer than most tests."""
     os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
-
-
-@pytest.fixture(scope="session", autouse=True)
-def parsed_once() -> Iterator[None]:
-    """Each campaign asks what is installed: what that says is parsed once for a thousand campaigns."""
-    parse: Any = PathDistribution.metadata.fget  # type: ignore[attr-defined]
-    parsed: dict[str, Any] = {}
-
-    def metadata(self: Any) -> Any:
-        path = str(self._path)
-        if path not in parsed:
-            parsed[path] = parse(self)
-        return parsed[path]
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(PathDistribution, "metadata", property(metadata))
-        yield
 
 
 @pytest.fixture(scope="session", autouse=True)

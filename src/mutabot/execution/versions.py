@@ -6,7 +6,7 @@ import json
 import platform
 import sys
 from functools import cache
-from importlib.metadata import distributions
+from importlib.metadata import Distribution, distributions
 from pathlib import Path
 
 import mutabot
@@ -25,10 +25,23 @@ def versions() -> dict[str, str]:
         "machine": f"{sys.platform} {platform.machine()}",
     }
     for distribution in distributions():
-        name = (distribution.metadata["Name"] or "").lower()
+        name, version = name_and_version(distribution)
         if name and name not in _TOOLS and name != "mutabot":
-            found.setdefault(name, distribution.version)
+            found.setdefault(name, version)
     return {**found, "mutabot": mutabot.__version__, "mutabot's own code": f"#{_own_code()}"}
+
+
+def name_and_version(distribution: Distribution) -> tuple[str, str]:
+    """Return the name of a distribution, in lower case, and its version; empty for what it does not say.
+
+    ``distribution.metadata`` parses the long description as well, which takes the tenfold time.
+    """
+    texts = (distribution.read_text(file) for file in ("METADATA", "PKG-INFO", ""))
+    text = next(filter(None, texts), "").replace("\r\n", "\n")
+    head, _, _ = f"\n{text}".partition("\n\n")
+    fields = (line.partition(":") for line in reversed(head.splitlines()))  # of several, the first counts
+    found = {key.lower(): value.strip() for key, _, value in fields}
+    return found.get("name", "").lower(), found.get("version", "")
 
 
 @cache

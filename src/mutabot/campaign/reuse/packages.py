@@ -13,6 +13,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
+from mutabot.execution.versions import name_and_version
 from mutabot.extensions import GROUP, references
 
 from .snapshot import Snapshot, _digest_of
@@ -27,7 +28,7 @@ def code_of_packages(root: Path) -> dict[str, tuple[tuple[str, str], ...]]:
     """Return the files of each package that counts by content, with digests, except the project's own."""
     found: dict[str, tuple[tuple[str, str], ...]] = {}
     for distribution in distributions():
-        name = (distribution.metadata["Name"] or "").lower()
+        name, _ = name_and_version(distribution)
         if not name or name == GROUP or name in found:  # of several, Python uses the first
             continue
         places = set(_places(distribution, name))
