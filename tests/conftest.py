@@ -70,8 +70,11 @@ def bare() -> None:
 
 
 @pytest.fixture(scope="session", autouse=True)
-def interpreter(bare: None) -> Iterator[Interpreter]:
-    """Campaigns import pytest once for a thousand of their processes."""
+def interpreter(bare: None, request: pytest.FixtureRequest) -> Iterator[Interpreter | None]:
+    """In the short run campaigns import pytest once for a thousand of their processes; else as for a user."""
+    if request.config.option.markexpr != "not whole":
+        yield None
+        return
     with forked_processes() as interpreter:
         yield interpreter
 

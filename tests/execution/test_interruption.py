@@ -179,13 +179,14 @@ MOMENTS = {
 @pytest.mark.parametrize("engine", ["fork", REPLAY])
 @pytest.mark.parametrize("moment", MOMENTS)
 def test_an_interruption_at_any_moment_leaves_nothing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, interpreter: Interpreter, moment: str, engine: str
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, interpreter: Interpreter | None, moment: str, engine: str
 ) -> None:
     mission = "def run(arm):\n    arm.move_by(0.25)\n"
     tests = "import mission\nfrom robot import Arm\n\ndef test_run():\n    mission.run(Arm())\n"
     write_project(tmp_path, mission, tests)
     request = request_for(tmp_path, engine=engine)
-    interpreter.start()
+    if interpreter is not None:
+        interpreter.start()
     before = descriptors(), children()
     owner, name = MOMENTS[moment]
     monkeypatch.setattr(owner, name, after(getattr(owner, name)))
