@@ -34,7 +34,7 @@ def versions() -> dict[str, str]:
 def name_and_version(distribution: Distribution) -> tuple[str, str]:
     """Return the name of a distribution, in lower case, and its version; empty for what it does not say.
 
-    ``distribution.metadata`` parses the long description as well, which takes the tenfold time.
+    ``distribution.metadata`` parses the long description as well, which takes seven times as long.
     """
     texts = (distribution.read_text(file) for file in ("METADATA", "PKG-INFO", ""))
     text = next(filter(None, texts), "").replace("\r\n", "\n")
