@@ -284,7 +284,7 @@ def test_the_file_is_applied_to_the_last_campaign_without_a_run(
     [
         (["1"], "say why"),
         (["--why", "x"], "needs a mutant"),
-        (["99", "--why", "x"], "there is no mutant 99"),
+        (["99", "--why", "x"], "the last campaign has no mutant 99"),
         (["reverse", "--why", "x"], "is not a survivor (killed)"),
     ],
 )
