@@ -14,10 +14,11 @@ from dataclasses import field, replace
 from typing import Any, NamedTuple
 
 from mutabot.campaign.probe_readings import keys_of, quantities_meant, readings_of, step_text, value_of
+from mutabot.evidence.calls import what_was_done
 from mutabot.frozen import frozen
 from mutabot.model import Compared, Kind, Operation, Pattern, Probe, Quantity
 from mutabot.model.deviation import TOLERANCES, deviation_of
-from mutabot.model.quantity import distinct_texts, holds_number, is_number, value_text
+from mutabot.model.quantity import distinct_texts, is_number, value_text
 from mutabot.model.units import apart
 
 #: greatest difference of two equal numbers where the vocabulary names no probe
@@ -264,8 +265,8 @@ class ProbeSpread:
         A seed may decide what there is to do, such as where a box belongs: only runs in which the same was
         done are compared, if there are any.
         """
-        others = [*others]
-        others = [other for other in others if _done(other) == _done(first)] or others
+        others, done = [*others], _done(first)
+        others = [other for other in others if _done(other) == done] or others
         ends: dict[str, float] = {}
         ways: dict[str, float] = {}
         for other in others:
@@ -278,15 +279,7 @@ class ProbeSpread:
 
 
 def _done(run: Observation) -> frozenset[Any]:
-    """Return what was done in a run: its calls, and what they read that is no number."""
-    found = set[Any]()
-    for call in run.events:
-        read = call.read.items() if isinstance(call.read, Mapping) else enumerate(call.read or ())
-        found |= {
-            call.key,
-            *((call.key, name, str(value)) for name, value in read if not holds_number(value)),
-        }
-    return frozenset(found)
+    return what_was_done((call.key, call.read) for call in run.events)
 
 
 def _same_calls(original: Observation, mutant: Observation) -> int:

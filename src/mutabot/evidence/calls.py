@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from math import isclose
 from typing import TYPE_CHECKING, Any
 
 from mutabot.model.notation import Notation
-from mutabot.model.quantity import distinct_texts, is_number, value_text
+from mutabot.model.quantity import distinct_texts, holds_number, is_number, value_text
 
 if TYPE_CHECKING:
     from mutabot.evidence.recording import RecordedCall
@@ -35,6 +35,23 @@ def first_difference(
         second = mutant[len(original)]
         return f"{_name(second)} is called once more", second.began
     return None
+
+
+def what_was_done(calls: Iterable[tuple[Hashable, Any]]) -> frozenset[Any]:
+    """Return what was done in a run of a test: its calls, and what they read that is no number.
+
+    Args:
+        calls: what identifies each call, and the values that it read, by name or in a fixed order.
+    """
+    found = set[Any]()
+    for call, read in calls:
+        values = read.items() if isinstance(read, Mapping) else enumerate(_listed(read))
+        found |= {call, *((call, name, str(value)) for name, value in values if not holds_number(value))}
+    return frozenset(found)
+
+
+def _listed(read: Any) -> Sequence[Any]:
+    return read if isinstance(read, list | tuple) else ()
 
 
 def _difference(first: RecordedCall, second: RecordedCall) -> str:

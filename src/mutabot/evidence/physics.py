@@ -23,7 +23,7 @@ from mutabot.evidence.recording import TrackKind
 RELEASE, IMPACT, SLIP, DRAG = "release height", "impact speed", "slip", "drag"
 COLLISION, SPEED, DURATION, MARGIN = "collision speed", "greatest speed", "duration", "least margin"
 #: endings of the names of values for the distance to a limit
-_MARGIN = "margin"
+MARGIN_NAME = "margin"
 #: m: a thing that is let go lower than this is set down, and hits nothing
 SET_DOWN = 0.005
 #: m/s²
@@ -82,7 +82,7 @@ def _facts(contacts: RecordedContacts) -> Iterator[Fact]:
         yield from _drags(contacts, thing)
     yield from _collisions(contacts)
     for name, path in seen.paths.items():
-        if path.track.kind is TrackKind.VALUE and name.endswith(_MARGIN):
+        if path.track.kind is TrackKind.VALUE and name.endswith(MARGIN_NAME):
             least, time = min((row[0], time) for time, row in zip(path.when, path.rows, strict=True))
             yield Fact(MARGIN, name, least, time, unit=path.track.unit)
 

@@ -11,12 +11,12 @@ from itertools import combinations
 from math import dist
 from typing import TYPE_CHECKING, Any
 
+from mutabot.evidence.calls import what_was_done
 from mutabot.evidence.contacts import intervals_of
 from mutabot.evidence.differences import Measure, Spread, aside_of, measures_of
 from mutabot.evidence.physics import facts_of
 from mutabot.evidence.recording import TrackKind
 from mutabot.model.deviation import spread_of
-from mutabot.model.quantity import holds_number
 
 if TYPE_CHECKING:
     from mutabot.evidence.paths import RecordedPaths, Row, TrackPath
@@ -54,21 +54,11 @@ def spread_between(runs: Sequence[RecordedPaths]) -> Spread:
 
 
 def _alike(runs: Sequence[RecordedPaths]) -> list[list[RecordedPaths]]:
-    """Return the runs grouped by what was done in them; as one group if no two did the same.
-
-    That is which calls were made where, and what they read that is no number.
-    """
+    """Return the runs grouped by what was done in them; as one group if no two did the same."""
     found: dict[frozenset[Any], list[RecordedPaths]] = {}
     for run in runs:
-        calls = run.recording.calls
-        read = {
-            (call.place, name, str(value))
-            for call in calls
-            for name, value in call.read.items()
-            if not holds_number(value)
-        }
-        made = {(call.place, call.operation, call.pattern) for call in calls}
-        found.setdefault(frozenset(made | read), []).append(run)
+        calls = (((call.place, call.operation, call.pattern), call.read) for call in run.recording.calls)
+        found.setdefault(what_was_done(calls), []).append(run)
     return [*found.values()] if len(found) < len(runs) else [[*runs]]
 
 

@@ -22,6 +22,7 @@ from mutabot.evidence.physics import (
     DURATION,
     IMPACT,
     MARGIN,
+    MARGIN_NAME,
     RELEASE,
     SET_DOWN,
     SLIP,
@@ -70,9 +71,8 @@ def diverged(
     """
     both = _ComparedRuns(original, mutant, spread or Spread(), is_cut)
     apart = differences(original.paths, mutant.paths, noise or {}, both.spread, both.until)
-    places = [
-        gap for gap in apart if not gap.name.endswith("margin")
-    ]  # a margin follows from where the robot is
+    # a margin follows from where the robot is
+    places = [gap for gap in apart if not gap.name.endswith(MARGIN_NAME)]
     found = [(gap.first, _first_text(gap)) for gap in places or apart]
     call = first_difference(original.recording.calls, mutant.recording.calls)
     if call is not None and call[1] is not None:
@@ -325,7 +325,7 @@ def _is_long(late: Measurement) -> bool:
 def _is_significant(deviation: Apart) -> bool:
     """Return whether it is more than delay and the original's spread, and worth a sentence."""
     is_beyond = max(deviation.of_end, deviation.of_way) > 1.0
-    return is_beyond and not deviation.is_delay and not deviation.name.endswith("margin")
+    return is_beyond and not deviation.is_delay and not deviation.name.endswith(MARGIN_NAME)
 
 
 def _strayed(deviation: Apart, *, is_whole: bool) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import platform
 import sys
+from email.parser import HeaderParser
 from functools import cache
 from importlib.metadata import Distribution, distributions
 from pathlib import Path
@@ -38,10 +39,8 @@ def name_and_version(distribution: Distribution) -> tuple[str, str]:
     """
     texts = (distribution.read_text(file) for file in ("METADATA", "PKG-INFO", ""))
     text = next(filter(None, texts), "").replace("\r\n", "\n")
-    head, _, _ = f"\n{text}".partition("\n\n")
-    fields = (line.partition(":") for line in reversed(head.splitlines()))  # of several, the first counts
-    found = {key.lower(): value.strip() for key, _, value in fields}
-    return found.get("name", "").lower(), found.get("version", "")
+    headers = HeaderParser().parsestr(text.partition("\n\n")[0])
+    return (headers["Name"] or "").lower(), headers["Version"] or ""
 
 
 @cache
