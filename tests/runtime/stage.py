@@ -178,7 +178,7 @@ def take_away(session: Session) -> None:
         module, _, qualname = target.partition(":")
         with suppress(NotFoundError, AttributeError, TypeError, KeyError):
             owner, name, _ = resolve(sys.modules[module], qualname)
-            _put_back(owner, name, original)
+            _put_back(owner, name, original, _that_may_name(sys.modules[module], Path(session.job.root)))
     if session.messages is not None:
         session.messages.remove()
     mocks_as_ever()
@@ -190,7 +190,18 @@ def mocks_as_ever() -> None:
     classes.CallableMixin.__call__ = _MOCK_CALL
 
 
-def _put_back(owner: Any, name: str, original: Any) -> None:
+def _that_may_name(module: ModuleType, folder: Path) -> list[ModuleType]:
+    """Return the modules that may have names of their own for what this one defines.
+
+    The stage's modules are imported by none but its own; a walk through all others is slow.
+    """
+    found = [other for other in sys.modules.copy().values() if isinstance(other, ModuleType)]
+    if not (module.__file__ or "").startswith(str(folder)):
+        return found
+    return [other for other in found if (vars(other).get("__file__") or "").startswith(str(folder))]
+
+
+def _put_back(owner: Any, name: str, original: Any, modules: list[ModuleType]) -> None:
     wrapper = vars(owner).get(name)
     is_inherited = isinstance(owner, type) and any(
         vars(base).get(name) is original for base in owner.__mro__[1:]
@@ -199,9 +210,9 @@ def _put_back(owner: Any, name: str, original: Any) -> None:
         delattr(owner, name)
     else:
         setattr(owner, name, original)
-    for module in list(sys.modules.values()):
-        for key, value in list(getattr(module, "__dict__", {}).items()):
-            if value is wrapper and isinstance(module, ModuleType):
+    for module in modules:
+        for key, value in list(vars(module).items()):
+            if value is wrapper:
                 setattr(module, key, original)
 
 

@@ -110,6 +110,7 @@ class Dispatcher:
         calls: how often each site has been called in the running test, by operation and pattern.
         unmeant: where a callable was called that is an operation, but for none of its commands; noted only
             in the baseline.
+        ours: the packages whose frames lie between the program's call and the handler.
     """
 
     locator: Locator
@@ -128,6 +129,7 @@ class Dispatcher:
     given: dict[Adapter, CallPlace | None] = field(default_factory=dict)
     calls: Counter[tuple[Span, str, str | None]] = field(default_factory=Counter)
     unmeant: set[Span] = field(default_factory=set)
+    ours: frozenset[str] = field(default_factory=packages)
 
     def handler(self, adapter: Adapter) -> Handler:
         """Return the handler for an operation."""
@@ -212,8 +214,7 @@ class Dispatcher:
         """Return whether the program itself makes the call, rather than a library that it calls."""
         if where.code is not None or where.site is not None:
             return where.code is None
-        ours = packages()
-        while frame is not None and frame.f_globals.get("__name__", "").partition(".")[0] in ours:
+        while frame is not None and frame.f_globals.get("__name__", "").partition(".")[0] in self.ours:
             frame = frame.f_back
         return frame is not None and self.locator.locate_definition(frame.f_code) is not None
 
