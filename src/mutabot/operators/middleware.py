@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 from mutabot.errors import OperatorError
 from mutabot.model import Call, Middleware, Proceed, Quantity, Reply
 from mutabot.model.call import NO_DEFER
-from mutabot.model.quantity import Value, are_same, same
+from mutabot.model.quantity import Value, are_same, changes, same
 
 T = TypeVar("T")
 
@@ -59,6 +59,7 @@ class CallRecord:
     Attributes:
         call: the original call.
         performed: the calls that reached the robot.
+        changes: the values of the last of them that are new or differ from those of the original call.
         answered: the robot's answers to them.
         received: what the program received; None while the mutant is still at work.
         waits: seconds of the program's time that the mutant let pass, each time.
@@ -68,11 +69,18 @@ class CallRecord:
 
     call: Call
     performed: list[Call] = field(default_factory=list)
+    changes: Mapping[str, Value] = field(default_factory=dict)
     answered: list[Reply] = field(default_factory=list)
     received: Reply | None = None
     waits: list[float] = field(default_factory=list)
     deferred: list[Call] = field(default_factory=list)
     is_late: bool = False
+
+    def begins(self, call: Call) -> None:
+        """Note a call that is about to reach the robot."""
+        self.performed.append(call)
+        meant = call.pattern or call.operation
+        self.changes = changes(meant.arguments, self.call.values, call.values)
 
     @property
     def waited(self) -> float:
@@ -106,11 +114,8 @@ class CallRecord:
         performed = self.performed[0]
         if performed.reversed != self.call.reversed or performed.call_faults:
             return True
-        meant = self.call.pattern or self.call.operation
-        return not (
-            same(performed.payload, self.call.payload)
-            and are_same(meant.arguments, performed.values, self.call.values)
-        )
+        is_same_rest = same(performed.payload, self.call.payload)
+        return not is_same_rest or bool(self.changes) or performed.values.keys() != self.call.values.keys()
 
     @property
     def changed_reading(self) -> bool:
@@ -133,7 +138,7 @@ def recording(passage: CallRecord, proceed: Proceed) -> Proceed:
     """Return ``proceed`` with a record of the calls that go through it in ``passage``."""
 
     async def noted(call: Call) -> Reply:
-        passage.performed.append(call)
+        passage.begins(call)
         reply = await proceed(call)
         passage.answered.append(reply)
         return reply

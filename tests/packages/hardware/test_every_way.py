@@ -22,6 +22,7 @@ import pytest
 from mutabot.config.vocabulary import load_vocabulary
 from mutabot.errors import PathError
 from mutabot.model import Call, Operation
+from mutabot.model.quantity import Value, changes
 from mutabot.runtime.interception.adapter import Adapter, Invocation
 from mutabot.runtime.interception.guarding import CallGuard, CallGuards, GuardedCall, OperationGuard
 from mutabot_hardware.command_guard import unreadable
@@ -192,14 +193,15 @@ def _sent(adapter: Adapter, robot: Robot, random: Random, *, by_values: bool) ->
     target = adapter.operation.target
     of, args, kwargs = _ways(_numbers(random, wild=False) if by_values else wild)[target]
     call = adapter.to_call(Invocation(of(robot), robot, args, kwargs))
-    original = call
+    changed: Mapping[str, Value] | None = None
     if by_values:
-        meant = call.pattern or call.operation
+        original, meant = call, call.pattern or call.operation
         for quantity in random.sample(meant.arguments, random.randint(1, len(meant.arguments))):
             scale = quantity.from_unit(1.0, "m" if quantity.axis else "m/s")
             call = call.with_value(quantity, wild(scale))
+        changed = changes(meant.arguments, original.values, call.values)
     try:
-        adapter.perform(call, original)
+        adapter.perform(call, changed)
     except (GuardedCall, ValueError):  # a text cannot hold every number
         return False
     return True

@@ -316,7 +316,8 @@ class MutatedSite:
         due = [late for late in self._due if late[0] <= hits and (is_async or not late[1].made.is_async)]
         self._due = [late for late in self._due if late not in due]
         for _, mutated, call in due:
-            late = replace(mutated, passage=CallRecord(mutated.passage.call, [call], is_late=True))
+            late = replace(mutated, passage=CallRecord(mutated.passage.call, is_late=True))
+            late.passage.begins(call)
             late.does_nothing = False
             try:
                 await late.proceed(call)
@@ -517,7 +518,8 @@ class _MutatedCall:
         return any(frame.f_globals.get("__name__") in own for frame, _ in walk_tb(error.__traceback__))
 
     async def _perform(self, call: Call) -> Any:
-        action = partial(self.adapter.perform, call, self.passage.call)
+        is_own = call is self.passage.call
+        action = partial(self.adapter.perform, call, None if is_own else self.passage.changes)
         try:
             if call.call_faults:
                 await call_faults.before(call, self._report_before_death)

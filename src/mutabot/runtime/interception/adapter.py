@@ -28,7 +28,7 @@ from mutabot.model.enumeration import is_member, name_of
 from mutabot.model.notation import Notation
 from mutabot.model.operation import Form
 from mutabot.model.path import class_name
-from mutabot.model.quantity import Value, changes, is_reading_of
+from mutabot.model.quantity import Value, is_reading_of
 from mutabot.model.signature import ANYTHING, parse_signature, signature_of
 from mutabot.runtime.interception.call_faults import why_not
 from mutabot.runtime.interception.live import copied
@@ -357,12 +357,15 @@ class Adapter:
     def _report_problem(self, key: str, text: str) -> None:
         self.on_problem(key, PathError(text))
 
-    def perform(self, call: Call, original: Call) -> Any:
-        """Carry out a call and return the operation's own result (an awaitable for async ones)."""
+    def perform(self, call: Call, changed: Mapping[str, Value] | None) -> Any:
+        """Carry out a call and return the operation's own result (an awaitable for async ones).
+
+        ``changed``: its values that are not those of the program's call; None if it is that call.
+        """
         invocation: Invocation = call.payload
         fits = invocation.values is not None or self.operation.signature is not None
         self.commands += call.is_command and fits  # what does not fit never reaches the robot
-        if call is original:
+        if changed is None:
             if self.guard is not None:
                 self.guard.check(invocation)
             return invocation.caller(invocation.wrapped, invocation.args, invocation.kwargs)
@@ -370,7 +373,6 @@ class Adapter:
         meant = call.pattern if call.pattern is not None else call.operation
         opposite = meant.opposite if call.reversed and not is_text else None
         wrapped = self._other(opposite, invocation) if opposite is not None else invocation.wrapped
-        changed = changes(meant.arguments, original.values, call.values)
         args, kwargs = invocation.args, invocation.kwargs
         if invocation.values is not None and (changed or call.reversed):
             args, kwargs = invocation.changed(self._changed(call, changed))

@@ -250,9 +250,9 @@ class Dispatcher:
                     adapter.guard.check(invocation)
                 return _ALONE
             key = (site[0], call.operation.target, call.pattern.text if call.pattern is not None else None)
-            self.calls[key] += 1
+            self.calls[key] = number = self.calls[key] + 1
             stands_in = invocation.where.stands_in and self.recorder.answers is not None
-            made = SiteCall(site, call, self.calls[key], is_async, is_direct, stands_in)
+            made = SiteCall(site, call, number, is_async, is_direct, stands_in)
             try:
                 # 2. A fork parent forks for each mutant that differs from here on, and goes on as the
                 #    original; a fork comes back from here as its mutant.
@@ -288,7 +288,7 @@ class Dispatcher:
         call = made.call
         self.refused.begins(made)
         try:
-            result = adapter.perform(call, call)
+            result = adapter.perform(call, None)
             if made.is_async:
                 result = await result
         except BaseException as error:
