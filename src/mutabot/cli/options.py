@@ -32,8 +32,8 @@ Json = Annotated[bool, Option("--json", help="Print JSON.")]
 All = Annotated[bool, Option("--all", help="Also list every skipped mutant.")]
 EveryRound = Annotated[bool, Option("--all", help="Show all rounds and checks, and whole messages.")]
 _ONLY = (
-    "Only these mutants: id, number, numbers (3,16-20), file, file:line, operator, family or role; globs "
-    "too; @FILE for a list, one per line. Repeatable."
+    "Only these mutants: id, number, numbers (3,16-20), file, file:line, operator, family or role; * "
+    "and ? are wildcards; @FILE for a list, one per line. Repeatable."
 )
 _SKIP = "Exclude these mutants. Same syntax as --only. Repeatable."
 _SETTING = "Set a key of the configuration for this command. Repeatable."

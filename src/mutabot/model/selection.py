@@ -106,7 +106,14 @@ def nothing_fits(source: str, unknown: Sequence[str], known: Sequence[str]) -> S
     lines = []
     for pattern in unknown:
         nearest = nearest_name(pattern, known) or nearest_name(pattern.partition(":")[0], known)
-        hint = f"the nearest is {nearest!r}" if nearest else "`mutabot list` shows what there is"
+        if nearest:
+            hint = f"the nearest is {nearest!r}"
+        elif "," in pattern and source.startswith("--"):
+            hint = f"only numbers are separated by commas, so give {source} once for each name"
+        elif "[" in pattern or "{" in pattern:
+            hint = "only * and ? are wildcards"
+        else:
+            hint = "`mutabot list` shows what there is"
         shown = repr(pattern if len(pattern) <= 200 else f"{pattern[:200]}…")
         lines.append(f"{source}: no mutant matches {shown}; {hint}")
     return SelectionError("\n".join(lines))

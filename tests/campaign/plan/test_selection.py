@@ -65,6 +65,20 @@ def test_a_word_that_fits_nothing_names_the_nearest_that_does(option: str) -> No
         select(MUTANTS, **{option: ["revers"]})
 
 
+@pytest.mark.parametrize(
+    ("word", "hint"),
+    [
+        ("gripper,conveyor", "give --only once for each name"),
+        ("qqq[ab]", r"only \* and \? are wildcards"),
+        ("qqq{a}", r"only \* and \? are wildcards"),
+        ("qqq", "`mutabot list` shows what there is"),
+    ],
+)
+def test_a_word_that_is_like_nothing_is_answered_with_how_words_are_written(word: str, hint: str) -> None:
+    with pytest.raises(SelectionError, match=hint):
+        select(MUTANTS, [word])
+
+
 def test_a_selection_file_chooses_mutants_which_keep_their_numbers(tmp_path: Path) -> None:
     file = tmp_path / "published.txt"
     file.write_text(f"# the published ones\n\n{NEGATE.id}   # no. 1\nmission.py:*:skip\n{NEGATE.id}\n")
