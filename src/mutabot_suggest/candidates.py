@@ -31,6 +31,8 @@ _PARTNERS = 8
 _CLEARLY = 10
 _NAME = re.compile(r"[^\W\d]\w*")
 _ITEM = re.compile(r"\[\d+\]$")
+#: what an expression reads of what: ``pose`` and ``.x``
+_PART = re.compile(r"(.+?)(\.\w+|\[\d+\])")
 _LAST = re.compile(r"(\w+)\W*$")
 #: texts in which names are replaced that belong together: ``HOME.x``, ``HOME.y``
 _LAST_NAMES = re.compile(r"\.\w+(?=[,)\s])")
@@ -266,7 +268,8 @@ class _EndReadings:
             return check, middle
         for text, value, file in self._constants(check.reading.text):
             more = self.suite.constant(self.place, file, text)
-            if more is not None and abs(value - band.middle) + band.tolerance <= check.tolerance:
+            is_near = abs(value - band.middle) + band.tolerance <= check.tolerance
+            if more is not None and is_near and not self._is_of_another(text, check):
                 named = replace(check, expected=text, needs=(*check.needs, *more), is_exact=False)
                 return named, value
         return check, middle
@@ -284,6 +287,29 @@ class _EndReadings:
         for text, value in self.suite.constants(self.place.file):
             if item is not None and text.endswith(item[0]):
                 yield text, value, self.place.file
+
+    def _is_of_another(self, constant: str, check: CheckAtEnd) -> bool:
+        """Return whether what a constant is a part of differs in another part from what the test reads.
+
+        The parts are equal by chance then, as many angles are zero: ``HOME.theta_y`` at the pallet.
+        """
+        assert self.suite is not None
+        meant, read = _PART.fullmatch(constant), _PART.fullmatch(check.reading.text)
+        if meant is None or read is None:
+            return False
+        stated = [
+            (checked.names(number)[1], expected, tolerance)
+            for checked in self.suite.checks
+            for number, _, expected, tolerance in checked.parts_in(self.runs[0])
+        ]
+        stated += [(*item, check.tolerance or 0.0) for item in self.suite.constants(self.place.file)]
+        for text, value, tolerance in stated:
+            part = _PART.fullmatch(text)
+            if part is not None and part[1] == meant[1] and part[2] != meant[2]:
+                found = self.runs[0].get(f"{read[1]}{part[2]}")
+                if is_number(found) and abs(found - value) > tolerance:
+                    return True
+        return False
 
     def _equal(self, reading: ReadExpression, other: ReadExpression | None) -> CheckAtEnd | None:
         """Return the check that a reading equals another one, or a value; None if it does not always."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from collections.abc import Mapping
 from pathlib import Path
 from textwrap import dedent
 from typing import Any
@@ -251,24 +252,48 @@ def test_parts_of_a_place_that_no_check_looks_at_have_the_tolerance_of_the_other
     assert "your tolerance of 0.0" in refused["m"]
 
 
-def test_an_item_that_a_constant_of_the_tests_states_is_written_by_its_name(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("beside", "value"),
+    [(0.25, "PALLET[0]"), (0.2500001, "PALLET[0]"), (0.7, "0.35")],  # the last is another place
+)
+def test_an_item_that_a_constant_of_the_tests_states_is_written_by_its_name(
+    tmp_path: Path, beside: float, value: str
+) -> None:
     text = "FEEDER, PALLET = (0.1, 0.9), (0.35, 0.25)\n\n\ndef test_goes(pose):\n    assert pose\n"
+    statements = _of_pose(tmp_path, text, {"pose[0]": 0.35, "pose[1]": beside}, {})
+    assert f"assert pose[0] == pytest.approx({value}" in statements
+
+
+@pytest.mark.parametrize(("height", "value"), [(0.4, "HOME.tilt"), (0.9, "0.0")])
+def test_a_part_of_a_place_is_written_by_its_name_only_at_that_place(
+    tmp_path: Path, height: float, value: str
+) -> None:
+    check = "assert (pose.z, pose.tilt) == pytest.approx((HOME.z, HOME.tilt), abs=0.01)"
+    text = f"import pytest\n\nHOME = object()\n\n\ndef test_goes(pose):\n    {check}\n"
+    parts = {"actual[0]": 0.4, "actual[1]": 0.0, "expected[0]": 0.4, "expected[1]": 0.0, "tolerance": 0.01}
+    statements = _of_pose(tmp_path, text, {"pose.z": height, "pose.tilt": 0.0}, parts)
+    assert any(statement.startswith("assert pose.tilt") and value in statement for statement in statements)
+
+
+def _of_pose(tmp_path: Path, text: str, reads: dict[str, float], parts: Mapping[str, float]) -> set[str]:
+    """The beginnings of the checks of what a test reads, all of which the mutant changes.
+
+    ``parts``: what a check of the test compares.
+    """
     folder = make(tmp_path, {"test_it.py": text})
     configuration = load_configuration(folder)
     vocabulary = load_vocabulary(configuration.vocabulary, folder)
     request = Request(configuration, vocabulary, rounds=1, seed=1, jobs=1)
     suite = SuiteChecks.of(SuiteFiles(request, tests=("tests/test_it.py",)))
     at = place(suite)
+    compared = {f"{check.key}.{part}": value for check in suite.checks for part, value in parts.items()}
     found = Measured(
-        originals={at: {(round, GOES): {"pose[0]": 0.35, "pose[1]": 0.7} for round in range(3)}},
-        mutants={at: {"m": {(0, GOES): {"pose[0]": -0.35, "pose[1]": 0.1}}}},
-        readings={at: [ReadExpression(text, PROBE, 1e-6) for text in ("pose[0]", "pose[1]")]},
+        originals={at: {(round, GOES): {**reads, **compared} for round in range(3)}},
+        mutants={at: {"m": {(0, GOES): {name: value - 0.7 for name, value in reads.items()}}}},
+        readings={at: [ReadExpression(name, PROBE, 1e-6) for name in reads]},
     )
     checks, _ = candidates(suite.project, suite, found)
-    assert {check.statement.partition(",")[0] for check in checks} == {
-        "assert pose[0] == pytest.approx(PALLET[0]",
-        "assert pose[1] == pytest.approx(0.7",
-    }
+    return {check.statement.partition(",")[0] for check in checks}
 
 
 def test_tests_of_a_folder_find_helpers_beside_them(suite: SuiteChecks) -> None:
