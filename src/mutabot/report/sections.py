@@ -63,7 +63,7 @@ def sections(results: Results, place: PlaceName) -> Iterator[Section]:
     yield from _survivors(results, place)
     yield from accepted_sections(results, place)
     if found := unlooked(results.mutants):
-        yield Section("Readings that no test checks", lines=found)
+        yield Section("Readings whose faults no test noticed", lines=found)
     yield from _outside(results, place)
     yield from skipped(results.left_out)
     yield from _thresholds(results, place)

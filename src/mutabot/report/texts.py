@@ -31,8 +31,8 @@ _ABSOLUTE = re.compile(
     r"__w|Users|private|Volumes|Library)(?:/[^\s/:;,'\"<>()\[\]{}|]+)*/(?=[^\s/:;,'\"<>()\[\]{}|])"
 )
 
-#: the step where no probe shows how the world ended
-_PROBE = "Add a [[probe]] that reads how the world ends to the vocabulary"
+#: what helps where no probe shows how the world ended
+_PROBE = "with a [[probe]] in the vocabulary that reads how the world ends"
 #: what a mutant changed, as results say it before its effect
 _CHANGE = re.compile(r"(?:sent|read|had) (.+?) instead of (.+?); ")
 
@@ -210,9 +210,8 @@ def next_step(result: MutantResult, suggestion: Suggestion | None = None) -> str
     if result.indistinguishable:
         accept = f"accept it as an equivalent mutant: `mutabot accept {number} --why …`"
         return f"Add a probe or a test that would show a difference, or {accept}."
-    if result.is_unmeasured:
-        return f"{_PROBE}, and run again. Only then can `mutabot suggest --only {number}` search for a check."
-    return f"Run `mutabot suggest --only {number}` to search for a check and verify it."
+    search = f"Run `mutabot suggest --only {number}` to search for a check and verify it"
+    return f"{search}; {_PROBE}, more are found." if result.is_unmeasured else f"{search}."
 
 
 def next_steps(results: Results) -> str:
@@ -222,10 +221,11 @@ def next_steps(results: Results) -> str:
         return ""
     steps = [f"`mutabot show {survivors[0].mutant.number}` prints the details of a survivor"]
     to_check = [result for result in survivors if not result.indistinguishable]
-    if any(not result.is_unmeasured for result in to_check):
+    if to_check:
         steps.append("`mutabot suggest` searches for checks that kill survivors")
-    found = f"{', '.join(steps)}."
-    return f"{found} {_PROBE}." if to_check and len(steps) == 1 else found
+        if all(result.is_unmeasured for result in to_check):
+            steps[-1] += f" and, {_PROBE}, finds more"
+    return f"{', '.join(steps)}."
 
 
 def also_text(site: Site) -> str:

@@ -93,8 +93,8 @@ def test_a_speed_of_which_nothing_is_said_is_left_out_with_what_to_say() -> None
     plan = plan_of([SPEED], {"speed": 0.5})
     assert not reversals(plan)
     assert reason(plan) == (
-        "no negative value was recorded, so it may be a mere magnitude; if it has a direction, give it an "
-        "axis, or a range or clip that goes below 0"
+        "no negative value of this speed or ratio was recorded, so it may have no direction; if it has one, "
+        "give it an axis, or a range or clip that goes below 0"
     )
 
 

@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 
 #: why a speed or ratio is not reversed
 NO_SIGN = (
-    "no negative value was recorded, so it may be a mere magnitude; if it has a direction, give it an axis, "
-    "or a range or clip that goes below 0"
+    "no negative value of this speed or ratio was recorded, so it may have no direction; if it has one, "
+    "give it an axis, or a range or clip that goes below 0"
 )
 
 

@@ -32,6 +32,7 @@ from mutabot.report.texts import (
     mapped,
     most_informative,
     next_step,
+    next_steps,
     place_text,
     state_of,
 )
@@ -94,6 +95,7 @@ def campaign_data(campaign: Results, name: str) -> dict[str, Any]:
             {**data_of.facts(ladder, _LADDER), "text": ladder_line(ladder)}
             for ladder in thresholds.ladders[:_LADDERS]
         ],
+        "next": next_steps(campaign),
         "thresholds": thresholds.summary,
         "furtherLadders": len(thresholds.ladders[_LADDERS:]),
     }

@@ -124,7 +124,7 @@
       head.append(h("div", null, h("label", { for: "recording", class: "unseen" }, "Round and test"),
         h("select", { id: "recording", onchange: (event) => show(Number(event.target.value)) }, page.recordings.map((found, index) => h("option", { value: index }, label(found))))));
     } else head.append(h("p", { class: "hint" }, label(page.recordings[0])));
-    if (page.withoutRecordings) section.append(h("p", { class: "hint" }, `${count(page.withoutRecordings, "further recording")} had no room in this report; \`mutabot show ${one.number}\` tells of them.`));
+    if (page.withoutRecordings) section.append(h("p", { class: "hint" }, `${count(page.withoutRecordings, "further recording")} had no room in this report; `, h("code", null, `mutabot show ${one.number}`), " prints what they recorded."));
     section.append(holder);
     let stop = [];
     stops.push(() => stop.forEach((each) => each()));
@@ -152,18 +152,18 @@
   }
 
   function nothingRecorded(one, page) {
-    if (page.withoutRecordings) return empty("There was no room for its recordings.", `The report holds those of the survivors that went farthest first. \`mutabot show ${one.number}\` prints what they tell.`);
+    if (page.withoutRecordings) return empty("There was no room for its recordings.", "The report holds those of the survivors with the largest deviation first. ", h("code", null, `mutabot show ${one.number}`), " prints what they recorded.");
     if (page.rounds.some((outcome) => outcome && outcome.diverged.length)) return empty("Its recordings were not kept.", "There was no room for them (", h("code", null, "evidence"), " in the configuration sets it), or their file was deleted. ", h("code", null, `mutabot show ${one.number}`), " prints what they recorded.");
     if (one.indistinguishable) return empty("The robot did the same as in the original.", "Nothing that was recorded, read or returned differs; there are no two paths to show.");
     if (!one.valid && !["refused", "guarded"].includes(one.status)) return empty("Nothing to show.", `This mutant was not counted: ${marks.MEANING[one.status]}.`);
     const where = page.rounds.some((outcome) => outcome && outcome.divergence.length) ? "What differs otherwise is listed below, by round. " : "";
     if (!mutabot.campaign.recorded) return empty("Nothing was recorded in this campaign.", where, "Recording is off (", h("code", null, "evidence = 0"), " in the configuration), or the file of recordings was deleted.");
-    return empty("Beside the fault, no recorded command, reading or movement differs.", where, feed());
+    return empty("Apart from the fault, no recorded command, reading or movement differs.", where, feed());
   }
 
   /** What makes movements visible. */
   const feed = () => ["Movements and contacts are recorded where the simulator has a feed (", h("code", null, "mutabot.api.processes.Feed"),
-    "), as mutabot's own cells have, and the arm where the feed has a line. docs/evidence.md shows how to add them, also with ROS."];
+    "), as mutabot's own cells do. docs/evidence.md shows how to add one, also with ROS."];
 
   function pair(holder, events, one, page, found, usual, mutant, stop) {
     const ends = [usual, mutant].map((each) => (each ? Math.max(each.end || 0, ...each.calls.map((call) => call.ended || 0), 0) : 0));
@@ -278,7 +278,7 @@
         h("tbody", null, test.checks.slice(0, CHECKS).map(({ place, text, seen, spare, times }) => h("tr", null,
           h("td", null, place.replace(/^.*\//, "")), h("td", null, h("code", null, text), times > 1 ? h("small", null, `${times} times, the nearest to fail`) : null),
           h("td", null, seen ? h("code", null, seen) : "–"), h("td", { class: "n" }, number(spare, 3))))))),
-      many > CHECKS ? h("p", { class: "hint" }, `and ${count(many - CHECKS, "more check")}; \`mutabot show ${one.number} --json\` has those that were kept.`) : null);
+      many > CHECKS ? h("p", { class: "hint" }, `and ${count(many - CHECKS, "more check")}; `, h("code", null, `mutabot show ${one.number} --json`), " has those that were kept.") : null);
   }
 
   function suggestion(page) {

@@ -45,7 +45,7 @@
     return [
       h("p", { class: "lead" }, complete ? "complete · " : "", facts.filter(Boolean).join(" · ")),
       complete || isUnderWay(campaign) ? null : h("p", { class: "notice" }, h("strong", null, `This campaign is not complete (${campaign.state}): `),
-        `${campaign.done} of ${campaign.planned} outcomes are known. `, "`mutabot run` continues it."),
+        `${campaign.done} of ${campaign.planned} outcomes are known. `, h("code", null, "mutabot run"), " continues it."),
       campaign.attempt ? h("p", { class: "notice" }, `A later run ended before its first mutant: ${campaign.attempt}`) : null,
     ].flat().reduce((box, one) => { if (one) box.append(one); return box; }, h("div", { class: "state" }));
   }
@@ -128,11 +128,13 @@
         : isUnderWay(campaign) ? empty("Nothing is judged yet.", "A mutant is, as soon as its tests have run as the mutant and as the original.")
         : empty("Nothing was judged.", "No mutant was valid in any round; the list below says why."));
     }
+    const shared = new Set(loud.map((one) => one.why)).size === 1 && loud.length > 1 ? loud[0].why : ""; // said once
     return h("section", { "aria-labelledby": "survivors" }, heading,
-      h("ol", { class: "findings" }, loud.slice(0, SHOWN).map((one) => finding(one))),
+      shared ? h("p", { class: "hint" }, `For all of them, ${shared}.`) : null,
+      h("ol", { class: "findings" }, loud.slice(0, SHOWN).map((one) => finding(one, shared))),
       calm.length ? h("p", { class: "hint" }, `${count(calm.length, "survivor")} without a measured effect on what the robot did: `, calm.slice(0, 3 * SHOWN).map((one, index) => [index ? ", " : "", h("a", { href: address(["mutant", String(one.number)]) }, one.number)]), calm.length > 3 * SHOWN ? ` and ${calm.length - 3 * SHOWN} more` : null) : null,
       loud.length > SHOWN ? h("p", null, h("a", { class: "more", href: address(["mutants"], { status: "survived", sort: "deviation" }) }, `All ${survivors.length} survivors`)) : null,
-      more);
+      more, campaign.next ? h("p", null, mutabot.coded(campaign.next)) : null);
   }
 
   function ladders(campaign) {
@@ -144,25 +146,25 @@
       h("ul", { class: "plain ladders" }, campaign.ladders.map((one) => h("li", null, h("a", { href: address(["source", one.file], { line: String(one.line) }) }, `${one.place} ${one.name}`),
         h("span", { class: "steps", role: "img", "aria-label": one.text }, one.magnitudes.map((size) => h("span", { class: `step is-${kind(one, size)}`, title: `${number(size)} ${one.unit || ""}: ${words[kind(one, size)]}` }))),
         h("small", null, one.text)))),
-      campaign.furtherLadders ? h("p", { class: "hint" }, `${count(campaign.furtherLadders, "further ladder")}, more sensitive than these: \`mutabot thresholds\` prints all.`) : null);
+      campaign.furtherLadders ? h("p", { class: "hint" }, `${count(campaign.furtherLadders, "further ladder")}, more sensitive than these: `, h("code", null, "mutabot thresholds"), " prints all.") : null);
   }
 
-  function finding(one) {
+  function finding(one, shared) {
     return h("li", null,
       h("div", { class: "finding-head" }, marks.ends(one.ends), h("a", { href: address(["mutant", String(one.number)]) }, `${one.number}  ${one.description}`),
         h("span", { class: "place" }, one.place, " · ", one.operator)),
-      h("p", { class: "story" }, mutabot.breakable(one.why)));
+      shared ? null : h("p", { class: "story" }, mutabot.breakable(one.why)));
   }
 
   function unseen(campaign) {
     if (isUnderWay(campaign)) return ""; // a mutant that is still to be run may show that a test notices something
     const none = campaign.tests.map((name, index) => [name, index]).filter(([, index]) => !campaign.mutants.some((one) => one.kills.some((kill) => kill[0] === index)));
-    const section = h("section", { "aria-labelledby": "unseen" }, h("h2", { id: "unseen" }, "Gaps: unchecked readings and idle tests"));
+    const section = h("section", { "aria-labelledby": "unseen" }, h("h2", { id: "unseen" }, "Gaps: faulty readings that pass, and idle tests"));
     if (!campaign.unlooked.length && !none.length) {
-      section.append(h("p", { class: "hint" }, "Every test killed at least one mutant, and every reading the tests take is checked by at least one of them."));
+      section.append(h("p", { class: "hint" }, "Every test killed at least one mutant, and some fault of every reading that the tests take was noticed."));
       return section;
     }
-    if (campaign.unlooked.length) section.append(h("h3", null, "Readings that no test checks"), h("ul", { class: "plain" }, campaign.unlooked.map((one) => h("li", null, h("code", null, one)))));
+    if (campaign.unlooked.length) section.append(h("h3", null, "Readings whose faults no test noticed"), h("ul", { class: "plain" }, campaign.unlooked.map((one) => h("li", null, h("code", null, one)))));
     if (none.length) {
       section.append(h("h3", null, `Tests that kill nothing: ${none.length} of ${campaign.tests.length}`),
         h("ul", { class: "plain" }, none.slice(0, SHOWN).map(([name]) => h("li", null, h("code", null, mutabot.breakable(name))))),
@@ -186,7 +188,7 @@
     for (const [heading, those] of [...headings].sort(([one], [other]) => other.startsWith("Left out that") - one.startsWith("Left out that"))) {
       section.append(h("details", null, h("summary", null, `${heading} (${those.length})`),
         h("ul", { class: "plain small" }, those.slice(0, 50).map((one) => h("li", null, one.description, heading.endsWith(one.reason) ? null : `: ${one.reason}`, " ", h("code", null, one.id))),
-          those.length > 50 ? h("li", null, `and ${those.length - 50} more, which \`mutabot list --all\` prints`) : null)));
+          those.length > 50 ? h("li", null, `and ${those.length - 50} more, which `, h("code", null, "mutabot list --all"), " prints") : null)));
     }
     return section;
   }

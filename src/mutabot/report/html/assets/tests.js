@@ -32,7 +32,7 @@
         h("button", { type: "button", class: "sort", onclick: () => { order = name; page = 1; draw(); } }, text, h("span", { "aria-hidden": "true" }, order === name ? " ↓" : "")));
       const shown = sorted.slice(PAGE * (page - 1), PAGE * page);
       holder.replaceChildren(h("div", { class: "scroll", role: "region", tabindex: "0", "aria-label": "Tests × mutants" }, h("table", { class: "matrix" },
-        h("thead", null, h("tr", null, head("file", "test"), head("reaches", "reaches", "n"), head("kills", "kills", "n"), h("th", { scope: "col", class: "n" }, "by a check"), head("alone", "alone", "n"),
+        h("thead", { "data-label": "sort by" }, h("tr", null, head("file", "test"), head("reaches", "reaches", "n"), head("kills", "kills", "n"), h("th", { scope: "col", class: "n" }, "by a check"), head("alone", "alone", "n"),
           h("th", { scope: "col" }, `the ${campaign.mutants.length} mutants, in the order of the program`))),
         h("tbody", null, shown.map((one) => line(one, campaign))))),
       pages > 1 ? h("nav", { class: "pager", "aria-label": "Pages of tests" },
