@@ -7,7 +7,7 @@ import platform
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -26,6 +26,7 @@ from mutabot.campaign.sharding.shards import part_of, write_shard
 from mutabot.campaign.suppressions import note_accepted, source_text
 from mutabot.errors import ControlError, JournalError, in_short
 from mutabot.execution.interruption import interruptions_kept
+from mutabot.execution.versions import name_and_version
 from mutabot.journal import records
 from mutabot.journal.journal import Journal
 
@@ -260,7 +261,7 @@ def _meta(request: Request) -> dict[str, Any]:
     versions = {}
     for name in (*_VERSIONS, *extensions.versions()):
         with suppress(PackageNotFoundError):
-            versions[name] = version(name)
+            _, versions[name] = name_and_version(distribution(name))
     return {
         "mutabot": __version__,
         "python": platform.python_version(),
