@@ -49,7 +49,10 @@ MUTANTS = ("mission.py:go:arm.move_by#?:call:skip", "mission.py:go:tool#*")
 
 
 @pytest.mark.parametrize("engine", ["auto", REPLAY])
-@pytest.mark.parametrize("taken", TAKEN)
+@pytest.mark.parametrize(
+    "taken",
+    [name if name == "imports" else pytest.param(name, marks=pytest.mark.whole) for name in TAKEN],
+)
 def test_mutants_act_and_controls_count_without_it(tmp_path: Path, taken: str, engine: str) -> None:
     folder = write_project(tmp_path, MISSION, TESTS.format(taken=TAKEN[taken]))
     found = run(folder, engine=engine, families=("robot", "conventional"), only=MUTANTS)

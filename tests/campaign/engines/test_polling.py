@@ -76,8 +76,8 @@ AFTER_ANOTHER = """
     [
         pytest.param(INSIDE, id="in", marks=pytest.mark.whole),
         pytest.param(BESIDE, id="beside"),
-        pytest.param(BELOW, id="below"),
-        pytest.param(AFTER_ANOTHER, id="two"),
+        pytest.param(BELOW, id="below", marks=pytest.mark.whole),
+        pytest.param(AFTER_ANOTHER, id="two", marks=pytest.mark.whole),
     ],
 )
 def test_what_comes_after_long_polling_is_judged(tmp_path: Path, tests: str, engine: str) -> None:

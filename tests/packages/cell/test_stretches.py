@@ -148,7 +148,7 @@ def _of_example(name: str, *modules: str) -> list[object]:
 @pytest.mark.parametrize(
     ("program", "seed"),
     [
-        pytest.param(paper, 1, id="paper"),
+        pytest.param(paper, 1, id="paper", marks=pytest.mark.whole),
         pytest.param(sorting, 2, id="sorting"),
         pytest.param(paper, 2, id="paper in red", marks=pytest.mark.whole),
         pytest.param(sorting, 1, id="sorting in blue", marks=pytest.mark.whole),
@@ -414,6 +414,7 @@ def test_physics_that_diverge_are_found_at_the_same_tick(torque: float) -> None:
         assert max(found.moments) == max(single.moments)
 
 
+@pytest.mark.whole
 def test_a_recording_of_a_test_is_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
 
     def recorded(*, singly: bool) -> Recording:

@@ -28,10 +28,9 @@ def run_tests(folder: Path) -> None:
     assert done.returncode == 0, done.stdout
 
 
+@pytest.mark.whole
 @pytest.mark.usefixtures("plugins")
-@pytest.mark.parametrize(
-    "name", [KNOWN[0], *(pytest.param(name, marks=pytest.mark.whole) for name in KNOWN[1:])]
-)
+@pytest.mark.parametrize("name", KNOWN)
 def test_a_project_for_a_known_robot_passes_its_own_tests(tmp_path: Path, name: str) -> None:
     robot_named(name)
     folder = tmp_path / "new"

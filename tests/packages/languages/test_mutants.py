@@ -149,7 +149,8 @@ def test_pick(new_cell, mutabot_seed):
 """
 
 
-@pytest.mark.parametrize("engine", ["fork", pytest.param("replay", marks=pytest.mark.whole)])
+@pytest.mark.whole
+@pytest.mark.parametrize("engine", ["fork", "replay"])
 def test_they_have_verdicts(engine: str, tmp_path: Path) -> None:
     written(tmp_path, "krl")
     (tmp_path / "conftest.py").write_text("from mutabot_cell.fixtures import *\n")

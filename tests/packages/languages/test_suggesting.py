@@ -50,9 +50,8 @@ def mutabot(folder: Path, *words: str) -> str:
     return done.stdout
 
 
-@pytest.mark.parametrize(
-    "files", [["up.src"], pytest.param([*PROGRAMS], marks=pytest.mark.whole)], ids=["krl", "all"]
-)
+@pytest.mark.whole
+@pytest.mark.parametrize("files", [["up.src"], [*PROGRAMS]], ids=["krl", "all"])
 def test_a_check_is_found_that_notices_what_the_suite_does_not(tmp_path: Path, files: list[str]) -> None:
     write_project(tmp_path, files)
     mutabot(tmp_path, "run", "--only", "reverse-offset", "--rounds", "2", "-o", "repeats=false")

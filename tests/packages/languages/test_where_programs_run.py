@@ -179,7 +179,7 @@ def test_it_does_not_come_that_far(new_cell, mutabot_seed):
         pytest.param("MoveJ FAR,v200", "", "refused", marks=pytest.mark.whole),
         pytest.param("MoveL FAR,v200", CAUGHT, "killed", marks=pytest.mark.whole),
         # the function that asks for joint angles raises an error of the program: no motion was asked for
-        ("MoveAbsJ CalcJointT(FAR,tool0),v200", "", "killed"),
+        pytest.param("MoveAbsJ CalcJointT(FAR,tool0),v200", "", "killed", marks=pytest.mark.whole),
     ],
 )
 def test_a_motion_that_the_mutants_text_asks_for_and_the_robot_refuses_is_no_kill(

@@ -161,6 +161,7 @@ def by_name(told: str) -> dict[str, dict[str, Any]]:
     return found
 
 
+@pytest.mark.whole
 def test_patches_end_as_plain_pytest_says_where_git_has_applied_them(project: Path, tmp_path: Path) -> None:
     copy = shutil.copytree(project, tmp_path / "campaign")
     before = {file: file.read_bytes() for file in copy.rglob("cell/*.*")}

@@ -137,6 +137,7 @@ STATE_VOCABULARY = """
 """
 
 
+@pytest.mark.whole
 def test_a_test_that_reaches_the_survivor_only_after_another_one_is_looked_at_after_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
