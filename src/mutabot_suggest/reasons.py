@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
@@ -23,6 +24,8 @@ NO_PROBE = (
     "nothing that was read at the ends of its tests differs; a [[probe]] in the vocabulary may show more"
 )
 NOT_REACHED = "no test reaches it: add a test that does"
+#: a difference in what a function of the program returned
+_RETURNED = re.compile(r"(\w+) returned (?!to )")
 #: m, and degrees, below which a way is too near to the original for a monitor
 _NEAR, _TURNED = 0.03, 15.0
 #: how the reason begins for a survivor that the suite allows
@@ -63,8 +66,19 @@ def why_unsolved(
     if mutant in refused:
         return Unsolved(mutant, refused[mutant])
     is_probed = any(outcome.distance is not None for outcome in survivor.survived)
-    unread = (0.0, NOTHING_READ if is_probed else NO_PROBE)
-    return Unsolved(mutant, max(_differences(mutant, measured), default=unread)[1])
+    unread = _allowed(survivor) or (NOTHING_READ if is_probed else NO_PROBE)
+    return Unsolved(mutant, max(_differences(mutant, measured), default=(0.0, unread))[1])
+
+
+def _allowed(survivor: MutantResult) -> str:
+    """Return what a function returned that a check compared and let through; empty if there is none."""
+    for outcome in survivor.survived:
+        for line in outcome.divergence:
+            function = _RETURNED.search(line)
+            for check in (check for looked in outcome.looked if looked.acted for check in looked.checks):
+                if function and check.spare is not None and re.search(rf"\b{function[1]}\(", check.text):
+                    return f"{line}, which your check allows: {check.text}"
+    return ""
 
 
 def _why_failed(check: CheckProposal, why: str) -> str:

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from mutabot.model import Mutant, Outcome, Role, Site, Span, Verdict
-from mutabot.model.outcome import Looked
+from mutabot.model.outcome import Check, Looked
 from mutabot.model.world_difference import Apart, Diverged, Measurement
 from mutabot.results.results import MutantResult
 from mutabot_suggest.checks import CheckAtEnd, Monitor
@@ -101,6 +101,25 @@ def test_without_a_probe_the_reason_asks_for_one_and_with_one_for_a_check_on_the
         "; a [[probe]] in the vocabulary may show more",
         ": a check on the way may notice it",
     ]
+
+
+@pytest.mark.parametrize(
+    ("text", "is_allowed"),
+    [
+        ("abs(mission.run(arm) - 0.3) < 0.01", True),
+        ("mission.rerun(arm) < 0.4", False),  # of another function
+        ("arm.x < 0.4", False),
+    ],
+)
+def test_a_returned_value_that_a_check_lets_through_is_the_reason(
+    suite: SuiteChecks, text: str, is_allowed: bool
+) -> None:
+    line = "run returned 0.294 instead of 0.3 (off by 0.006)"
+    looked = Looked("tests/test_it.py::test_it", acted=True, checks=(Check("t.py:4", text, "", 0.004),))
+    (outcome,) = survivor().survived
+    seen = replace(survivor(), rounds=(replace(outcome, divergence=(line,), looked=(looked,)),))
+    found = why_unsolved(seen, Measured(), suite, [], {}, {}).reason
+    assert (found == f"{line}, which your check allows: {text}") is is_allowed
 
 
 def test_what_ends_within_the_suites_tolerance_is_reported_as_such(suite: SuiteChecks) -> None:

@@ -158,8 +158,11 @@ def _leaves(
 def _path_of(text: str, sides: Sides, is_written: bool) -> Path:
     """Return the path to a quantity. Raises ValueError, saying what would be right."""
     if not sides.is_message and not is_written and not text.startswith((".", "[")):
-        dotted = f'"[{text}]"' if text.isdigit() else f'".{text}"'
-        raise ValueError(f"a path into the result begins with a dot or a bracket: write result.{dotted}")
+        dotted = f"[{text}]" if text.isdigit() else f".{text or 'x'}"
+        raise ValueError(
+            f'a path into the result begins with a dot or a bracket: write result."{dotted}", '
+            "or result = { … } if the result itself is the value"
+        )
     path = bare_path(text) if sides.is_message else Path.parse(text, rooted=is_written)
     if not sides.is_message and path.root == "self":
         raise ValueError(
