@@ -31,7 +31,7 @@ _NEAR, _TURNED = 0.03, 15.0
 #: how the reason begins for a survivor that the suite allows
 _SO_LITTLE = "at most"
 #: the reason where only the way differs
-_END_ALLOWED = "at the end within your tolerance of"
+_END_ALLOWED = "at the end within your smallest tolerance of"
 #: what a thing moves that a robot holds
 _IN_GRIP = {"slip", "drag"}
 #: names of lengths and of angles in checks
@@ -113,7 +113,7 @@ def _of_recordings(survivor: MutantResult, measured: Measured, suite: SuiteCheck
             continue
         far, allowed = _amount(max(ends, way), unit), _amount(limit, unit)
         if way <= limit and turned < _TURNED:
-            return f"{_SO_LITTLE} {far}, within your tolerance of {allowed}"
+            return f"{_SO_LITTLE} {far}, within your smallest tolerance of {allowed}"
         why = "no bound on the way distinguishes it from the original"
         if turned >= _TURNED:
             why = "no bound on the way distinguishes it from the original, which turns as well"
@@ -127,7 +127,7 @@ def _of_recordings(survivor: MutantResult, measured: Measured, suite: SuiteCheck
     ]
     limit = _tolerance(measured, suite, _LENGTHS)
     if moved and max(moved) <= limit:
-        return f"{found.story}: within your tolerance of {_amount(limit, 'm')}"
+        return f"{found.story}: within your smallest tolerance of {_amount(limit, 'm')}"
     return f"{found.story}: nothing that its tests can read distinguishes it from the original"
 
 

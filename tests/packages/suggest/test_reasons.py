@@ -124,7 +124,7 @@ def test_a_returned_value_that_a_check_lets_through_is_the_reason(
 
 def test_what_ends_within_the_suites_tolerance_is_reported_as_such(suite: SuiteChecks) -> None:
     told = in_test("test_it", "box ended 1.4 mm from its position", apart(0.0014, 0.0049))
-    assert reason(suite, told) == "at most 4.9 mm, within your tolerance of 20 mm"
+    assert reason(suite, told) == "at most 4.9 mm, within your smallest tolerance of 20 mm"
 
 
 @pytest.mark.parametrize("is_of_the_way", [True, False])
@@ -144,7 +144,7 @@ def test_a_failed_check_of_the_end_is_no_reason_where_only_the_way_differs(
     assert told == (
         f"what would notice it, the original itself breaks with another seed: {monitor.statement}"
         if is_of_the_way
-        else "box left its path by up to 0.2 m: at the end within your tolerance of 20 mm; "
+        else "box left its path by up to 0.2 m: at the end within your smallest tolerance of 20 mm; "
         "no bound on the way distinguishes it from the original"
     )
 
@@ -152,7 +152,7 @@ def test_a_failed_check_of_the_end_is_no_reason_where_only_the_way_differs(
 def test_a_small_detour_is_reported_with_the_tolerance_at_the_end(suite: SuiteChecks) -> None:
     told = in_test("test_it", "box left its path by up to 25 mm", apart(0.001, 0.025))
     assert reason(suite, told) == (
-        "box left its path by up to 25 mm: at the end within your tolerance of 20 mm; "
+        "box left its path by up to 25 mm: at the end within your smallest tolerance of 20 mm; "
         "on the way it is too near to the original for a bound"
     )
 
@@ -183,7 +183,7 @@ def test_what_slips_on_its_way_is_reported_though_no_position_differs(suite: Sui
 
 @pytest.mark.parametrize(
     ("slip", "said"),
-    [(0.0093, "within your tolerance of 20 mm"), (0.031, "nothing that its tests can read distinguishes it")],
+    [(0.0093, "within your smallest tolerance of 20 mm"), (0.031, "nothing that its tests can read distinguishes it")],
 )
 def test_a_slip_that_the_suite_allows_at_the_end_is_reported_with_its_tolerance(
     suite: SuiteChecks, slip: float, said: str

@@ -26,6 +26,7 @@
     const different = made.filter((one) => one.differs).sort((one, other) => other.share - one.share);
     const same = made.filter((one) => !one.differs);
     const box = h("div", { class: "charts" }, (different.length ? different : same).map((one) => one.element));
+    if (different.length) box.append(h("p", { class: "hint" }, "Max. difference: between original and mutant at the same moment, so that a delay counts as well."));
     if (!different.length || !same.length) return box;
     const rest = h("details", null, h("summary", null, `${same.length} more without a difference: ${same.map((one) => one.name).join(", ")}`),
       h("div", { class: "charts" }, same.map((one) => one.element)));

@@ -175,7 +175,7 @@
     const named = (each) => each && [...each.tracks.values()].some((track) => track.times.length);
     holder.replaceChildren();
     if (diverged && diverged.story && !one.why.includes(diverged.story)) holder.append(h("p", { class: "story" }, diverged.story));
-    const first = diverged && diverged.what ? h("p", null, h("strong", null, "First difference"), diverged.at !== null ? ` at ${number(diverged.at, 4)} s${diverged.is_simulated ? "" : " of the wall clock"}: ` : ": ", diverged.what) : "";
+    const first = diverged && diverged.what ? h("p", null, h("strong", null, "First difference"), diverged.at !== null ? ` at ${diverged.at.toFixed(1)} s${diverged.is_simulated ? "" : " of the wall clock"}: ` : ": ", diverged.what) : "";
     const drawn = h("div", { class: "drawn-world" });
     if (named(mutant) || named(usual)) {
       const worlds = [usual && { name: "original", recording: usual, ink: () => mutabot.ink("original"), width: 1.6, dash: [6, 3] }, { name: "mutant", recording: mutant, ink: () => mutabot.ink("mutant"), width: 2.2, dash: [] }].filter(Boolean);
