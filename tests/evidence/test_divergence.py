@@ -63,7 +63,7 @@ def test_a_box_that_is_let_go_too_early_is_reported() -> None:
     text = story(ORIGINAL, recorded(CARRIED, dropped, held_until(31, 32), opened))  # type: ignore[arg-type]
     assert text.startswith(
         "box was let go at 3.1 s, 0.3 m above the table (original: at 4.1 s, on the table) "
-        "and hit it with 2.5 m/s"
+        "and hit it at 2.5 m/s"
     )
 
 

@@ -203,7 +203,7 @@ class _ComparedRuns:
             if speed is None:
                 yield f"{body} touched the {touched} at {at:.1f} s (original: never)"
             else:
-                yield f"{body} hit the {touched} at {at:.1f} s with {_amount(speed, 'm/s')} (original: never)"
+                yield f"{body} hit the {touched} at {at:.1f} s, at {_amount(speed, 'm/s')} (original: never)"
 
     def _release(
         self, thing: str, usual: RecordedContacts, contacts: RecordedContacts, measured: Sequence[Measurement]
@@ -259,7 +259,7 @@ class _ComparedRuns:
             return ""
         is_known = then is not None and then.value >= _SLOW
         usual = f" (original: {_amount(then.value, 'm/s')})" if then is not None and is_known else ""
-        return f" and hit it with {_amount(now.value, 'm/s')}{usual}"
+        return f" and hit it at {_amount(now.value, 'm/s')}{usual}"
 
     def _motion(self, measurement: Measurement) -> str:
         """Describe what slipped, was dragged or was faster."""
@@ -353,7 +353,8 @@ def _detours(apart: Sequence[Apart], *, is_whole: bool) -> Iterator[tuple[float,
     paths = [gap for gap in found if gap.unit == "m" and not gap.is_value]
     if paths:
         names = " and ".join(path.name for path in paths[:_MOST_PATHS])
-        far = " and ".join(value_with_unit(path.aside or 0.0) for path in paths[:_MOST_PATHS])
+        amounts = [value_with_unit(path.aside or 0.0) for path in paths[:_MOST_PATHS]]
+        far = " and ".join(dict.fromkeys(amounts))
         its, plural = ("its path", "") if len(paths) == 1 else ("their paths", "s")
         end = f" but reached the correct end position{plural}" if is_whole else ""
         yield paths[0].deviation, f"{names} left {its} by up to {far}{end}"

@@ -189,9 +189,8 @@ def reason_of(result: MutantResult) -> str:
 def survivor_text(result: MutantResult) -> str:
     """Describe a survivor: what it does, in which rounds it survived, its effect, and what to do."""
     what = f"{result.mutant.description}{also_text(result.mutant.site)}"
-    return ". ".join(
-        filter(None, [f"{what}: {rounds_text(result)}", finding_text(result), next_step(result)])
-    )
+    found = "; ".join(filter(None, [f"{what}: {rounds_text(result)}", finding_text(result)]))
+    return ". ".join(filter(None, [found, next_step(result)]))
 
 
 def next_step(result: MutantResult, suggestion: Suggestion | None = None) -> str:

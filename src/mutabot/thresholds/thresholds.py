@@ -146,7 +146,7 @@ class Thresholds:
 
     @property
     def summary(self) -> str:
-        """The summary: ``25 of 46 graded faults not noticed even at the largest size; …``."""
+        """The summary: ``25 of 46 graded faults not noticed even at the largest size tried; …``."""
         counts = Counter(map(_in_all_rounds, self.ladders))
         counts["not judged"] = len(self.unjudged)
         kinds = [kind for kind in (*_KINDS, "not judged") if counts[kind]]
@@ -158,7 +158,7 @@ class Thresholds:
 
 #: what a ladder shows over all rounds, what needs a look first
 _KINDS = (
-    "not noticed even at the largest size",
+    "not noticed even at the largest size tried",
     "not noticed at any size that the robot accepts",
     "not noticed at any size that has an effect",
     "noticed in some rounds only",

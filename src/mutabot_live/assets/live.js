@@ -67,7 +67,7 @@
     stop.disabled = isAway;
     box.dataset.state = state.ended ? (state.ended === "complete" ? "complete" : "ended") : "running";
     const wait = !mutabot.campaign && document.querySelector("main .wait");
-    if (wait) wait.textContent = state.ended ? "The campaign ended before it had a plan; there is nothing to show." : "The tests run on the original first. The report fills as soon as there is a plan.";
+    if (wait) wait.textContent = state.ended ? "The campaign ended before it had a plan; there is nothing to show." : "The tests run on the original first. The report fills in as soon as the mutants are planned.";
   }
 
   /** Ask for newer data, as often as the campaign can do with. */

@@ -44,7 +44,7 @@ def test_survivors_are_annotations_at_their_calls_the_worst_first(tmp_path: Path
             "file": "mission.py", "line": "2", "endLine": "2", "col": "5", "endColumn": "23",
             "title": "Survivor 2: skip (program)",
         },
-        "gripper.command: do nothing: survived in rounds 1 and 2. "
+        "gripper.command: do nothing: survived in rounds 1 and 2; "
         "box_position.x: 0.8 instead of 0.488 (off by 0.312). "
         "Run `mutabot suggest --only 2` to search for a check and verify it.",
     )  # fmt: skip

@@ -432,7 +432,7 @@ def test_a_sentence_sums_up_the_thresholds(browser: Any, tmp_path: Path) -> None
     with_ladders = Visit(page, reports.write(tmp_path / "report", journal, mutabot.open(journal)).page)
     with_ladders.open("#/")
     text = page.locator("main").inner_text()
-    assert "1 of 2 graded faults not noticed even at the largest size; 1 noticed in every round" in text
+    assert "1 of 2 graded faults not noticed even at the largest size tried; 1 noticed in every round" in text
     assert with_ladders.wrong == []
     page.close()
 

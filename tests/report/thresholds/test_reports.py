@@ -86,8 +86,8 @@ def test_a_sentence_sums_up_all_ladders(thresholds: Thresholds) -> None:
 @pytest.mark.parametrize(
     ("rounds", "kind"),
     [
-        (["SSSSSSS", "SSSSSSS"], "not noticed even at the largest size"),
-        (["SSCSSSS", "SSSSSSS"], "not noticed even at the largest size"),
+        (["SSSSSSS", "SSSSSSS"], "not noticed even at the largest size tried"),
+        (["SSCSSSS", "SSSSSSS"], "not noticed even at the largest size tried"),
         (["SSSSSSS", "SSSSRRR"], "not noticed at any size that the robot accepts"),
         (["SSSSSSS", "SSSSSSC"], "noticed in some rounds only"),
         (["SSSSSSC", "CCCCCCC"], "noticed in every round from some size on"),

@@ -71,7 +71,7 @@
   function group(one) {
     return h("tr", null,
       h("th", { scope: "row" }, h("a", { href: address(["mutants"], { family: one.family, role: one.role }) }, `${one.family} · ${one.role}`)),
-      h("td", { class: "n big" }, percent(one.score), h("small", null, between(one.interval) || (one.score === null ? "nothing valid" : "no interval"))),
+      h("td", { class: "n big" }, percent(one.score), h("small", null, between(one.interval) || (one.score === null ? (Object.values(one.counts).some(Boolean) ? "nothing valid" : "not run yet") : "no interval"))),
       h("td", null, dots(one)),
       h("td", { class: "n" }, percent(one.check_score), h("small", null, between(one.check_interval))),
       h("td", null, bar(one)),
@@ -125,7 +125,7 @@
       const judged = campaign.mutants.some((one) => one.valid && one.status !== "not covered");
       return h("section", null, heading, more, judged
         ? empty(campaign.state === "complete" ? "No survivors." : "No survivors so far.", `The tests noticed every mutant ${idle ? "they reach" : "that was valid"}. The check score above counts those that an assertion killed.`)
-        : isUnderWay(campaign) ? empty("Nothing is judged yet.", "A mutant is, as soon as its tests have run as the mutant and as the original.")
+        : isUnderWay(campaign) ? empty("Nothing is judged yet.", "A mutant is judged as soon as its tests have run.")
         : empty("Nothing was judged.", "No mutant was valid in any round; the list below says why."));
     }
     const shared = new Set(loud.map((one) => one.why)).size === 1 && loud.length > 1 ? loud[0].why : ""; // said once
