@@ -12,6 +12,8 @@ import os
 import random
 import re
 from collections.abc import Callable, Sequence
+from decimal import Decimal
+from fractions import Fraction
 from functools import partial
 from typing import Any
 
@@ -49,11 +51,13 @@ def conjugate(order: str, value: Any) -> Any:
 def noisy(deviation: float, value: Any) -> Any:
     """With Gaussian noise, whole numbers rounded; the judge looks at several draws."""
 
-    def drawn(number: Any) -> Any:
-        read = number + _RANDOM.gauss(0.0, deviation)
-        return round(read) if isinstance(number, int) else read
+    def noised(number: Any) -> Any:
+        drawn = _RANDOM.gauss(0.0, deviation)
+        if isinstance(number, Decimal | Fraction):  # of its own kind
+            return number + type(number)(drawn)
+        return round(number + drawn) if isinstance(number, int) else number + drawn
 
-    return each(drawn, value)
+    return each(noised, value)
 
 
 def each(change: Change, value: Any) -> Any:

@@ -30,7 +30,8 @@ from mutabot.runtime.isolation.fork_parent import DECIDED, ForkParent
 from mutabot.runtime.observation.checks import Looks
 from mutabot.runtime.observation.probes import Reading
 from mutabot.runtime.plugins import drop_idle_watchdog, keep_real_files, watched, watched_by_faulthandler
-from mutabot.runtime.processes.environment import FORKINGS, STARTS, listen
+from mutabot.runtime.processes.commands import STARTS
+from mutabot.runtime.processes.environment import FORKINGS, listen
 from mutabot.runtime.processes.member import watch_forks
 from mutabot.runtime.processes.members import Members
 from mutabot.runtime.seeds import node_id

@@ -22,7 +22,8 @@ from typing import Any
 from mutabot.extensions import packages
 from mutabot.languages.registry import unit_parser
 from mutabot.runtime.paths import real_folder
-from mutabot.runtime.processes.environment import FRAMES, STARTS, listen, why_unseen
+from mutabot.runtime.processes.commands import STARTS, is_python, texts_of, why_unseen, words_in
+from mutabot.runtime.processes.environment import FRAMES, listen
 
 #: our own audit event: lines of a file are taken, from the cache or not
 _LINES = "mutabot.getlines"
@@ -40,9 +41,6 @@ _HARMLESS = (
 )  # fmt: skip
 
 
-#: between the words of a command line, which a shell may read
-_BETWEEN_WORDS = re.compile(r"[\s;|&<>()='\"]+")
-_PYTHON = re.compile(r"python[\d.]*")
 _NAME = re.compile(r"[^\W\d]\w*(\.\w+)*")
 
 
@@ -105,15 +103,12 @@ class TextReads:
         """
         if is_own(_getframe(FRAMES)):
             return
-        given = arguments[0 if event == "os.system" else 1]
-        parts = [given] if isinstance(given, str | bytes | os.PathLike) else given or ()
-        # of anything else the start itself will say what is wrong with it
-        lines = [os.fsdecode(part) for part in parts if isinstance(part, str | bytes | os.PathLike)]
-        words = [word for line in lines for word in _BETWEEN_WORDS.split(line) if word]
+        texts = texts_of(event, arguments)
+        words = words_in(texts)
         folder = os.fsdecode(arguments[2] if event == "subprocess.Popen" and arguments[2] else ".")
-        found: Iterable[str] = _python_files(folder, words[1:] if len(lines) > 1 else words)
-        if any(_PYTHON.fullmatch(os.path.basename(word)) for word in words):
-            if event == "os.system" or why_unseen(event, arguments) is None:
+        found: Iterable[str] = _python_files(folder, words[1:])
+        if any(map(is_python, words)):
+            if why_unseen(event, arguments) is None:
                 return
             found = chain(found, _modules(folder, words))
         for path in found:

@@ -85,6 +85,11 @@ READERS = """
     def starts_a_line_apart():
         code = "import sys; sys.path.insert(0, ''); import mission; mission.fail"
         subprocess.run([sys.executable, "-I", "-c", code], cwd=HERE, check=True)
+    def has_a_python_started_apart():
+        os.system(f"{sys.executable} -S mission.py")
+    def starts_a_script_that_starts_a_python_apart():
+        (HERE / "run.sh").write_text(f"PYTHONPATH=lib {sys.executable} mission.py")
+        subprocess.run(["sh", "run.sh"], cwd=HERE, check=True)
     def starts_python_without_the_campaigns_environment():
         os.waitpid(os.posix_spawn(sys.executable, ["python", "mission.py"], {}), 0)
     def has_python_started():
@@ -148,7 +153,7 @@ def test_whatever_else_reads_has_the_text(found: dict[str, list[str]]) -> None:
     others = {name: read for name, read in found.items() if name not in NONE}
     wanted = {name: ["package/part.py"] if name in OF_PACKAGE else ["mission.py"] for name in others}
     wanted["copies_everything"] = ["package/__init__.py", "package/part.py"]
-    assert len(others) == 23
+    assert len(others) == 25
     assert others == wanted
 
 

@@ -13,18 +13,17 @@ from __future__ import annotations
 
 import mmap
 import os
-import re
 import struct
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import wraps
-from itertools import takewhile
 from json import dumps, loads
 from typing import Any
 
 from mutabot.model.event_file import ANY_PROCESS, NOW, TESTS, VARIABLE, WAKE
 from mutabot.model.files import open_file, read_file
 from mutabot.runtime.paths import BEGAN
+from mutabot.runtime.processes.commands import STARTS, STARTUP, command_of, starts_a_killer, why_unseen
 
 #: called with an event's name and its arguments
 AuditHandler = Callable[[str, tuple[Any, ...]], None]
@@ -47,15 +46,11 @@ def _on_audit_event(event: str, arguments: tuple[Any, ...]) -> None:
         handle(event, arguments)
 
 
-#: the folder of the start-up module
-STARTUP = os.path.join(os.path.dirname(os.path.abspath(__file__)), "startup")
 #: which argument of ``fork_exec`` is the environment, <Lib/subprocess.py>
 _ENVIRONMENT = 5
 #: functions of ``os`` that start a program with an environment of its own, the third argument, ``env``;
 #: the others that take one call ``execve``
 _WITH_ENVIRONMENT = ("posix_spawn", "posix_spawnp", "execve")
-#: audit events of the start of a program; the last is our own: ``multiprocessing`` makes none
-STARTS = ("os.system", "subprocess.Popen", "os.posix_spawn", "os.exec", "mutabot.fork_exec")
 #: those of the copy of a process
 FORKINGS = ("os.fork", "os.forkpty")
 _folder = ""
@@ -278,41 +273,6 @@ class Now:
         return self._names[number]
 
 
-#: programs that end others: with ``timeout`` and the launchers of ROS, which end what they have started
-_KILLERS = {
-    "kill", "pkill", "killall", "skill", "fuser", "timeout", "rosnode", "roslaunch", "rostest", "ros2",
-}  # fmt: skip
-#: programs that run a command that they are given
-_RUNNERS = {"sh", "bash", "dash", "zsh", "ksh", "env", "sudo", "nice", "nohup", "setsid", "xargs"}
-_KILLER_IN_TEXT = re.compile(rf"(?<![\w.-])(?:{'|'.join(sorted(_KILLERS))})(?![\w.-])")
-#: options of Python by which it leaves out the environment, or what is loaded at its start
-_APART = {"-I", "-E", "-S"}
-
-
-def starts_a_killer(event: str, arguments: tuple[Any, ...]) -> bool:
-    """Return whether an audit event starts a program that may end others, directly or by a shell.
-
-    It cannot be known from outside which processes such a program ends.
-    """
-    if event == "os.system":
-        name, command_line = "sh", _words(None, arguments[0])
-    elif event in STARTS:
-        command_line = _words(None, arguments[1])
-        name = os.path.basename(command_line[0]) if command_line else ""
-    else:
-        return False
-    return name in _KILLERS or (name in _RUNNERS and any(map(_KILLER_IN_TEXT.search, command_line)))
-
-
-def _words(executable: Any, command: Any) -> list[str]:
-    try:
-        given = [command] if isinstance(command, str | bytes | os.PathLike) else list(command)
-        command_line = [os.fsdecode(word) for word in given]
-    except TypeError:  # it will not start either
-        return []
-    return [os.fsdecode(executable), *command_line[1:]] if executable is not None else command_line
-
-
 class ProcessWatch:
     """Watches, in the test process, the starts of processes by the tests.
 
@@ -356,24 +316,5 @@ class ProcessWatch:
         else:
             if starts_a_killer(event, arguments):
                 self.signalled.add(ANY_PROCESS)
-            if event != "os.system" and (why := why_unseen(event, arguments)):
-                self._on_unseen(" ".join(_words(*arguments[:2])[:3]), why)
-
-
-def why_unseen(event: str, arguments: tuple[Any, ...]) -> str | None:
-    """Return why a Python process that is being started cannot join the campaign; None if it can."""
-    command_line = _words(*arguments[:2])
-    if not command_line or not os.path.basename(command_line[0]).startswith("python"):
-        return None
-    options = takewhile(lambda word: word.startswith("-"), command_line[1:])
-    apart = next((option for option in options if option in _APART), None)
-    if apart is not None:
-        return f"the option {apart} isolates it"
-    environment = None if event == "subprocess.Popen" else arguments[2]
-    if environment is None:
-        return None
-    given = {os.fsencode(name): os.fsencode(value) for name, value in environment.items()}
-    path = os.fsdecode(given.get(b"PYTHONPATH", b"")).split(os.pathsep)
-    if os.fsencode(VARIABLE) in given and STARTUP in path:
-        return None
-    return f"its environment lacks PYTHONPATH and {VARIABLE}: hand them on, they are in os.environ"
+            if why := why_unseen(event, arguments):
+                self._on_unseen(" ".join(command_of(event, arguments)[:3]), why)

@@ -30,7 +30,8 @@ from mutabot.runtime.event_file import EventFile
 from mutabot.runtime.exceptions import failure_in, is_due_to, leaves
 from mutabot.runtime.meter import Meter, TimeExceeded
 from mutabot.runtime.paths import watch_copies
-from mutabot.runtime.processes.environment import STARTS, Now, export_folder, listen, starts_a_killer
+from mutabot.runtime.processes.commands import STARTS, starts_a_killer
+from mutabot.runtime.processes.environment import Now, export_folder, listen
 from mutabot.runtime.program_text.instrument import SessionText
 from mutabot.runtime.program_text.loading import hook_script
 from mutabot.runtime.program_text.text_mutant import TextMutant
