@@ -212,6 +212,11 @@ def judge(campaign: Campaign, run: Run) -> Outcome:
         others = f"{in_short(aside, 1)}, excluded in this round, might have failed"
         verdict = Verdict.UNSTABLE
         message = f"all reliable tests passed; {others}"
+    unjudged = baseline.judges_out_of_reach(run.round, run.mutant) if verdict is Verdict.SURVIVED else {}
+    if unjudged:
+        test, command = next(iter(unjudged.items()))
+        verdict = Verdict.UNSTABLE
+        message = f"all tests passed, but it does not act in a process that {test} starts: {command}"
     simulated = [end.simulated for end in run.ends if end.simulated is not None]
     by = end.by if end is not None else By.EXCEPTION if run.death is not None else By.CHECK
     acted = sum(end.acted for end in run.ends)

@@ -31,6 +31,22 @@ class Event:
 
 
 @frozen
+class OutOfReach:
+    """A process that cannot join the campaign: nothing in it is seen, and no mutant of a call acts in it.
+
+    Attributes:
+        command: how its command begins.
+        why: why it cannot join.
+        files: real paths of the Python files that its command names; None if it is known to run the program,
+            but not by which files.
+    """
+
+    command: str
+    why: str
+    files: tuple[str, ...] | None
+
+
+@frozen
 class TestEnd(Event):
     """A test has ended.
 
@@ -83,6 +99,7 @@ class TestEnd(Event):
         more_checks: how many further ones were made.
         recording: what the world did, as ``evidence.recording.to_text`` writes it; None if that was not asked
             for.
+        out_of_reach: the processes that were started during it and cannot join the campaign.
         executed: units of the project's files that were executed until the test ended, but for those that
             tests before it have reported; of a mutant that this test neither reached nor failed, those of the
             test alone. None if that is not known.
@@ -127,6 +144,7 @@ class TestEnd(Event):
     not_along: str | None = None
     checks: tuple[Check, ...] = ()
     more_checks: int = 0
+    out_of_reach: tuple[OutOfReach, ...] = ()
     recording: str | None = None
     hindered: str | None = None
     guarded: str | None = None

@@ -9,12 +9,9 @@ from __future__ import annotations
 
 import linecache
 import os
-import re
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable
 from functools import wraps
-from glob import glob
-from itertools import chain
 from sys import _getframe
 from types import FrameType
 from typing import Any
@@ -22,8 +19,9 @@ from typing import Any
 from mutabot.extensions import packages
 from mutabot.languages.registry import unit_parser
 from mutabot.runtime.paths import real_folder
-from mutabot.runtime.processes.commands import STARTS, is_python, texts_of, why_unseen, words_in
+from mutabot.runtime.processes.commands import STARTS, why_unseen
 from mutabot.runtime.processes.environment import FRAMES, listen
+from mutabot.runtime.processes.named_files import files_named, starts_python
 
 #: our own audit event: lines of a file are taken, from the cache or not
 _LINES = "mutabot.getlines"
@@ -39,9 +37,6 @@ _IMPORTING = ("_frozen_importlib", "importlib._bootstrap", "zipimport", "_pytest
 _HARMLESS = (
     "_pytest", "traceback", "warnings", "logging", "doctest", "unittest", "pdb", "bdb", "runpy", "hypothesis",
 )  # fmt: skip
-
-
-_NAME = re.compile(r"[^\W\d]\w*(\.\w+)*")
 
 
 class TextReads:
@@ -103,35 +98,12 @@ class TextReads:
         """
         if is_own(_getframe(FRAMES)):
             return
-        texts = texts_of(event, arguments)
-        words = words_in(texts)
-        folder = os.fsdecode(arguments[2] if event == "subprocess.Popen" and arguments[2] else ".")
-        found: Iterable[str] = _python_files(folder, words[1:])
-        if any(map(is_python, words)):
-            if why_unseen(event, arguments) is None:
-                return
-            found = chain(found, _modules(folder, words))
-        for path in found:
+        if starts_python(event, arguments) and why_unseen(event, arguments) is None:
+            return
+        for path in files_named(event, arguments):
             name = self.name(path)
             if name is not None:
                 self._on_read(name, True)
-
-
-def _python_files(folder: str, words: Iterable[str]) -> Iterator[str]:
-    """Yield the Python files that words of a command line name, also by patterns, and that are no command."""
-    for word in words:
-        for path in glob(os.path.join(folder, word)) if word.endswith(".py") else ():
-            if os.path.isfile(path) and not os.access(path, os.X_OK):
-                yield path
-
-
-def _modules(folder: str, words: Iterable[str]) -> Iterator[str]:
-    """Yield the files of modules in a folder that words name: ``-m cell``, ``import cell``, ``cell.go()``."""
-    for word in filter(_NAME.fullmatch, words):
-        parts = word.split(".")
-        for number in range(1, len(parts) + 1):
-            place = os.path.join(folder, *parts[:number])
-            yield from filter(os.path.isfile, (f"{place}.py", *glob(os.path.join(place, "*.py"))))
 
 
 def _audit_line_reads() -> None:

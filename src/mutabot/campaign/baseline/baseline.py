@@ -166,6 +166,7 @@ class Baseline(Original):
         may_share: whether the original runs alike in copies of one process that has collected the tests.
         untested: what no test reaches of the program.
         further: by test, what is compared in runs with seeds of rounds in which no mutant runs.
+        out_of_reach: by round and test, see ``out_of_reach.files_out_of_reach``.
     """
 
     reaching: dict[tuple[int, Place], tuple[str, ...]] = field(default_factory=dict)
@@ -190,6 +191,7 @@ class Baseline(Original):
     collected: dict[int, frozenset[str]] = field(default_factory=dict)
     untested: Untested = field(default_factory=Untested)
     further: dict[str, list[Observation]] = field(default_factory=dict)
+    out_of_reach: dict[tuple[int, str], dict[str, str]] = field(default_factory=dict)
     _in_order: dict[tuple[int, frozenset[str] | None], tuple[str, ...]] = field(default_factory=dict)
     _probe_spreads: dict[tuple[int, str], ProbeSpread] = field(default_factory=dict)
 
@@ -355,6 +357,21 @@ class Baseline(Original):
             for test in known.get((other, place), ())
         }
         return [test for where, test in self.unstable if where == round and test in reaching]
+
+    def judges_out_of_reach(self, round: int, mutant: Mutant) -> dict[str, str]:
+        """Return the tests that may run a mutant's file where it does not act, with the command and why.
+
+        Mutants of the text act there too: the file itself is changed.
+        """
+        if not self.out_of_reach or self.faults.active(mutant).places:
+            return {}
+        files = {span.file for span in mutant.site.spans}
+        return {
+            test: found[file]
+            for (where, test), found in self.out_of_reach.items()
+            for file in sorted(files & found.keys())[:1]
+            if where == round
+        }
 
 
 def cost(end: TestEnd) -> tuple[float, int]:

@@ -31,6 +31,7 @@ from mutabot.operators import load_all
 from mutabot.original import Hit, RecordedAnswers, TextSeen
 
 from .baseline import Baseline, Sources, observation, refusals_by_test
+from .out_of_reach import files_out_of_reach
 from .untested import add_untested
 
 if TYPE_CHECKING:
@@ -296,6 +297,7 @@ def _read(suite: _Suite, texts: Mapping[str, tuple[ProgramText, ...]]) -> Baseli
     add_untested(
         baseline, request.root, request.configuration.program, request.vocabulary, suite.results.values()
     )
+    baseline.out_of_reach = files_out_of_reach(request.root, request.configuration.program, baseline.ends)
     refuse_failing(request, failing)
     if not any(baseline.ran(round) for round in range(request.rounds)):
         raise NothingToDoError(_no_tests(baseline))

@@ -21,9 +21,11 @@ from json import dumps, loads
 from typing import Any
 
 from mutabot.model.event_file import ANY_PROCESS, NOW, TESTS, VARIABLE, WAKE
+from mutabot.model.events import OutOfReach
 from mutabot.model.files import open_file, read_file
 from mutabot.runtime.paths import BEGAN
 from mutabot.runtime.processes.commands import STARTS, STARTUP, command_of, starts_a_killer, why_unseen
+from mutabot.runtime.processes.named_files import files_named
 
 #: called with an event's name and its arguments
 AuditHandler = Callable[[str, tuple[Any, ...]], None]
@@ -277,7 +279,7 @@ class ProcessWatch:
     """Watches, in the test process, the starts of processes by the tests.
 
     Args:
-        on_unseen: called with the command of each process that cannot report to the campaign, and why.
+        on_unseen: called with each process that cannot report to the campaign.
 
     Attributes:
         codes: exit codes by process, negative for a signal.
@@ -285,7 +287,7 @@ class ProcessWatch:
             started what does so.
     """
 
-    def __init__(self, on_unseen: Callable[[str, str], None]) -> None:
+    def __init__(self, on_unseen: Callable[[OutOfReach], None]) -> None:
         self.codes: dict[int, int] = {}
         self.signalled: set[int] = set()
         self._on_unseen = on_unseen
@@ -317,4 +319,5 @@ class ProcessWatch:
             if starts_a_killer(event, arguments):
                 self.signalled.add(ANY_PROCESS)
             if why := why_unseen(event, arguments):
-                self._on_unseen(" ".join(command_of(event, arguments)[:3]), why)
+                files = tuple(sorted({os.path.realpath(file) for file in files_named(event, arguments)}))
+                self._on_unseen(OutOfReach(" ".join(command_of(event, arguments)[:3]), why, files))

@@ -46,6 +46,7 @@ class Members:
         self._present: list[ChildRecord] = []
         self._texts: list[events.TextsSeen] = []
         self._unseen: set[str] = set()
+        self._out_of_reach: list[events.OutOfReach] = []
         self._read: set[str] = set()
         self._acted = has_acted
         export_folder(self.folder)
@@ -73,7 +74,9 @@ class Members:
         read: Executed = dict.fromkeys(sorted(self._read), (AS_TEXT, WHOLE))
         self._read.clear()
         executed = together([end.executed, read]) if read else end.executed
-        return replace(end, failure=end.failure or self.children.doubt, executed=executed)
+        out_of_reach, self._out_of_reach = tuple(dict.fromkeys(self._out_of_reach)), []
+        failure = end.failure or self.children.doubt
+        return replace(end, failure=failure, executed=executed, out_of_reach=out_of_reach)
 
     def have_begun(self) -> bool:
         """Return whether any member has begun until now."""
@@ -104,7 +107,7 @@ class Members:
         for event in self.children.read():
             match event:
                 case events.Began(unable=why) if why is not None:
-                    self._report_unseen(" ".join(event.command[:3]), why)
+                    self._report_unseen(events.OutOfReach(" ".join(event.command[:3]), why, None))
                 case events.TextsSeen():
                     self._texts.append(event)
                 case events.Signalled():
@@ -130,12 +133,13 @@ class Members:
         ]
         return replace(end, recording=recording.text([*recorder.recorded_calls(), *found])) if found else end
 
-    def _report_unseen(self, name: str, why: str) -> None:
-        if name in self._unseen or not self._session.job.inspect:
+    def _report_unseen(self, process: events.OutOfReach) -> None:
+        self._out_of_reach.append(process)
+        if process.command in self._unseen or not self._session.job.inspect:
             return
-        self._unseen.add(name)
-        text = f"nothing in this process is seen or mutated: {why}"
-        self._session.writer.send(events.Remark("processes", name, text))
+        self._unseen.add(process.command)
+        text = f"nothing in this process is seen or mutated: {process.why}"
+        self._session.writer.send(events.Remark("processes", process.command, text))
 
 
 def _write_wake(folder: str, job: Job) -> None:
