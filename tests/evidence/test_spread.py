@@ -186,10 +186,7 @@ def test_a_value_that_leaves_its_range_alone_is_no_delay() -> None:
 def test_things_that_left_their_paths_are_reported_together() -> None:
     way = [(x, y + (0.2 if 5 < number < 10 else 0.0), z) for number, (x, y, z) in enumerate(WAY)]
     story = told(recorded(way, way), recorded(WAY, WAY)).story
-    assert (
-        "box and tool left their paths by up to 0.2 m but reached the correct end positions"
-        in story
-    )
+    assert "box and tool left their paths by up to 0.2 m but reached the correct end positions" in story
 
 
 @pytest.mark.parametrize(("waits", "is_named"), [(6, True), (1, False)])

@@ -183,7 +183,10 @@ def test_what_slips_on_its_way_is_reported_though_no_position_differs(suite: Sui
 
 @pytest.mark.parametrize(
     ("slip", "said"),
-    [(0.0093, "within your smallest tolerance of 20 mm"), (0.031, "nothing that its tests can read distinguishes it")],
+    [
+        (0.0093, "within your smallest tolerance of 20 mm"),
+        (0.031, "nothing that its tests can read distinguishes it"),
+    ],
 )
 def test_a_slip_that_the_suite_allows_at_the_end_is_reported_with_its_tolerance(
     suite: SuiteChecks, slip: float, said: str
