@@ -18,12 +18,8 @@ def print_suggestions(context: CommandContext, found: Suggestions) -> None:
     """Print each check, the mutants it kills and how sure it is, the remaining survivors, and the diff."""
     killed = {mutant for proven in found.checks for mutant in proven.kills}
     survivors = plural(len(killed) + len(found.unsolved), "survivor")
-    found_for = (
-        f"{plural(len(found.checks), 'check')} for {len(killed)} of"
-        if found.checks
-        else "No check for any of"
-    )
-    context.print(f"{found_for} {survivors}")
+    checks = f"{plural(len(found.checks), 'check')} for {len(killed)}" if found.checks else "No check for any"
+    context.print(f"{checks} of {survivors}")
     proofs = {tuple(_proof_lines(check)) for check in found.checks}
     is_shared = len(found.checks) > 1 and len(proofs) == 1
     for number, check in enumerate(found.checks, start=1):
