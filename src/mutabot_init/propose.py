@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from time import monotonic
 from typing import Any
 
 from mutabot.api.reports import MutabotError, UsageError
@@ -124,11 +125,13 @@ class _Findings:
         layout = look(root, given)
         refuse_mistakes(layout)
         notify("running the tests once, to see what the program calls")
+        began = monotonic()
         self._watch(layout, limit)
-        if self.is_empty and layout.below and self.run.outcomes and not self.run.trouble:
+        left = limit - (monotonic() - began)
+        if self.is_empty and layout.below and self.run.outcomes and not self.run.trouble and left > 0:
             notify("none of these calls looks like one of a robot; once more, with what the program imports")
             first = dict(vars(self))
-            self._watch(layout.with_below(), limit, reaching=True)
+            self._watch(layout.with_below(), left, reaching=True)
             if self.is_empty:
                 vars(self).update(first)
         if self.is_empty:  # what is called at all may be skipped and repeated
@@ -292,8 +295,9 @@ def propose(
     """Write ``mutabot.toml`` and ``robot.toml``; return lines on what was found and what to do next.
 
     ``program`` are files or folders of the robot program, relative to the working folder or to ``root``;
-    without any they are guessed. The tests are run once, for ``limit`` seconds at most, to see what the
-    program calls; ``notify`` is called before. No existing file is touched.
+    without any they are guessed. The tests are run to see what the program calls, for ``limit`` seconds at
+    most, without those for which they wait for a processor; ``notify`` is called before. No existing file is
+    touched.
 
     Raises UsageError if there is a configuration already, no program, or a file that is no Python.
     """

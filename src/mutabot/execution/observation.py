@@ -19,6 +19,7 @@ from mutabot.extensions import libraries, references_for_processes
 from mutabot.model.codec import from_data, to_data
 from mutabot.model.event_file import FOLDER
 from mutabot.model.observation import JOB, SEEN, TESTS, VARIABLE, ObservationJob
+from mutabot.model.process_time import TimeUsed
 from mutabot.testpaths import test_paths
 
 T = TypeVar("T")
@@ -65,7 +66,8 @@ def observe(
         program, tests: files of either side, relative to ``root``, with ``/``.
         observer: ``module:Name`` of the ``Observer`` that watches in each process of the run.
         result: the dataclass that its ``data`` returns.
-        limit: seconds that the run may take; it is then ended, and what was seen by then is returned.
+        limit: seconds that the run may take, without those for which it waits for a processor; it is then
+            ended, and what was seen by then is returned.
 
     Raises ExtensionError for a package that cannot be used.
     """
@@ -105,8 +107,11 @@ def _wait(
         ) as process,
     ):  # fmt: skip
         try:
-            process.wait(limit)
-        except subprocess.TimeoutExpired:
+            used = TimeUsed.from_now()
+            while (left := used.remaining(limit, None, [process.pid])[0]) > 0:
+                with contextlib.suppress(subprocess.TimeoutExpired):
+                    process.wait(left)  # again, if it stood in the queue for a processor in that time
+                    return False
             process.send_signal(signal.SIGINT)  # as a person would: pytest ends in an orderly way
             with contextlib.suppress(subprocess.TimeoutExpired):
                 process.wait(_PATIENCE)
@@ -114,7 +119,6 @@ def _wait(
         finally:
             kill_group(process.pid)
             process.wait()
-    return False
 
 
 def _read(folder: Path, result: type[T]) -> Observed[T]:

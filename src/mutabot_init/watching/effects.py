@@ -160,7 +160,7 @@ class _Function:
         module = (getattr(found, "__module__", "") or "").partition(".")[0]
         if module in _OUTSIDE or found in _WRITING:
             return False
-        if module in _COMPUTING:
+        if module in _COMPUTING or (module == "random" and getattr(found, "__name__", "") in _DRAWING):
             return True
         # a cached function is a wrapper; hasattr is true of all names of mock.call
         is_wrapper = "__wrapped__" in getattr(found, "__dict__", {})
@@ -184,22 +184,12 @@ class _Function:
 #: libraries that compute
 _COMPUTING = frozenset(
     {
-        "math",
-        "cmath",
-        "numpy",
-        "scipy",
-        "itertools",
-        "functools",
-        "operator",
-        "copy",
-        "statistics",
-        "builtins",
-        "_struct",
-        "binascii",
-        "re",
-        "zlib",
+        "_hashlib", "_struct", "base64", "binascii", "builtins", "cmath", "copy", "functools", "hashlib",
+        "itertools", "math", "numpy", "operator", "re", "scipy", "statistics", "uuid", "zlib",
     }
-)
+)  # fmt: skip
+#: functions of ``random`` that draw a number: others shuffle what they are given, or hand out a part of it
+_DRAWING = frozenset({"gauss", "getrandbits", "randbytes", "randint", "random", "randrange", "uniform"})
 #: built-in functions that do more than compute
 _WRITING = (print, open, input, setattr, delattr, exec, eval)
 #: methods of numbers, arrays, texts and bytes that compute
