@@ -14,12 +14,14 @@ from typing import Any
 from .observations import WatchedPart
 from .words import (
     ASKING,
+    COUNTED,
     DIRECTIONS,
     FRAMES,
     GRIPPER,
     HOUSEKEEPING,
     INPUTS,
     KINDS,
+    MEASURED,
     MODES,
     NOUNS,
     OUTPUT,
@@ -30,6 +32,7 @@ from .words import (
     STATES,
     SUBJECTS,
     TURNS,
+    TYPES,
     UNITS,
     VERBS,
     first,
@@ -59,6 +62,8 @@ _RANGES = (
     re.compile(rf"between\s+{_A_NUMBER}\s*(?:\([^)]*\))?\s+and\s+(?:the\s+default\s+)?{_A_NUMBER}"),
     re.compile(rf"[\[(]{_A_NUMBER}\s*(?:\.\.\.?|,)\s*{_A_NUMBER}[\])]"),
     re.compile(rf"{_A_NUMBER}\s*(?:~|to)\s*{_A_NUMBER}"),
+    # no date, and no name such as RS-485
+    re.compile(r"(?<![\w.-])(\d+(?:\.\d+)?)\s?(?:-|–|\.\.\.?)\s?(\d+(?:\.\d+)?)(?![\w-]|\.\d)"),
 )
 #: what libraries may scale to a share of its most
 _SCALED = frozenset({"speed", "acceleration", "angle", "force", "torque"})
@@ -116,6 +121,7 @@ class NameContext:
         values: values that were seen, and what the program compares them with.
         names: the names of all arguments.
         relative: what an argument ``relative`` said; empty if there is none.
+        members: names of the members of its enumeration.
         angle_unit: unit of angles, as an argument such as ``degrees`` said; empty if none did.
     """
 
@@ -126,6 +132,7 @@ class NameContext:
     values: Sequence[Any] = ()
     names: frozenset[str] = frozenset()
     relative: frozenset[bool] = frozenset()
+    members: Sequence[str] = ()
     angle_unit: str = ""
 
     @property
@@ -277,11 +284,18 @@ def measured(table: TomlTable, dimension: str, unit: str | None, name: str, sett
     if len(units) == 1:
         return Guess({**table, "unit": units[0]})
     is_raw = dimension != "time" and _RAW.search(about) is not None
+    is_raw = is_raw or (table["kind"] == "position" and _may_be_counts(setting.values))
     shown = _unit_by_size(dimension, setting.values) if not (units or is_raw) else None
     if shown is not None:
         return Guess({**table, "unit": shown}, note="unit inferred from the values")
     question = f"the unit: {', '.join(units or fitting)}{', or counts of the drive' if is_raw else ''}?"
     return Guess({**table, "unit": (units or fitting)[0]}, [question])
+
+
+def _may_be_counts(values: Sequence[Any]) -> bool:
+    """Return whether all sequences hold whole numbers alone, as encoders give them."""
+    lists = [value for value in values if isinstance(value, list)]
+    return bool(lists) and all(float(element).is_integer() for value in lists for element in value)
 
 
 def _about(name: str, doc: str) -> str:
@@ -330,10 +344,16 @@ def _opening(unit: str | None, name: str, setting: NameContext) -> Guess:
     if len(values) == 2 and set(values) == {0, 1}:
         return Guess({"kind": "opening", "values": values})
     about = _about(name, setting.doc)
-    units, limits = [unit] if unit else units_in(about, "length"), _documented_range(about, setting)
+    units = [unit] if unit else units_in(about, "length")
+    limits = _documented_range(about, setting)
     if limits in ([0.0, 1.0], [0.0, 100.0]) and not units:
-        unit = "fraction" if limits[1] == 1.0 else "percent"
-        return Guess({"kind": "opening", "unit": unit, "range": limits})
+        units = ["fraction" if limits[1] == 1.0 else "percent"]
+    if limits is not None:  # a number without a unit is no opening, but has a range
+        return Guess(
+            {"kind": "opening", "unit": units[0], "range": limits}
+            if units
+            else {"kind": "output", "range": limits}
+        )
     table: TomlTable = {"kind": "opening", **({"unit": units[0]} if units else {}), "range": ["…", "…"]}
     asked = "what is fully closed, what is fully open?"
     return Guess(table, [asked if units else f"{asked} in which unit (fraction, percent, mm, m)?"])
@@ -363,7 +383,15 @@ def guess_reading(name: str, setting: NameContext) -> Guess:
     is_predicate = bool({"is", "has", "can"} & about)
     is_reply = bool(about & HOUSEKEEPING) and (is_predicate or bool(REPLIES & set(setting.owner)))
     is_reply = is_reply or (is_predicate and bool(FRAMES & set(setting.owner)))  # which message it is
-    if noun == "none" or INPUTS & set(setting.owner) or is_reply or SETTINGS & set(words):
+    if INPUTS & set(setting.owner) or is_reply or SETTINGS & set(words):
+        return Guess()
+    if 2 <= len(setting.members) <= _MOST_LABELS and not TYPES & set(words):
+        return Guess({"kind": "label", "values": list(setting.members)})
+    is_number = all(type(value) in (int, float) for value in setting.values)
+    is_measured = bool(MEASURED & set(words)) and noun not in KINDS and not COUNTED & set(words)
+    if is_number and (is_measured or _counts_fingers(noun, setting)):
+        return Guess({"kind": "number"})
+    if noun == "none":
         return Guess()
     if _are_truth(setting) or (is_predicate and all(value in (0, 1) for value in setting.values)):
         return Guess({"kind": "flag"} if is_predicate or _names_a_state(words, setting) else {})
@@ -391,6 +419,12 @@ def guess_reading(name: str, setting: NameContext) -> Guess:
         _, kind, dimension = KINDS[noun]
         return measured({"kind": kind}, dimension, unit, name, setting)
     return Guess()
+
+
+def _counts_fingers(noun: str, setting: NameContext) -> bool:
+    """Return whether it is where a gripper's fingers are, in steps of the drive: whole numbers, no unit."""
+    is_place = setting.is_of_gripper and noun in ("place", "opening") and not units_in(setting.doc, "length")
+    return is_place and all(type(value) is int for value in setting.values) and max(setting.values) > 2
 
 
 def _names_a_state(words: Sequence[str], setting: NameContext) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -31,7 +31,7 @@ _OF_BUILT_INS = frozenset(name for kind in (dict, list, set, str, bytes) for nam
 #: words in a file's name that say "this is a robot program", where there is a choice
 _PROGRAM_NAMES = (
     "mission", "program", "main", "task", "job", "app", "process", "pick", "place", "pallet", "sort",
-    "policy", "routine", "sequence", "demo", "controller",
+    "policy", "routine", "sequence", "controller",
 )  # fmt: skip
 
 
@@ -46,6 +46,7 @@ class Layout:
         arguments: pytest arguments that name the tests.
         guessed: whether the program was guessed.
         below: files that a guessed program imports and that import others in turn.
+        imported: all files of the project that a guessed program imports.
     """
 
     root: Path
@@ -54,10 +55,19 @@ class Layout:
     arguments: list[str]
     guessed: bool
     below: list[Path]
+    imported: list[Path]
 
-    def with_below(self) -> Layout:
-        """Return the layout with the files below the program as parts of it."""
-        return replace(self, program=[*self.program, *self.below], below=[])
+    def extended(self, files: Sequence[Path]) -> Layout:
+        """Return the layout with these files as parts of the program."""
+        return replace(self, program=[*self.program, *files], below=[], imported=[])
+
+    def importing(self, packages: Collection[str]) -> list[Path]:
+        """Return the files below the program that import one of these packages."""
+        return [
+            path
+            for path in self.imported
+            if any(name.partition(".")[0] in packages for name in imported_modules(path))
+        ]
 
     def relative(self, path: Path) -> str:
         """Return a path as the configuration writes it."""
@@ -84,8 +94,11 @@ def look(root: Path, given: Sequence[Path]) -> Layout:
         )
     others = [path for path in tests if path not in program]
     arguments = _arguments(root, suites)
-    below = [] if chosen else _below(program, code, root)
-    return Layout(root, program, others, arguments, guessed=not chosen, below=below)
+    modules = _Modules(code, root)
+    imported = set() if chosen else modules.reached(program) - set(program)
+    below = [path for path in code if path in imported and modules.reached([path]) - {path}]
+    under = [path for path in code if path in imported]
+    return Layout(root, program, others, arguments, guessed=not chosen, below=below, imported=under)
 
 
 def other_files(root: Path, given: Sequence[Path]) -> list[Path]:
@@ -164,9 +177,13 @@ def _is_test_side(path: Path) -> bool:
 
 
 def _doubles(code: Sequence[Path], root: Path) -> list[Path]:
-    """Return files that stand in for a device, by their names, and that no code but the tests imports."""
+    """Return files that stand in for a device, by their names, and that no code but the tests imports.
+
+    What a package only hands on to its users is not used by it.
+    """
     named = [path for path in code if _DOUBLES & set(words_of(path.stem))]
-    used = _Modules(code, root).reached([path for path in code if path not in named])
+    using = [path for path in code if path not in named and path.name != "__init__.py"]
+    used = _Modules(code, root).reached(using)
     return [path for path in named if path not in used]
 
 
@@ -210,13 +227,6 @@ def _guess_program(code: Sequence[Path], tests: Sequence[Path], root: Path) -> l
     named = [path for path in free if _names_a_program(path.stem)]
     busy = [path for path in free if used[path]]
     return named or busy or [path for path in free if path in commanding] or free
-
-
-def _below(program: Sequence[Path], code: Sequence[Path], root: Path) -> list[Path]:
-    """Return the files of the project that the program imports and that import others of it in turn."""
-    modules = _Modules(code, root)
-    reached = modules.reached(program) - set(program)
-    return [path for path in code if path in reached and modules.reached([path]) - {path}]
 
 
 def _calls_methods(path: Path) -> bool:

@@ -37,6 +37,7 @@ class WatchedPart:
         values: the first different values; sequences of numbers as lists, moments in seconds.
         length: least number of elements of a sequence; None for anything else.
         limits: least and greatest value of each element, where the object gives them.
+        members: names of the members of its enumeration.
         count: in how many values it was there.
     """
 
@@ -48,6 +49,7 @@ class WatchedPart:
     values: list[Any] = field(default_factory=list)
     length: int | None = None
     limits: list[list[float]] | None = None
+    members: list[str] = field(default_factory=list)
     count: int = 0
 
 
@@ -97,6 +99,7 @@ class WatchedCallable:
         is_documented: whether only a docstring gives the signature.
         annotations: types of the arguments as written, in their order.
         returns: type of the result as written.
+        returned: names of the elements of a result that is a tuple, as its text or docstring names them.
         problem: why its calls cannot be intercepted; empty if they can.
         raised: exceptions that it raised, or that its text raises.
         stands_in: whether it was seen on a mock or a fake.
@@ -127,6 +130,7 @@ class WatchedCallable:
     is_documented: bool = False
     annotations: dict[str, str] = field(default_factory=dict)
     returns: str = ""
+    returned: list[str] = field(default_factory=list)
     problem: str = ""
     raised: list[str] = field(default_factory=list)
     stands_in: bool = False

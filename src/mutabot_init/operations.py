@@ -225,7 +225,7 @@ def _computes(call: WatchedCallable) -> bool:
     is_pure = bool(call.arguments) and (call.only_computes or is_called_so)
     is_pure = bool(is_pure or verb & CODECS)
     # what computes from its arguments alone reads nothing, and nor does what compares with one
-    may_read = _reads(call) and (bool(call.owner) or not call.only_computes)
+    may_read = _reads(call) and (bool(call.owner) or not call.only_computes) and not verb & CODECS
     may_read = may_read and not (call.only_computes and _COMPARING & set(words_of(call.name)))
     return is_constructor or ((is_pure or _fills_buffer(call)) and not may_read)
 
@@ -308,13 +308,20 @@ def _argument(name: str, part: WatchedPart, call: WatchedCallable) -> Iterator[t
 def _result(call: WatchedCallable, groups: Sequence[Sequence[Any]]) -> dict[str, Guess]:
     found: dict[str, Guess] = {}
     parts = [part for part in call.result.parts.values() if call.result.always(part)]
-    sequences = [part for part in parts if part.length is not None]
+    sequences, paths = [part for part in parts if part.length is not None], {part.path for part in parts}
     for part in parts:
         if part.path and not part.name and part.length is not None and len(sequences) > 1:
             continue  # one of several sequences: which one is unknown
-        if part.values:
+        if (part.values or part.members) and not _is_alike(part, paths):
             found.update(_reading(call, part, groups))
     return {path: guess for path, guess in found.items() if guess.table}
+
+
+def _is_alike(part: WatchedPart, paths: set[str]) -> bool:
+    """Return whether it is a part of a record in a list of four or more: the first stands for all."""
+    index, _, rest = part.path.removeprefix("[").partition("]")
+    is_later = index.isdigit() and index != "0" and bool(rest)
+    return is_later and all(f"[{number}]{rest}" in paths for number in range(4))
 
 
 def _reading(call: WatchedCallable, part: WatchedPart, groups: Sequence[Sequence[Any]]) -> dict[str, Guess]:
@@ -326,16 +333,47 @@ def _reading(call: WatchedCallable, part: WatchedPart, groups: Sequence[Sequence
     if part.name and TYPES.intersection(words_of(part.name)[-1:]):
         return {}  # what an object is, rather than what a sensor reads
     if part.name:  # a field says itself what it is
-        setting = NameContext((), setting.owner, part.doc + setting.doc, values=part.values)
+        doc = part.doc + setting.doc
+        setting = NameContext((), setting.owner, doc, values=part.values, members=part.members)
     if part.length is not None:
-        return guess_elements(part, own, setting, written=False)
-    if part.path and not part.name:  # an element of a tuple: only the flags of a step are known
-        return {part.path: Guess({"kind": "flag"})} if call.name == "step" and part.type == "bool" else {}
+        named = _named_elements(call, part)
+        return named if named is not None else guess_elements(part, own, setting, written=False)
+    if part.path and not part.name:  # an element of a tuple
+        if call.name == "step":  # of which only the flags are known
+            return {part.path: Guess({"kind": "flag"})} if part.type == "bool" else {}
+        index = re.fullmatch(r"\[(\d+)\]", part.path)
+        return _named_element(call, part, int(index[1])) if index else {}
     if not part.path:
         values = tuple(with_compared(part.values, groups))
         annotation = setting.annotation or (part.type if part.type in ("bool", "str") else "")
-        setting = NameContext(setting.words, setting.owner, setting.doc, annotation, values)
+        setting = replace(setting, annotation=annotation, values=values)
     return {part.path: guess_reading(own, setting)}
+
+
+def _named_elements(call: WatchedCallable, part: WatchedPart) -> dict[str, Guess] | None:
+    """Return what the elements of a tuple of numbers mean, by their names; None if it is a pose or a list."""
+    names = call.returned
+    if part.path or part.length != len(names) or not any(names) or {*names} <= {"x", "y", "z", ""}:
+        return None
+    found: dict[str, Guess] = {}
+    for index in range(len(names)):
+        values = list(dict.fromkeys(value[index] for value in part.values if len(value) > index))
+        element = replace(part, path=f"[{index}]", values=values, length=None)
+        found.update(_named_element(call, element, index))
+    return found
+
+
+def _named_element(call: WatchedCallable, part: WatchedPart, index: int) -> dict[str, Guess]:
+    """Return what an element of a tuple means: by its name, and by the callable's if it is the value read."""
+    # what a task ends with is no reading, as that of run()
+    is_read = _reads(call) or call.is_property or bool(noun_of(words_of(call.name)))
+    name = call.returned[index] if is_read and index < len(call.returned) else ""
+    owner = _setting(call, part, "").owner
+    words: tuple[str, ...] = ()
+    if noun_of(words_of(name)) == "generic" and _reads(call):
+        words, name = words_of(call.name), "_".join(words_of(call.name))
+    setting = NameContext(words, owner, call.doc, part.type, part.values, members=part.members)
+    return {part.path: guess_reading(name, setting)} if name else {}
 
 
 def _find_current(proposal: Proposal, found: dict[str, Proposal]) -> None:
@@ -411,6 +449,7 @@ def _setting(call: WatchedCallable, part: WatchedPart, annotation: str) -> NameC
         values=part.values,
         names=frozenset(call.arguments),
         relative=_truth_values("relative", call),
+        members=part.members,
         angle_unit=("deg" if True in degrees else "rad") if len(degrees) == 1 else "",
     )
 
@@ -431,7 +470,12 @@ _READS, _WRITES = frozenset({"read", "get"}), frozenset({"write", "send", "set"}
 #: how the argument is called that holds what is written, beside those that say how
 _WRITTEN = frozenset({"value", "values", "val", "data", "state"})
 #: arguments that say how to write rather than what
-_HOW = frozenset({"timeout", "wait", "device_id", "slave", "unit", "no_response_expected", "count", "qos"})
+_HOW = frozenset(
+    {
+        "timeout", "wait", "device_id", "slave", "unit", "no_response_expected", "count", "qos", "retain",
+        "headers", "auth", "verify", "cookies", "stream", "proxies", "cert", "topic_type", "service_type",
+    }
+)  # fmt: skip
 #: more different numbers than these are no settings, but a scale
 _MOST_VALUES = 5
 
@@ -517,10 +561,17 @@ def _written(text: str, command: Command) -> dict[str, Any]:
     names = command.arguments.keys() & _WRITTEN or command.arguments.keys() - _HOW
     for name, values in command.arguments.items():
         part = _only_element(name, values) if name in names else None
-        table = _value(text, part) if part is not None else {}
-        if part is not None and table:
-            tables[part.path] = table
+        parts = [part] if part is not None else _fields(name, values) if name in names else []
+        for one in parts:
+            table = _value(one.name or text, one)
+            if table:
+                tables[one.path] = table
     return {"arguments": tables} if tables else {}
+
+
+def _fields(name: str, values: Values) -> list[WatchedPart]:
+    """Return the named values in a table that is written: ``json["speed"]``."""
+    return [part for part in values.parts.values() if part.name and part.path != name and values.always(part)]
 
 
 def _only_element(name: str, values: Values) -> WatchedPart | None:
@@ -545,7 +596,9 @@ def _value(text: str, part: WatchedPart) -> dict[str, Any]:
     guess = guess_argument((words or ("",))[-1], NameContext((*words[:-1], "set"), values=values))
     if guess.is_sure and guess.table["kind"] in ("translation", "rotation", "duration"):
         return guess.table
-    return {"kind": "output", "values": values} if 2 <= len(values) <= _MOST_VALUES else {}
+    # a number with a name of its own is on a scale
+    is_open = bool(part.name) and (guess.questions or not all(type(value) is int for value in values))
+    return {"kind": "output", "values": values} if not is_open and 2 <= len(values) <= _MOST_VALUES else {}
 
 
 def _read(text: str, command: Command, groups: Sequence[Sequence[Any]]) -> dict[str, Any]:

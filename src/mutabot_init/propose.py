@@ -128,11 +128,14 @@ class _Findings:
         began = monotonic()
         self._watch(layout, limit)
         left = limit - (monotonic() - began)
-        if self.is_empty and layout.below and self.run.outcomes and not self.run.trouble and left > 0:
-            notify("none of these calls looks like one of a robot; once more, with what the program imports")
-            first = dict(vars(self))
-            self._watch(layout.with_below(), left, reaching=True)
-            if self.is_empty:
+        files = layout.below if self.is_empty else layout.importing(self._libraries)
+        if files and self.run.outcomes and not self.run.trouble and left > 0:
+            why = "none of these calls looks like one of a robot" if self.is_empty else "the robot is called"
+            what = "what the program imports" if self.is_empty else "other files that import its library"
+            notify(f"{why}; once more, with {what}")
+            first, had, was_empty = dict(vars(self)), self.taken, self.is_empty
+            self._watch(layout.extended(files), left, reaching=was_empty)
+            if self.is_empty or self.taken < had or self.run.trouble:
                 vars(self).update(first)
         if self.is_empty:  # what is called at all may be skipped and repeated
             for operation in self.operations:
@@ -176,6 +179,13 @@ class _Findings:
                 and proposal.is_reading
                 and self._may_be_read(proposal, is_known=_holder(proposal.call) in known)
             ]
+
+    @property
+    def _libraries(self) -> set[str]:
+        """The installed packages of which the program's calls are proposed or known."""
+        taken = [operation.call for operation in self.operations if operation.is_taken]
+        calls = [*taken, *(call for call in self.calls if any(known.describes(call) for known in self.known))]
+        return {call.package for call in calls if not (call.of_tests or self._is_of_project(call))}
 
     @property
     def drafts(self) -> list[Proposal | MessageEntry]:

@@ -80,17 +80,18 @@ COMPUTERS = _words(
     "calculate calc compute estimate parse format encode decode serialize deserialize check validate verify"
 )
 #: those that make no more than another form of what they are given
-CODECS = _words("parse format encode decode serialize deserialize")
+CODECS = _words("parse format encode decode serialize deserialize render")
 #: how functions are called that make a request, which something else sends
 BUILDERS = _words("build prepare construct generate")
 #: how callables begin that keep something for later
 KEEPERS = _words("save store record remember adopt")
-#: what counts what was done
-BOOKS = _words("metric metrics statistic statistics stats")
+#: what counts or keeps what was done
+BOOKS = _words("metric metrics statistic statistics stats buffer cache history viewer")
 #: what is made ready before the robot does anything, and the clock of a simulator
 SETUP = _words(
     "create connect disconnect load make init initialize configure configuration simulation reset safety "
-    "handler callback listener observer username password login logout authenticate"
+    "handler callback listener observer username password login logout authenticate baud baudrate bitrate "
+    "parity stopbits bytesize"
 )
 #: what a function is called that is handed over, to be called back
 CALLBACKS = _words("callback callbacks handler listener observer")
@@ -109,6 +110,12 @@ HELPERS = _words(
 SIZES = _words("length width diameter thickness")
 #: words of settings, which no sensor reads
 SETTINGS = _words("max maximum min minimum default initial limit limits only supported supports configured")
+#: what a sensor measures of which vocabularies have no kind of its own
+MEASURED = _words(
+    "flow humidity ph conductivity turbidity density viscosity illuminance lux setpoint battery"
+)
+#: what says how often or how much of it, and is measured by no sensor
+COUNTED = _words("count id index unit units type source status mode time total name")
 #: what something is, which never changes
 TYPES = _words("type kind category")
 #: words for a state that are no participles

@@ -20,6 +20,7 @@ from typing import Any
 from mutabot.api.values import parse_signature, resolve
 from mutabot_init.observations import ANY, Holder, WatchedCallable
 from mutabot_init.watching.effects import only_computes
+from mutabot_init.watching.returned import names_of_elements
 
 #: what pybind11 writes for a default that is no literal, in front of each overload, and of arguments
 _OBJECT, _OVERLOAD = re.compile(r"<[^<>]*>"), re.compile(r"^\s*\d+\. ", re.MULTILINE)
@@ -192,6 +193,7 @@ def described(callee: Callee, *, of_tests: bool, own: bool) -> WatchedCallable:
             if parameter.name != "self"
         },
         returns=_written(signature.return_annotation) if signature is not None else "",
+        returned=names_of_elements(function),
         raised=list(dict.fromkeys(_raised_by(function))),
         stands_in=callee.stands_in,
     )

@@ -71,6 +71,8 @@ def _parts(value: Any, part: WatchedPart, depth: int) -> Iterator[WatchedPart]:
     if value is None:
         return
     value = _in_seconds(value)
+    if isinstance(value, enum.Enum) and not isinstance(value, enum.Flag):
+        part.members = [*type(value).__members__]
     if isinstance(value, bool | int | float | str):
         part.values = [value[:_LONGEST] if isinstance(value, str) else value] if _is_finite(value) else []
         yield part
@@ -134,8 +136,9 @@ def _names(value: Any) -> tuple[str, ...]:
     if kind.__name__ in _OF_NATIVE:
         return _OF_NATIVE[kind.__name__]
     names: Any = getattr(kind, "_fields", None)  # the type's: a mock has any attribute
-    if names is None and any(hasattr(kind, name) for name in _COORDINATES):  # of a vector written in C
-        names = tuple(name for name in _COORDINATES if hasattr(kind, name))
+    found = tuple(name for name in _COORDINATES if hasattr(kind, name))
+    if names is None and found and not dataclasses.is_dataclass(kind):  # a vector written in C
+        names = found
     if names is None and (dataclasses.is_dataclass(value) or _is_record(value)):
         names = vars(value) if hasattr(value, "__dict__") else getattr(kind, "__slots__", ())
     return (names,) if isinstance(names, str) else tuple(names or ())

@@ -57,10 +57,10 @@ _NO_ROBOTS = frozenset(
 _DISTINGUISHING = frozenset(
     {
         "node", "node_id", "nodeid", "name", "address", "register", "tag", "channel", "signal", "topic",
-        "variable",
+        "variable", "topic_name", "service", "service_name", "url", "endpoint",
     }
 )  # fmt: skip
-_TALKS = frozenset({"read", "write", "get", "set", "send", "publish"})
+_TALKS = frozenset({"read", "write", "get", "set", "send", "publish", "call", "post", "put", "patch"})
 #: how addresses in a controller look: ``Y10``, ``%MW4``, ``DB1.DBX0.2``
 _ADDRESS = re.compile(r"%?[A-Z]{1,3}\d[\w.:,]*")
 #: more commands than these, and longer texts, are no list of commands
