@@ -385,7 +385,8 @@ def guess_reading(name: str, setting: NameContext) -> Guess:
     is_reply = is_reply or (is_predicate and bool(FRAMES & set(setting.owner)))  # which message it is
     if INPUTS & set(setting.owner) or is_reply or SETTINGS & set(words):
         return Guess()
-    if 2 <= len(setting.members) <= _MOST_LABELS and not TYPES & set(words):
+    is_setting = bool(TYPES & set(words)) or words[-1:] == ("mode",)
+    if 2 <= len(setting.members) <= _MOST_LABELS and not is_setting:
         return Guess({"kind": "label", "values": list(setting.members)})
     is_number = all(type(value) in (int, float) for value in setting.values)
     is_measured = bool(MEASURED & set(words)) and noun not in KINDS and not COUNTED & set(words)
@@ -437,6 +438,8 @@ def _names_a_state(words: Sequence[str], setting: NameContext) -> bool:
 
 def _label(setting: NameContext) -> Guess:
     values = _literals(setting.annotation) or _distinct(setting.values)
+    if any(isinstance(value, str) and re.fullmatch(rf"\s*{_A_NUMBER}\s*", value) for value in values):
+        return Guess()  # a number, written as a text
     texts = [value for value in values if isinstance(value, str)]
     if len(values) > _MOST_LABELS or any(len(text) > _LONGEST_LABEL for text in texts):
         return Guess()

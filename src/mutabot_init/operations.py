@@ -218,7 +218,8 @@ def _computes(call: WatchedCallable) -> bool:
     """Return whether it makes or computes something from its arguments, without the robot."""
     is_constructor = call.is_of_class and call.owner != "" and call.result.type == call.owner
     is_constructor = is_constructor or call.result.type in _MADE
-    if call.holder is Holder.CONTAINER or (call.holder is Holder.VALUE and call.only_computes):
+    is_value = call.holder is Holder.VALUE or (call.holder is Holder.DATA and call.is_property)
+    if call.holder is Holder.CONTAINER or (is_value and call.only_computes):
         return True
     verb = set(words_of(call.name)[:1])
     is_called_so = verb & (COMPUTERS if call.owner else COMPUTERS | BUILDERS)
@@ -268,7 +269,9 @@ def _is_command(call: WatchedCallable) -> bool:
 
 
 def _reads(call: WatchedCallable) -> bool:
-    return bool(READERS & set(words_of(call.name)))
+    words = words_of(call.name)
+    # set_current(2.0) writes amperes, and get_current_speed() reads
+    return bool(READERS.intersection(words[:-1] if words[:1] == ("set",) else words))
 
 
 def _message(call: WatchedCallable) -> str | None:

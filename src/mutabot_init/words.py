@@ -138,6 +138,8 @@ OUTPUT = _words("output outputs digital signal valve relay lamp coil io do out l
 
 #: what has a width in seconds, hertz or bits
 SIGNALS = _words("pulse frame band bit data bus line")
+#: what has a range in its own unit, a setting
+RANGED = _words("gyro accel accelerometer magnetometer imu voltage current scale full dynamic")
 
 #: words that undo each other
 OPPOSITES = (
@@ -258,7 +260,8 @@ def units_in(text: str, dimension: str) -> list[str]:
 def noun_of(words: Sequence[str]) -> str:
     """Return what a value with such a name is, by its last known noun; empty without one."""
     noun = next((NOUNS[word] for word in reversed(words) if word in NOUNS), "")
-    return "" if noun == "length" and "width" in words and SIGNALS & set(words) else noun
+    is_signal = "width" in words and SIGNALS & set(words)
+    return "" if noun == "length" and (is_signal or ("range" in words and RANGED & set(words))) else noun
 
 
 def first(table: Mapping[str, str], words: Iterable[str]) -> str | None:

@@ -46,6 +46,8 @@ def merge_part(values: Values, part: WatchedPart) -> None:
         values.parts[part.path] = part
         return
     known.count += part.count
+    if known.members != part.members:  # not always one of the same enumeration
+        known.members = []
     if part.length is not None and known.length is not None:
         known.length = min(part.length, known.length)
     for value in part.values:
