@@ -6,6 +6,7 @@ import enum
 import functools
 import math
 import os
+import random
 import re
 import socket
 import struct
@@ -107,6 +108,20 @@ def packed(value: int) -> bytes:
     return struct.pack("<H", value)
 
 
+def numbered(value: int) -> bytes:
+    return struct.pack("<HH", random.randint(0, 9), value)
+
+
+def started(robots: list[Any]) -> Any:
+    robot = random.choice(robots)
+    return robot.start()
+
+
+def shuffled(values: list[int]) -> list[int]:
+    random.shuffle(values)
+    return values
+
+
 def commanded(value: float) -> float:
     _stub(value)
     return -value
@@ -170,7 +185,7 @@ ADDRESS = re.compile(r"([DM])([0-9]+)")
         (factorial, True), (Robot.ask, False), (Robot.move, False), (Robot.alias, False),
         (Robot.each, False), (Robot.turn, False), (Robot.wait, False), (Robot.stands_in, False),
         (Robot.agrees, False), (Robot.later, False), (fill, False), (shown, False), (remove, False),
-        (math.sin, False), (None, False),
+        (math.sin, False), (None, False), (numbered, True), (started, False), (shuffled, False),
     ],
 )  # fmt: skip
 def test_only_functions_whose_text_shows_it_compute(function: Any, expected: bool) -> None:
