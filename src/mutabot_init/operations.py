@@ -218,7 +218,9 @@ def _computes(call: WatchedCallable) -> bool:
     """Return whether it makes or computes something from its arguments, without the robot."""
     is_constructor = call.is_of_class and call.owner != "" and call.result.type == call.owner
     is_constructor = is_constructor or call.result.type in _MADE
-    is_value = call.holder is Holder.VALUE or (call.holder is Holder.DATA and call.is_property)
+    # a state that is decoded is a reading; a number says the same as the fields
+    is_number = call.is_property and _types(call.result) <= {"int", "float"}
+    is_value = call.holder is Holder.VALUE or (call.holder is Holder.DATA and is_number)
     if call.holder is Holder.CONTAINER or (is_value and call.only_computes):
         return True
     verb = set(words_of(call.name)[:1])

@@ -70,7 +70,7 @@ _MOST_ELEMENTS = 255
 
 
 @dataclass(slots=True)
-class _Place:
+class _CountedPlace:
     """A place of calls: how often it was reached, and what the last call looked at called there."""
 
     times: int = 0
@@ -105,7 +105,7 @@ class Watch(Observer):
     def __init__(self, libraries: Sequence[str], is_test: Callable[[str], bool | None]) -> None:
         super().__init__(libraries, is_test)
         self._seen: dict[tuple[str, bool, bool], _Seen] = {}
-        self._places: defaultdict[tuple[str, str, int], _Place] = defaultdict(_Place)
+        self._places: defaultdict[tuple[str, str, int], _CountedPlace] = defaultdict(_CountedPlace)
         self._method_of = cache(method_of)
         self._function_of = lru_cache(_MOST_FUNCTIONS)(function_of)
         self._classes_named = cache(_classes_named)
