@@ -19,7 +19,7 @@ from mutabot.model import Mutant, Outcome, Role, Site, Span, Verdict
 from mutabot.model.activation import Activation
 from mutabot.model.events import TestEnd
 from mutabot.model.mutant import Place
-from tests.campaign.project import CONFIGURATION, Quiet, outcomes, request_for, write_project
+from tests.campaign.project import CONFIGURATION, REPLAY, Quiet, outcomes, request_for, write_project
 from tests.campaign.scripted import CHECKED, Died, Run, Script
 
 #: hangs in what is neither the baseline nor a fork parent: these are copies of the process that imported it
@@ -75,6 +75,32 @@ def test_a_suite_that_waits_for_ever_for_what_the_fatal_control_ended_shows_that
     project(tmp_path, MISSION)
     progress = Quiet()
     run_campaign(request_for(tmp_path, engine=engine, only=("*:reverse",)), progress)
+    assert not [line for line in progress.lines if "ended wrongly" in line]
+
+
+@pytest.mark.parametrize("engine", ["fork", REPLAY])
+def test_where_the_suite_lets_exceptions_pass_calls_that_are_missing_show_that_the_fatal_control_acted(
+    tmp_path: Path, engine: str
+) -> None:
+    mission = """
+        def run(arm):
+            arm.move_by(0.5)
+            return arm.position()
+    """
+    tests = """
+        import mission
+        from robot import Arm
+
+        def test_whatever_comes():
+            try:
+                assert mission.run(Arm()) == 0.5
+            except BaseException:
+                pass
+    """
+    write_project(tmp_path, mission, tests)
+    progress = Quiet()
+    path = run_campaign(request_for(tmp_path, engine=engine, only=("*:reverse",)), progress)
+    assert [outcome.verdict for outcome in outcomes(path)] == [Verdict.SURVIVED]
     assert not [line for line in progress.lines if "ended wrongly" in line]
 
 
