@@ -442,7 +442,12 @@ class CallEditor:
         return self._replace(self.whole, f"{PLANTED}.changed({path!r}, {change}, {text})")
 
     def _replace(self, node: ast.AST, text: str) -> Edit:
-        return Edit(self.source.name, *self.source.range(node), text)
+        for written in (text, text.replace(PLANTED, PLANTED.replace('"', "'"))):  # one may end an f-string
+            edit = Edit(self.source.name, *self.source.range(node), written)
+            with suppress(SyntaxError):
+                ast.parse(edit.applied(self.source.bytes))
+                return edit
+        raise CannotWriteError("the text with it cannot be parsed")
 
 
 def _last_name(node: ast.AST) -> str | None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from decimal import Decimal
+from fractions import Fraction
 from pathlib import Path
 from textwrap import dedent
 from typing import Any
@@ -18,6 +20,7 @@ from .catalogue_editor import CatalogueEditor
 from .editor import CannotWriteError, Facts, edits_for
 from .judge import Judge
 from .message_editor import edits_of
+from .planted import noisy
 
 VOCABULARY = """
     refusals = ["robot:Refused"]
@@ -233,6 +236,22 @@ def test_a_mutant_inside_an_f_string_is_written_in_the_other_quotation_marks(
     (edit,) = edits_for(Facts.of(project(tmp_path, source)), found)
     planted = f"(__import__({inner}_planted{inner}).fail_on_zero(y))"
     assert edit.applied(source.encode()).decode() == source.replace("y", planted)
+
+
+@pytest.mark.parametrize(("outer", "inner"), ["\"'", "'\""])
+def test_a_mutant_of_a_call_inside_an_f_string_is_too(tmp_path: Path, outer: str, inner: str) -> None:
+    source = f"x = f{outer}at {{arm.where():.2f}}{outer}\n"
+    facts = {"operator": "negate", "operation": "robot:Arm.where", "quantity": "result"}
+    (edit,) = edits_for(Facts.of(project(tmp_path, source)), mutant("arm.where()", source, **facts))
+    planted = f"(__import__({inner}_planted{inner}).negative(arm.where()))"
+    assert edit.applied(source.encode()).decode() == source.replace("arm.where()", planted)
+
+
+def test_noise_of_a_number_of_another_kind_is_of_its_kind() -> None:
+    for number in (Decimal("0.75"), Fraction(3, 4)):
+        drawn = noisy(0.5, number)
+        assert type(drawn) is type(number)
+        assert drawn != number
 
 
 @pytest.mark.parametrize("description", ["a + c → a - c", "a + b + a very long… → a - b"])
