@@ -429,8 +429,11 @@ def _summary(found: _Findings, questions: int) -> list[str]:
     ]
     names = [call.name if call.target.startswith(ANY) else call.target for call in mocked]
     if names:
-        how = "as what they stand for, or by name for any object that has it"
-        lines.append(f"seen on mocks or fakes, proposed {how}: {', '.join(names)}")
+        alone = any(call.target.startswith(ANY) for call in mocked)
+        how = "the class that they stand for" + (
+            "; a name alone means any object that has it" if alone else ""
+        )
+        lines.append(f"the tests call these on mocks or fakes, written as calls of {how}: {', '.join(names)}")
     written = " and ".join([CONFIGURATION, *([VOCABULARY] if found.needs_vocabulary else [])])
     again = f"If another file is the program, remove {written}, and run `mutabot init FILE…`"
     if found.layout.guessed and found.makes_no_call and found.calls and run.outcomes:

@@ -24,7 +24,7 @@ from mutabot.campaign.reuse.snapshot import Snapshot, State, is_source
 from mutabot.campaign.schedule import OUT_OF_TIME, run_planned
 from mutabot.campaign.sharding.shards import part_of, write_shard
 from mutabot.campaign.suppressions import note_accepted, source_text
-from mutabot.errors import ControlError, JournalError, in_short
+from mutabot.errors import ControlError, JournalError, MutabotError, in_short
 from mutabot.execution.interruption import interruptions_kept
 from mutabot.execution.versions import name_and_version
 from mutabot.journal import records
@@ -71,7 +71,8 @@ def run_campaign(request: Request, progress: Progress) -> Path:
         except BaseException as error:
             is_stopped = isinstance(error, KeyboardInterrupt)
             with suppress(JournalError):  # on a full disk not even this can be written
-                journal.finish("interrupted" if is_stopped else f"{type(error).__name__}: {error}")
+                why = str(error) if isinstance(error, MutabotError) else f"{type(error).__name__}: {error}"
+                journal.finish("interrupted" if is_stopped else why)
             raise
         finally:
             _note_others(journal, progress)

@@ -779,9 +779,9 @@ def test_where_the_tests_stand_in_for_the_robot_methods_are_proposed(tmp_path: P
     assert set(operations) == {"*:*.move_by", "robot:Lamp.set_output", "*:*.rotate"}
     assert str(operations["*:*.move_by"].signature) == "(dx, speed=0.1)"
     assert [argument.name for argument in operations["*:*.rotate"].arguments] == ["yaw_deg"]
-    (mocked,) = (line for line in lines if line.startswith("seen on mocks or fakes"))
+    (mocked,) = (line for line in lines if line.startswith("the tests call these on mocks or fakes"))
     assert set(mocked.rpartition(": ")[2].split(", ")) == {"robot:Lamp.set_output", "move_by", "rotate"}
-    assert mocked.startswith("seen on mocks or fakes, proposed as what they stand for, or by name")
+    assert "the class that they stand for; a name alone means any object that has it: " in mocked
 
 
 @pytest.mark.parametrize(

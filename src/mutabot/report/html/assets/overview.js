@@ -166,9 +166,9 @@
     }
     if (campaign.unlooked.length) section.append(h("h3", null, "Readings whose faults no test noticed"), h("ul", { class: "plain" }, campaign.unlooked.map((one) => h("li", null, h("code", null, one)))));
     if (none.length) {
-      section.append(h("h3", null, `Tests that kill nothing: ${none.length} of ${campaign.tests.length}`),
+      section.append(h("h3", null, `Tests not known to kill a mutant: ${none.length} of ${campaign.tests.length}`),
         h("ul", { class: "plain" }, none.slice(0, SHOWN).map(([name]) => h("li", null, h("code", null, mutabot.breakable(name))))),
-        h("p", { class: "hint" }, "A run stops at the first test that kills the mutant, so another test may simply have come first."),
+        h("p", { class: "hint" }, "A run stops at the first test that kills the mutant: another test may have come first."),
         h("p", null, h("a", { class: "more", href: address(["tests"]) }, "Tests and the mutants they kill")));
     }
     return section;

@@ -13,9 +13,9 @@
     body.append(
       h("p", { class: "lead" }, mutabot.isUnderWay(campaign) ? `${rows.length - none.length} of ${count(rows.length, "test")} killed a mutant so far; the others may still do so.`
         : none.length
-        ? `${none.length} of ${count(rows.length, "test")} ${none.length === 1 ? "kills" : "kill"} nothing.`
+        ? `${none.length} of ${count(rows.length, "test")} ${none.length === 1 ? "is" : "are"} not known to kill a mutant.`
         : rows.length === 1 ? "The only test kills mutants." : `Each of the ${rows.length} tests kills mutants.`),
-      h("p", { class: "hint" }, "A run stops at the first test that kills the mutant: a test that kills nothing may simply have run after another test had already killed it. ",
+      h("p", { class: "hint" }, "A run stops at the first test that kills the mutant, so that other tests that would kill it are not run; ", h("code", null, "mutabot minimal"), " runs every test on every mutant. ",
         "“Alone” counts mutants that no other test is known to kill."));
     const letters = h("ul", { class: "legend" }, [["check", "C", "killed by a check"], ["exception", "X", "killed otherwise"], ["reached", " ", "reached, not killed by it"], ["blank", " ", "not reached"]]
       .map(([kind, letter, words]) => h("li", null, h("span", { class: `mark m-${kind}`, "aria-hidden": "true" }, letter), words)));
