@@ -34,6 +34,8 @@ from .words import (
     TURNS,
     TYPES,
     UNITS,
+    UNITS_OF_LETTERS,
+    UNITS_OF_TWO_WORDS,
     VERBS,
     first,
     noun_of,
@@ -415,6 +417,8 @@ def guess_reading(name: str, setting: NameContext) -> Guess:
             kind, (kind, kind)
         )
         return measured({"kind": read, **({"axis": axis} if axis else {})}, dimension, unit, name, setting)
+    if noun == "place" and unit in UNITS["angle"]:
+        noun = "angle"  # of a joint
     noun = noun if noun in KINDS else noun_of(setting.words) if noun in ("", "generic") else noun
     if noun in KINDS and KINDS[noun][1]:
         _, kind, dimension = KINDS[noun]
@@ -511,6 +515,11 @@ def _action(index: int, limits: list[list[float]] | None) -> Guess:
 
 def _without_unit(words: tuple[str, ...]) -> tuple[tuple[str, ...], str | None]:
     """Return a name's words without a unit at its end, and the unit."""
+    if len(words) > 2 and words[-2:] in UNITS_OF_TWO_WORDS:
+        return words[:-2], UNITS_OF_TWO_WORDS[words[-2:]]
+    about = (NOUNS.get(words[-2], ""), words[-1]) if len(words) > 1 else ("", "")
+    if about in UNITS_OF_LETTERS:
+        return words[:-1], UNITS_OF_LETTERS[about]
     found = [unit for dimension in UNITS for unit in units_in(words[-1], dimension)] if words else []
     if not found or words[-1] in ("t", "g"):
         return words, None

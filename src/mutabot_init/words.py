@@ -152,7 +152,7 @@ OPPOSITES = (
 #: what a value is, by the last noun in its name
 NOUNS = _by_word(
     {
-        "speed": "speed speeds velocity velocities vel vels speedl speedj",
+        "speed": "speed speeds velocity velocities vel vels omega speedl speedj",
         "acceleration": "acceleration accelerations acc accel mvacc a_max",
         "jerk": "jerk",
         "force": "force forces thrust",
@@ -232,6 +232,12 @@ _UNIT = re.compile(
     + "|".join(f"(?P<u{number}>{text})" for number, text in enumerate(_SPELT.values()))
     + r")(?![\w/²³^'’])"
 )
+#: how names end that have their unit in two words, as ``speed_m_s``
+UNITS_OF_TWO_WORDS: Mapping[tuple[str, ...], str] = {
+    (unit, "s"): f"{unit}/s" for unit in ("m", "cm", "mm", "rad", "deg")
+}
+#: units in letters that only mean them after such a noun, as in ``torque_nm``
+UNITS_OF_LETTERS = {("torque", "nm"): "Nm", ("temperature", "c"): "degC", ("voltage", "v"): "V"}
 UNITS: Mapping[str, tuple[str, ...]] = {
     "length": ("m", "cm", "mm"),
     "angle": ("rad", "deg"),

@@ -327,3 +327,22 @@ def test_what_a_package_hands_on_to_its_users_stands_in_for_the_device_all_the_s
     }
     layout = look(write(tmp_path, files), [])
     assert [path.name for path in layout.program] == ["driver.py"]
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "unit"),
+    [
+        ("velocity_rad_s", "speed", "rad/s"),
+        ("speed_mm_s", "speed", "mm/s"),
+        ("torque_nm", "torque", "Nm"),
+        ("temperature_c", "temperature", "degC"),
+        ("bus_voltage_v", "voltage", "V"),
+        ("position_rad", "angle", "rad"),
+        ("motor_c", None, None),
+        ("m_s", None, None),
+    ],
+)
+def test_units_at_the_end_of_a_name_are_written_in_words_and_letters(name: str, kind: str, unit: str) -> None:
+    guess = guess_reading(name, NameContext(values=[1.5]))
+    assert (guess.table.get("kind"), guess.table.get("unit")) == (kind, unit)
+    assert guess.is_sure or kind is None
