@@ -26,6 +26,7 @@ OTHERWISE = {
     "skip": {"cli"},
     "reverse": {"campaign/baseline/writes.py"},  # a method of lists
     "drop": {"mutabot_init"},
+    "patch": {"mutabot_init"},  # a method of HTTP
     "delay": {"mutabot_init"},
     "offset": {"mutabot_init", "thresholds"},  # what a demand means that names none
 }
