@@ -64,6 +64,12 @@ def row(text: str, *words: str) -> str:
     return next(line for line in text.splitlines() if all(word in line for word in words))
 
 
+def first_line_of(text: str, word: str) -> str:
+    """The line that begins the row with this word: on a narrow terminal an operator is in the second."""
+    lines = text[: text.index(word)].count("\n")
+    return next(line for line in reversed(text.splitlines()[: lines + 1]) if line[:3].strip().isdigit())
+
+
 @WIDTHS
 def test_no_line_is_wider_than_the_terminal_and_none_is_coloured_on_a_pipe(
     results: Results, width: int
@@ -79,7 +85,7 @@ def test_every_mutant_has_one_letter_per_round(results: Results, width: int) -> 
     for words, letters in {
         ("reverse",): "C X", ("skip",): "S S", ("by-to",): "R T", ("negate",): "S C", ("noise",): "E N",
     }.items():  # fmt: skip
-        assert row(text, *words).rstrip().endswith(letters)
+        assert first_line_of(text, *words).endswith(letters)
 
 
 def test_the_legend_explains_exactly_the_letters_that_occur(results: Results) -> None:
@@ -478,7 +484,7 @@ def test_the_plan_names_place_operator_and_quantity(width: int) -> None:
     on = console(width)
     print_plan(on, samples.MUTANTS, samples.LEFT_OUT, Untested())
     text = written(on)
-    assert row(text, "program", "mission.py:3", "reverse")
+    assert row(text, "program", "mission.py:3") == first_line_of(text, "reverse")
     assert "5 mutants" in text
     assert max(cell_len(line) for line in text.splitlines()) <= width
 

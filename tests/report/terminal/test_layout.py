@@ -22,6 +22,15 @@ def printed(width: int) -> str:
     return out.getvalue()
 
 
+def test_a_table_of_short_columns_breaks_between_words_where_there_is_too_little_room() -> None:
+    out = io.StringIO()
+    names = ("family · role", ">mutants", ">check score", ">accepted")
+    section = Section("Scores", names, [("robot · program", "37", "30.6 %", "1")])
+    print_section(make_console(out, width=40), section)
+    words = set(out.getvalue().split())
+    assert {"family", "role", "mutants", "check", "score", "accepted", "program", "30.6"} <= words
+
+
 @pytest.mark.parametrize("width", [30, 40, 80, 200])
 def test_no_line_ends_in_blanks(width: int) -> None:
     lines = printed(width).splitlines()

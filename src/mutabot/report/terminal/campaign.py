@@ -21,6 +21,7 @@ from .console import (
     Breakable,
     below,
     heading,
+    is_narrow,
     legend,
     letters,
     make_table,
@@ -48,7 +49,7 @@ def print_results(console: Console, results: Results) -> None:
     """Print all mutants and all sections."""
     console.print(Text(title(results), style="bold"))
     console.print(Text(_circumstances(results), style="dim"))
-    for part in (*_earlier(results), *_mutants(results)):
+    for part in (*_earlier(results), *_mutants(results, are_joined=is_narrow(console))):
         console.print(part)
     for section in sections(results, short_place):
         print_section(console, section)
@@ -93,20 +94,21 @@ def _earlier(results: Results) -> Iterator[RenderableType]:
         yield Text(f"{known}{more if outdated else ''}.")
 
 
-def _mutants(results: Results) -> Iterator[RenderableType]:
-    """Yield a row per mutant, with one letter per round."""
+def _mutants(results: Results, *, are_joined: bool) -> Iterator[RenderableType]:
+    """Yield a row per mutant, with one letter per round; place and operator share a cell if joined."""
     if not results.mutants:
         return
     many = results.rounds > _MANY_ROUNDS
     numbers = " ".join(str(number)[-1] for number in range(1, results.rounds + 1)) or "–"
-    table = make_table((">no.", "role", "place", "operator", "*fault", "*rounds" if many else numbers))
+    where = ("place and operator",) if are_joined else ("place", "operator")
+    table = make_table((">no.", "role", *where, "*fault", "*rounds" if many else numbers))
     for result in results.mutants:
         mutant = result.mutant
+        cells = (places_text(mutant.site, short_place), mutant.operator)
         table.add_row(
             f"{mutant.number}{'*' if result.outdated else ''}",
             mutant.site.role.value,
-            places_text(mutant.site, short_place),
-            mutant.operator,
+            *(["\n".join(cells)] if are_joined else cells),
             Breakable(terminal_text(mutant.description)),
             letters(result.rounds, many=many),
         )

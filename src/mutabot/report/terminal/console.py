@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 #: between the entries of a legend
 _GAP = "   "
+#: columns of a terminal below which a mutant's operator stands under its place, to leave room for its fault
+_NARROW = 70
 _CONTROLS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f]")
 
 
@@ -109,7 +111,10 @@ def below(text: str, indent: int = 2, style: str = "") -> RenderableType:
 
 
 def make_table(columns: Sequence[str] = (), *, header: bool = True) -> Table:
-    """Make an empty table. ``>name`` is a column of numbers, ``*name`` takes the remaining width."""
+    """Make an empty table. ``>name`` is a column of numbers, ``*name`` takes the remaining width.
+
+    Without such a column, those of texts break between words where there is too little room.
+    """
     table = Table(
         box=box.SIMPLE_HEAD,
         show_header=header,
@@ -118,16 +123,22 @@ def make_table(columns: Sequence[str] = (), *, header: bool = True) -> Table:
         show_edge=False,
         header_style="bold",
     )
+    has_wide = any(name.startswith("*") for name in columns)
     for name in columns:
         is_number, is_wide = name.startswith(">"), name.startswith("*")
         table.add_column(
             name.lstrip(">*"),
             justify="right" if is_number else "left",
-            no_wrap=not is_wide,
+            no_wrap=has_wide and not is_wide,
             overflow="fold",
             ratio=1 if is_wide else None,
         )
     return table
+
+
+def is_narrow(console: Console) -> bool:
+    """Return whether the operator has to share a cell with the place."""
+    return console.width < _NARROW
 
 
 def short_place(span: Span, width: int = 24) -> str:
@@ -142,12 +153,18 @@ def short_place(span: Span, width: int = 24) -> str:
 
 
 def print_section(console: Console, section: Section, at_most: int | None = None) -> None:
-    """Print a section, with at most ``at_most`` rows and lines. Neighbouring text columns share a cell."""
+    """Print a section, with at most ``at_most`` rows and lines. Neighbouring text columns share a cell.
+
+    On a narrow terminal so do the place and the operator of a mutant.
+    """
     style = "bold red" if section.is_alarm else "bold"
     console.print(Text(f"\n{terminal_text(section.title)}", style=style, overflow="fold"))
     groups: list[list[int]] = []
     for index, name in enumerate(section.columns):
-        if groups and name.startswith("*") and section.columns[index - 1].startswith("*"):
+        both_long = groups and name.startswith("*") and section.columns[index - 1].startswith("*")
+        if both_long or (
+            is_narrow(console) and section.columns[index - 1 : index + 1] == ("place", "operator")
+        ):
             groups[-1].append(index)
         else:
             groups.append([index])
