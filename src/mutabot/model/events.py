@@ -31,7 +31,7 @@ class Event:
 
 
 @frozen
-class OutOfReach:
+class OutOfReach(Event):
     """A process that cannot join the campaign: nothing in it is seen, and no mutant of a call acts in it.
 
     Attributes:
@@ -39,11 +39,13 @@ class OutOfReach:
         why: why it cannot join.
         files: real paths of the Python files that its command names; None if it is known to run the program,
             but not by which files.
+        imports: what these files may import, see ``languages.imported_names``.
     """
 
     command: str
     why: str
     files: tuple[str, ...] | None
+    imports: tuple[str, ...] = ()
 
 
 @frozen

@@ -9,6 +9,7 @@ import pytest
 from mutabot.campaign.baseline.out_of_reach import files_out_of_reach
 from mutabot.campaign.run import run_campaign
 from mutabot.journal.journal import Journal
+from mutabot.languages.imported_names import imported_names
 from mutabot.model import Verdict
 from mutabot.model.events import OutOfReach, TestEnd
 from tests.campaign.project import REPLAY, Quiet, request_for, write_project
@@ -27,37 +28,61 @@ MISSION = """
 TESTS = """
     import subprocess
     import sys
+    from pathlib import Path
 
     import mission
+
+    HERE = str(Path(mission.__file__).parent)
+
+    def script(folder):
+        lines = [f"#!{sys.executable} -I", f"import sys; sys.path.insert(0, {HERE!r})", "import mission"]
+        (folder / "cell").write_text("\\n".join(lines))
+        (folder / "cell").chmod(0o755)
+        return str(folder / "cell")
 
     def test_here():
         assert mission.go() is not None
 
-    def test_there():
+    def test_there(tmp_path):  # its files are gone when it has ended
         command = {command}
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
 """
 
 
+NESTED = "import subprocess, sys; subprocess.run([sys.executable, '-I', 'mission.py'])"
+OUT_OF_REACH = {
+    "env": '["env", "-i", sys.executable, "mission.py"]',
+    "shell": '["sh", "-c", f"{sys.executable} -S -c \'import mission; mission.go()\'"]',
+    "make": '["make", "-s", "go", f"PY={sys.executable}"]',
+    "script": "[script(tmp_path)]",
+    "a process that does not run the program": f"[sys.executable, '-c', {NESTED!r}]",
+}
+OTHERS = {
+    "it runs nothing of the program": '[sys.executable, "-S", "-c", "pass"]',
+    "the mutant acts there": '[sys.executable, "mission.py"]',
+}
+
+
 @pytest.mark.parametrize("engine", ["auto", REPLAY])
 @pytest.mark.parametrize(
-    ("command", "verdict"),
+    "name",
     [
-        ('["env", "-i", sys.executable, "mission.py"]', Verdict.UNSTABLE),
-        ('["sh", "-c", f"{sys.executable} -S -c \'import mission; mission.go()\'"]', Verdict.UNSTABLE),
-        ('[sys.executable, "-S", "-c", "pass"]', Verdict.SURVIVED),  # it runs nothing of the program
-        ('[sys.executable, "mission.py"]', Verdict.SURVIVED),  # the mutant acts there
+        name
+        if name in ("env", "it runs nothing of the program")
+        else pytest.param(name, marks=pytest.mark.whole)
+        for name in OUT_OF_REACH | OTHERS
     ],
 )
 def test_what_a_process_out_of_reach_may_notice_is_not_survived(
-    tmp_path: Path, command: str, verdict: Verdict, engine: str
+    tmp_path: Path, name: str, engine: str
 ) -> None:
-    folder = write_project(tmp_path, MISSION, TESTS.replace("{command}", command))
+    folder = write_project(tmp_path, MISSION, TESTS.replace("{command}", (OUT_OF_REACH | OTHERS)[name]))
+    (folder / "Makefile").write_text("go:\n\tenv -i $(PY) mission.py\n")
     path = run_campaign(request_for(folder, engine=engine, only=("skip",)), Quiet())
     with Journal.open(path) as journal:
         (outcome,) = journal.outcomes()
-    assert outcome.verdict is verdict
-    assert ("test_there starts" in (outcome.message or "")) is (verdict is Verdict.UNSTABLE)
+    assert outcome.verdict is (Verdict.UNSTABLE if name in OUT_OF_REACH else Verdict.SURVIVED)
+    assert ("test_there starts" in (outcome.message or "")) is (name in OUT_OF_REACH)
 
 
 @pytest.mark.parametrize(
@@ -85,11 +110,9 @@ def test_a_process_may_run_the_files_that_those_it_names_import(
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text(text)
     files = None if named is None else tuple(str(tmp_path / name) for name in named)
-    process = OutOfReach("env -i python", "env clears its environment", files)
-    ends = {
-        (0, "test_a"): TestEnd("test_a", "passed", out_of_reach=(process,)),
-        (0, "b"): TestEnd("b", "passed"),
-    }
+    imports = tuple(name for file in named or () for name in imported_names(texts[file].encode()))
+    process = OutOfReach("env -i python", "env clears its environment", files, imports)
+    ends = [TestEnd("test_a", "passed", out_of_reach=(process,)), TestEnd("test_b", "passed")]
     ran = files_out_of_reach(tmp_path, ["cell", "other.py"], ends)
-    assert {*ran[0, "test_a"]} == found
-    assert (0, "b") not in ran
+    assert {*ran["test_a"]} == found
+    assert "test_b" not in ran

@@ -31,7 +31,7 @@ from mutabot.operators import load_all
 from mutabot.original import Hit, RecordedAnswers, TextSeen
 
 from .baseline import Baseline, Sources, observation, refusals_by_test
-from .out_of_reach import files_out_of_reach
+from .out_of_reach import files_out_of_reach, with_texts
 from .untested import add_untested
 
 if TYPE_CHECKING:
@@ -297,7 +297,6 @@ def _read(suite: _Suite, texts: Mapping[str, tuple[ProgramText, ...]]) -> Baseli
     add_untested(
         baseline, request.root, request.configuration.program, request.vocabulary, suite.results.values()
     )
-    baseline.out_of_reach = files_out_of_reach(request.root, request.configuration.program, baseline.ends)
     refuse_failing(request, failing)
     if not any(baseline.ran(round) for round in range(request.rounds)):
         raise NothingToDoError(_no_tests(baseline))
@@ -401,7 +400,11 @@ def _add_round(
     baseline.tests.append(good)
     first = repetitions[0].end
     baseline.collected[round] = frozenset(first.collected if first is not None else ())
-    baseline.executed[round] = ExecutedByTests((end.test, end.executed) for end in repetitions[0].ends)
+    ends = repetitions[0].ends
+    unjudged = files_out_of_reach(request.root, request.configuration.program, ends)
+    baseline.out_of_reach |= {(round, test): files for test, files in unjudged.items()}
+    executed = ((end.test, with_texts(end.executed, unjudged.get(end.test, ()))) for end in ends)
+    baseline.executed[round] = ExecutedByTests(executed)
     spent = (result.wall - sum(end.wall for end in result.ends) for result in repetitions)
     baseline.startup = max([baseline.startup, *spent])
     # without the tests that are set aside nothing fails

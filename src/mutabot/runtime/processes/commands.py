@@ -1,7 +1,7 @@
 """Read from the command of a program that is about to start what it means for a campaign.
 
-A shell, or what runs the command that it is given (``env``, ``sudo``), may start Python in turn, also from a
-script: its text is read as well. What a program reads in files of another kind is not known.
+A shell, ``make``, or what runs the command that it is given (``env``, ``sudo``), may start Python in turn,
+also from a script: its text is read as well. What a program reads in files of another kind is not known.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import os
 import re
 from collections.abc import Iterator, Sequence
 from itertools import pairwise, takewhile
+from shutil import which
 from typing import Any
 
 from mutabot.model.event_file import VARIABLE
@@ -32,7 +33,8 @@ _KILLERS = {
 _KILLER_IN_TEXT = re.compile(rf"(?<![\w.-])(?:{'|'.join(sorted(_KILLERS))})(?![\w.-])")
 #: between the words of a command, which a shell may read
 _BETWEEN_WORDS = re.compile(r"[\s;|&<>()='\"`]+")
-_PYTHON = re.compile(r"python[\d.]*[dt]?")
+#: also as a shell's or make's variable
+_PYTHON = re.compile(r"python[\d.]*[dt]?|\$?\{?PY(THON)?[23]?\}?")
 #: options of Python by which it leaves out the environment, or what is loaded at its start
 _APART = "IES"
 #: options of Python that take a value; after the latter two, all else is for the program
@@ -41,6 +43,8 @@ _WITH_VALUE = "WXcm"
 _NEEDED = ("PYTHONPATH", VARIABLE)
 _CLEARS = ("-", "-i", "--ignore-environment")
 _SETS_PATH = re.compile(rf"(?<![\w$])PYTHONPATH=(?!\S*(?:\$\{{?PYTHONPATH\b|{re.escape(STARTUP)}))")
+_MAKES = {"make", "gmake"}
+_MAKEFILES = ("GNUmakefile", "makefile", "Makefile")
 #: bytes of a script that are looked at
 _MOST = 65536
 
@@ -61,10 +65,14 @@ def command_of(event: str, arguments: tuple[Any, ...]) -> list[str]:
 
 
 def texts_of(event: str, arguments: tuple[Any, ...]) -> list[str]:
-    """Return the words of a command, and the text of the shell's script among them."""
-    words = command_of(event, arguments)
-    folder = arguments[2] if event == "subprocess.Popen" else None
-    return [*words, *_scripts(words, os.fsdecode(folder or "."))]
+    """Return the words of a command, and the texts of the shell's scripts and of the makefiles among them."""
+    words, folder = command_of(event, arguments), folder_of(event, arguments)
+    return [*words, *_scripts(words, folder), *_makefiles(words, folder)]
+
+
+def folder_of(event: str, arguments: tuple[Any, ...]) -> str:
+    """Return the folder in which a command runs."""
+    return os.fsdecode((arguments[2] if event == "subprocess.Popen" else None) or ".")
 
 
 def words_in(texts: Sequence[str]) -> list[str]:
@@ -93,7 +101,7 @@ def why_unseen(event: str, arguments: tuple[Any, ...]) -> str | None:
     if texts and is_python(texts[0]):
         options = _options(texts[1:])
     else:
-        is_read = len(texts) > len(command_of(event, arguments))  # a script is
+        is_read = len(texts) > len(command_of(event, arguments))  # a script is, or a makefile
         words = words_in(texts) if is_read or (texts and os.path.basename(texts[0]) in _RUNNERS) else []
         pythons = [index for index, word in enumerate(words) if is_python(word)]
         if not pythons:
@@ -158,14 +166,36 @@ def _clears(words: Sequence[str]) -> bool:
 
 def _scripts(words: Sequence[str], folder: str) -> Iterator[str]:
     """Yield the texts of the scripts that a shell reads, and the first lines of those of other programs."""
+    for path, is_read in scripts_named(words, folder):
+        yield from _script(path, is_read)
+
+
+def scripts_named(words: Sequence[str], folder: str) -> Iterator[tuple[str, bool]]:
+    """Yield the paths of what may be scripts in a command, and whether a shell reads it, or it is begun."""
     is_read = False
-    for word in words_in(words):
+    may_begin = len(words) if words and os.path.basename(words[0]) in _RUNNERS else 1
+    for number, word in enumerate(words_in(words)):
         if word.startswith("-"):
             is_read = is_read and word != "-c"
             continue
         if is_read or ("/" in word and not is_python(word)):
-            yield from _script(os.path.realpath(os.path.join(folder, word)), is_read)
+            yield os.path.realpath(os.path.join(folder, word)), is_read
+        elif number < may_begin and "/" not in word and (found := which(word)):
+            yield os.path.realpath(found), False
         is_read = os.path.basename(word) in _SHELLS
+
+
+def _makefiles(words: Sequence[str], folder: str) -> Iterator[str]:
+    """Yield the texts of the files that ``make`` reads; of all targets, as the names of some are made."""
+    if not any(os.path.basename(word) in _MAKES for word in words_in(words[:3])):
+        return
+    folder = next((os.path.join(folder, to) for option, to in pairwise(words) if option == "-C"), folder)
+    given = [file for option, file in pairwise(words) if option == "-f"]
+    for name in given or _MAKEFILES:
+        try:
+            yield read_file(os.path.join(folder, name), _MOST).decode("utf-8", "replace")
+        except (OSError, ValueError):
+            continue
 
 
 def _script(path: str, is_read: bool) -> Iterator[str]:

@@ -25,7 +25,7 @@ from mutabot.model.events import OutOfReach
 from mutabot.model.files import open_file, read_file
 from mutabot.runtime.paths import BEGAN
 from mutabot.runtime.processes.commands import STARTS, STARTUP, command_of, starts_a_killer, why_unseen
-from mutabot.runtime.processes.named_files import files_named
+from mutabot.runtime.processes.named_files import files_named, imports_of
 
 #: called with an event's name and its arguments
 AuditHandler = Callable[[str, tuple[Any, ...]], None]
@@ -318,6 +318,16 @@ class ProcessWatch:
         else:
             if starts_a_killer(event, arguments):
                 self.signalled.add(ANY_PROCESS)
-            if why := why_unseen(event, arguments):
-                files = tuple(sorted({os.path.realpath(file) for file in files_named(event, arguments)}))
-                self._on_unseen(OutOfReach(" ".join(command_of(event, arguments)[:3]), why, files))
+            if process := out_of_reach(event, arguments):
+                self._on_unseen(process)
+
+
+def out_of_reach(event: str, arguments: tuple[Any, ...]) -> OutOfReach | None:
+    """Return the process that an audit event starts if it cannot join the campaign; None if it can."""
+    why = why_unseen(event, arguments)
+    if why is None:
+        return None
+    files = sorted({os.path.realpath(file) for file in files_named(event, arguments)})
+    # now: they may be gone when the test has ended
+    imports = sorted({name for file in files for name in imports_of(file)})
+    return OutOfReach(" ".join(command_of(event, arguments)[:3]), why, tuple(files), tuple(imports))

@@ -31,7 +31,7 @@ from mutabot.runtime.exceptions import failure_in, is_due_to, leaves
 from mutabot.runtime.meter import Meter, TimeExceeded
 from mutabot.runtime.paths import watch_copies
 from mutabot.runtime.processes.commands import STARTS, starts_a_killer
-from mutabot.runtime.processes.environment import Now, export_folder, listen
+from mutabot.runtime.processes.environment import Now, export_folder, listen, out_of_reach
 from mutabot.runtime.program_text.instrument import SessionText
 from mutabot.runtime.program_text.loading import hook_script
 from mutabot.runtime.program_text.text_mutant import TextMutant
@@ -372,6 +372,8 @@ class Member:
             self.end()
         if _member is self and starts_a_killer(event, arguments):
             self.event_file.send(events.Signalled(ANY_PROCESS))
+        if _member is self and (process := out_of_reach(event, arguments)):
+            self.event_file.send(process)
 
     def _raised(self, error: BaseException, *, in_thread: bool) -> None:
         if isinstance(error, KeyboardInterrupt | SystemExit) or _member is not self:

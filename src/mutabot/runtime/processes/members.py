@@ -14,6 +14,7 @@ from mutabot.model.event_file import FOLDER
 from mutabot.model.fold import ChildRecord, Children, FactsOfTest, calls_of, fold, is_alive
 from mutabot.model.source_units import AS_TEXT, WHOLE, Executed, together
 from mutabot.runtime.processes.environment import Announced, ProcessWatch, export_folder, write_wake
+from mutabot.runtime.processes.member import is_member
 
 if TYPE_CHECKING:
     from mutabot.model.job import Job
@@ -108,6 +109,8 @@ class Members:
             match event:
                 case events.Began(unable=why) if why is not None:
                     self._report_unseen(events.OutOfReach(" ".join(event.command[:3]), why, None))
+                case events.OutOfReach():
+                    self._report_unseen(event)
                 case events.TextsSeen():
                     self._texts.append(event)
                 case events.Signalled():
@@ -134,6 +137,8 @@ class Members:
         return replace(end, recording=recording.text([*recorder.recorded_calls(), *found])) if found else end
 
     def _report_unseen(self, process: events.OutOfReach) -> None:
+        if is_member():  # a copy of the test process reports it by itself
+            return
         self._out_of_reach.append(process)
         if process.command in self._unseen or not self._session.job.inspect:
             return

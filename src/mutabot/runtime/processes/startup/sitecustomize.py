@@ -9,7 +9,7 @@ The file ``wake`` of the folder that the environment names says what is of inter
 ``join MODULE`` with a function of that name, which is then called with the folder, ``key KEY`` of the seals,
 ``path FOLDER`` where packages of ours can be found, ``own NAME`` of such a package, ``name MODULE``, and
 ``file PATH`` of a file or folder. A process that opens such a file is of interest, as it may run what it
-reads.
+reads, and so is one that starts another which might not find the campaign.
 """
 
 import os
@@ -20,9 +20,13 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from importlib.machinery import ModuleSpec
     from types import ModuleType
+    from typing import Any
 
 _VARIABLE = "MUTABOT_PROCESSES"
 _NEWEST_TOO_OLD = (3, 10)
+#: audit events of the start of a program, and programs that may start Python in another environment
+_STARTS = ("os.system", "subprocess.Popen", "os.posix_spawn", "os.exec")
+_HIDERS = ("sh", "bash", "dash", "zsh", "ksh", "env", "sudo", "make", "gmake")
 
 
 class _Finder:
@@ -50,6 +54,8 @@ class _Finder:
         if isinstance(path, str) and path.endswith(".py") and self in sys.meta_path:
             if self.is_of_interest(path):
                 _wake(self)
+        elif event in _STARTS and self in sys.meta_path and _may_lose(event, arguments):
+            _wake(self)
 
     def is_of_interest(self, path: str) -> bool:
         real = os.path.realpath(path)
@@ -70,6 +76,24 @@ class _MutabotFinder:
         from _frozen_importlib_external import PathFinder
 
         return PathFinder.find_spec(name, self.folders, target)
+
+
+def _may_lose(event: str, arguments: "tuple[Any, ...]") -> bool:
+    """Return whether what is about to start may not find the campaign: one that has joined sees to that."""
+    command, environment = arguments[0 if event == "os.system" else 1], arguments[-1]
+    try:
+        if event != "os.system" and environment is not None:
+            if _VARIABLE.encode() not in {os.fsencode(name) for name in environment}:
+                return True
+        words = [command] if isinstance(command, (str, bytes)) else command
+        parts = " ".join(map(os.fsdecode, words)).split()
+    except (TypeError, ValueError):  # it will not start
+        return False
+    return any(os.path.basename(part) in _HIDERS or _is_isolating(part) for part in parts)
+
+
+def _is_isolating(word: str) -> bool:
+    return word[:1] == "-" and not {*word}.isdisjoint("IES")
 
 
 def _wake(finder: _Finder) -> None:
