@@ -85,6 +85,22 @@ def test_what_a_process_out_of_reach_may_notice_is_not_survived(
     assert ("test_there starts" in (outcome.message or "")) is (name in OUT_OF_REACH)
 
 
+@pytest.mark.needs("source")
+@pytest.mark.parametrize("engine", ["auto", REPLAY])
+@pytest.mark.parametrize("asserted", ["", "; assert got"])
+def test_a_mutant_of_the_text_is_judged_there_as_well(tmp_path: Path, asserted: str, engine: str) -> None:
+    command = "subprocess.run([sys.executable, '-S', 'mission.py'], stdout=-1, text=True).stdout"
+    before, _, _ = TESTS.partition("    def test_there")
+    tests = f'{before}    def test_there():\n        got = {command} == "0.5\\n"{asserted}\n'
+    folder = write_project(tmp_path, MISSION, tests)
+    request = request_for(
+        folder, engine=engine, families=("conventional",), only=("mission.py:go:arm.x#*neg",)
+    )
+    with Journal.open(run_campaign(request, Quiet())) as journal:
+        verdicts = {outcome.verdict for outcome in journal.outcomes()}
+    assert verdicts == {Verdict.KILLED if asserted else Verdict.SURVIVED}
+
+
 @pytest.mark.parametrize(
     ("named", "found"),
     [

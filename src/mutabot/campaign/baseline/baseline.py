@@ -18,7 +18,7 @@ from mutabot.faults import Planned, PlannedMutant
 from mutabot.journal.records import Untested
 from mutabot.languages.python import FRONT_END as PYTHON
 from mutabot.languages.registry import front_end_of
-from mutabot.model.activation import Activation
+from mutabot.model.activation import CALL_FAULT, Activation
 from mutabot.model.events import TRACE_LIMIT, Remark, SiteSeen, TestEnd
 from mutabot.model.job import RefusedAt
 from mutabot.model.mutant import Extent, Mutant, Place, Role, Site, Span
@@ -359,11 +359,11 @@ class Baseline(Original):
         return [test for where, test in self.unstable if where == round and test in reaching]
 
     def judges_out_of_reach(self, round: int, mutant: Mutant) -> dict[str, str]:
-        """Return the tests that may run a mutant's file where it does not act, with the command and why.
+        """Return the tests that run a mutant's file where no mutant of a call acts: the command, and why.
 
         Mutants of the text act there too: the file itself is changed.
         """
-        if not self.out_of_reach or self.faults.active(mutant).places:
+        if not self.out_of_reach or self.faults.active(mutant).reference != CALL_FAULT:
             return {}
         files = {span.file for span in mutant.site.spans}
         return {
