@@ -112,6 +112,38 @@ def test_a_process_that_cannot_join_says_so_and_runs_as_ever(tmp_path: Path) -> 
     assert "no such package" in (only_event(folder).unable or "")
 
 
+@pytest.mark.parametrize(
+    ("start", "joins"),
+    [
+        ("subprocess.run(['env', '-i', sys.executable, '-c', '0'])", True),
+        ("subprocess.run([sys.executable, '-c', '0'], env={})", True),
+        ("subprocess.run([sys.executable, '-c', '0'], env={b'A': b'b'})", True),
+        ("os.system(f'{sys.executable} -I -c 0')", True),
+        ("subprocess.run([sys.executable, '-c', '0'])", False),
+        ("subprocess.run([sys.executable, '-c', '0'], env=dict(os.environ))", False),
+        ("os.system('true')", False),
+    ],
+)
+def test_a_process_joins_for_one_that_it_starts_and_that_might_not(
+    tmp_path: Path, start: str, joins: bool
+) -> None:
+    ours = tmp_path / "ours"
+    ours.mkdir()
+    (ours / "its_session.py").write_text("def join(folder):\n    open(f'{folder}/joined', 'w').close()\n")
+    folder = folder_of(tmp_path / "home", "join its_session", f"path {ours}", "own its_session")
+    run(sys.executable, "-c", f"import os, subprocess, sys; {start}", folder=folder)
+    assert (folder / "joined").exists() is joins
+
+
+def test_a_process_that_cannot_join_for_others_says_so_once_it_is_of_interest(tmp_path: Path) -> None:
+    script, start = tmp_path / "mission.py", "subprocess.run(['env', 'true'])"
+    script.write_text("")
+    for number, more in enumerate(("", f"; open({str(script)!r}).close()")):
+        folder = folder_of(tmp_path / str(number), "join module_that_nobody_has", f"file {script}")
+        run(sys.executable, "-c", f"import subprocess; {start}; {start}{more}", folder=folder)
+        assert len([*folder.glob("*.jsonl")]) == number
+
+
 def test_a_sitecustomize_that_is_there_already_is_loaded_as_ever(tmp_path: Path) -> None:
     theirs = tmp_path / "theirs"
     theirs.mkdir()

@@ -363,7 +363,8 @@ class Baseline(Original):
 
         Mutants of the text act there too: the file itself is changed.
         """
-        if not self.out_of_reach or self.faults.active(mutant).reference != CALL_FAULT:
+        is_control = mutant.family == CONTROL
+        if not self.out_of_reach or is_control or self.faults.active(mutant).reference != CALL_FAULT:
             return {}
         files = {span.file for span in mutant.site.spans}
         return {

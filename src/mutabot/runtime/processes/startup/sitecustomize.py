@@ -26,7 +26,8 @@ _VARIABLE = "MUTABOT_PROCESSES"
 _NEWEST_TOO_OLD = (3, 10)
 #: audit events of the start of a program, and programs that may start Python in another environment
 _STARTS = ("os.system", "subprocess.Popen", "os.posix_spawn", "os.exec")
-_HIDERS = ("sh", "bash", "dash", "zsh", "ksh", "env", "sudo", "make", "gmake")
+_HIDERS = ("env", "sudo", "make", "gmake")
+_SHELLS = ("sh", "bash", "dash", "zsh", "ksh")
 
 
 class _Finder:
@@ -35,6 +36,7 @@ class _Finder:
     def __init__(self, folder: str, entries: "dict[str, list[str]]") -> None:
         self.folder, self.join, self.key = folder, entries["join"][-1], entries["key"][-1]
         self.names, self.files = frozenset(entries["name"]), entries["file"]
+        self.joins_for_others = sys.version_info[:2] > _NEWEST_TOO_OLD
 
     def find_spec(
         self, name: str, path: "Sequence[str] | None" = None, target: "ModuleType | None" = None
@@ -54,8 +56,13 @@ class _Finder:
         if isinstance(path, str) and path.endswith(".py") and self in sys.meta_path:
             if self.is_of_interest(path):
                 _wake(self)
-        elif event in _STARTS and self in sys.meta_path and _may_lose(event, arguments):
-            _wake(self)
+        elif (
+            event in _STARTS
+            and self.joins_for_others
+            and self in sys.meta_path
+            and _may_lose(event, arguments)
+        ):
+            _wake(self, is_of_interest=False)
 
     def is_of_interest(self, path: str) -> bool:
         real = os.path.realpath(path)
@@ -89,14 +96,16 @@ def _may_lose(event: str, arguments: "tuple[Any, ...]") -> bool:
         parts = " ".join(map(os.fsdecode, words)).split()
     except (TypeError, ValueError):  # it will not start
         return False
-    return any(os.path.basename(part) in _HIDERS or _is_isolating(part) for part in parts)
+    names = {os.path.basename(part) for part in parts}
+    if not names.isdisjoint(_HIDERS):
+        return True
+    text = " ".join(parts)
+    if not names.isdisjoint(_SHELLS):
+        return "py" in text.lower() or ".sh" in text or "./" in text
+    return "python" in text and any(part[:1] == "-" and not {*part}.isdisjoint("IES") for part in parts)
 
 
-def _is_isolating(word: str) -> bool:
-    return word[:1] == "-" and not {*word}.isdisjoint("IES")
-
-
-def _wake(finder: _Finder) -> None:
+def _wake(finder: _Finder, is_of_interest: bool = True) -> None:
     if finder in sys.meta_path:
         sys.meta_path.remove(finder)
     if sys.version_info[:2] <= _NEWEST_TOO_OLD:
@@ -105,7 +114,11 @@ def _wake(finder: _Finder) -> None:
     try:
         __import__(finder.join, fromlist=["join"]).join(finder.folder)
     except Exception as error:
-        _report_unable(finder, "mutabot cannot be loaded: %r" % (error,))
+        if is_of_interest:
+            _report_unable(finder, "mutabot cannot be loaded: %r" % (error,))
+        else:  # it may become so
+            finder.joins_for_others = False
+            sys.meta_path.insert(0, finder)
 
 
 def _report_unable(finder: _Finder, why: str) -> None:
