@@ -567,10 +567,10 @@ def _written(text: str, command: Command) -> dict[str, Any]:
     for name, values in command.arguments.items():
         part = _only_element(name, values) if name in names else None
         parts = [part] if part is not None else _fields(name, values) if name in names else []
-        for one in parts:
-            table = _value(one.name or text, one)
+        for written in parts:
+            table = _value(written.name or text, written)
             if table:
-                tables[one.path] = table
+                tables[written.path] = table
     return {"arguments": tables} if tables else {}
 
 
