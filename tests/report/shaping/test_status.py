@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
@@ -73,9 +74,9 @@ def test_rounds_are_grouped_by_their_end() -> None:
     ],
 )
 def test_the_next_step_names_a_probe_where_nothing_read_how_the_world_ended(
-    survivor: dict[str, object], step: str, names_probe: bool
+    survivor: dict[str, Any], step: str, names_probe: bool
 ) -> None:
-    found = next_step(MutantResult(samples.SKIP, (Outcome("m", 0, S, **survivor),), None, ""))  # type: ignore[arg-type]
+    found = next_step(MutantResult(samples.SKIP, (Outcome("m", 0, S, **survivor),), None, ""))
     assert found.startswith(step)
     assert ("[[probe]]" in found) is names_probe
 
