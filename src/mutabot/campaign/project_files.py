@@ -1,4 +1,4 @@
-"""The files of a project, for an executor that copies some of them to other machines."""
+"""The files of a project."""
 
 from __future__ import annotations
 
@@ -76,6 +76,11 @@ class ProjectListing:
             tuple(name for name in there if (root / name).is_dir()),
             above,
         )
+
+
+def python_files(root: Path) -> list[str]:
+    """Return the Python files of the project, relative to its folder."""
+    return [name for _, names in _walk(root) for name in names if name.endswith(".py")]
 
 
 def _named(configuration: Configuration) -> Iterator[str]:

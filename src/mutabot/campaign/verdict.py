@@ -159,11 +159,16 @@ def not_run(tests: Collection[str], ends: Collection[TestEnd], exit_code: int) -
 
 def without_tests(baseline: Baseline, mutant: Mutant, round: int) -> Outcome:
     """Return the outcome of a mutant that no test can judge in this round."""
-    aside = baseline.missing_judges(round, mutant)
-    if aside:
-        text = f"all tests that reach the site are excluded in this round, such as {aside[0]}"
+    missing = baseline.missing_judges(round, mutant)
+    if missing:
+        text = f"no reliable test reaches the site; {_might_have_failed(missing)}"
         return Outcome(mutant.id, round, Verdict.UNSTABLE, message=text)
     return Outcome(mutant.id, round, Verdict.NOT_COVERED, message=_NOT_REACHED, executed={})
+
+
+def _might_have_failed(missing: Mapping[str, str]) -> str:
+    """Return which tests might have noticed a mutant, and why the first of them is no judge of it."""
+    return f"{in_short([*missing], 1)} might have failed: {next(iter(missing.values()))}"
 
 
 def judge_safely(campaign: Campaign, run: Run) -> Outcome:
@@ -207,16 +212,10 @@ def judge(campaign: Campaign, run: Run) -> Outcome:
     """Return the outcome of a run."""
     request, baseline = campaign.request, campaign.baseline
     verdict, end, message = _ruling(run, baseline.exits[run.round])
-    aside = baseline.missing_judges(run.round, run.mutant) if verdict is Verdict.SURVIVED else ()
-    if aside:
-        others = f"{in_short(aside, 1)}, excluded in this round, might have failed"
+    missing = baseline.missing_judges(run.round, run.mutant) if verdict is Verdict.SURVIVED else {}
+    if missing:
         verdict = Verdict.UNSTABLE
-        message = f"all reliable tests passed; {others}"
-    unjudged = baseline.judges_out_of_reach(run.round, run.mutant) if verdict is Verdict.SURVIVED else {}
-    if unjudged:
-        test, command = next(iter(unjudged.items()))
-        verdict = Verdict.UNSTABLE
-        message = f"all tests passed, but it does not act in a process that {test} starts: {command}"
+        message = f"all reliable tests passed; {_might_have_failed(missing)}"
     simulated = [end.simulated for end in run.ends if end.simulated is not None]
     by = end.by if end is not None else By.EXCEPTION if run.death is not None else By.CHECK
     acted = sum(end.acted for end in run.ends)

@@ -6,12 +6,16 @@ from pathlib import Path
 
 import pytest
 
+from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.out_of_reach import files_out_of_reach
 from mutabot.campaign.run import run_campaign
+from mutabot.faults import PlannedMutant
 from mutabot.journal.journal import Journal
 from mutabot.languages.imported_names import imported_names
-from mutabot.model import Verdict
+from mutabot.model import Mutant, Verdict
+from mutabot.model.activation import Activation
 from mutabot.model.events import OutOfReach, TestEnd
+from mutabot.model.mutant import Place, Site
 from tests.campaign.project import REPLAY, Quiet, request_for, write_project
 
 MISSION = """
@@ -82,7 +86,7 @@ def test_what_a_process_out_of_reach_may_notice_is_not_survived(
     with Journal.open(path) as journal:
         (outcome,) = journal.outcomes()
     assert outcome.verdict is (Verdict.UNSTABLE if name in OUT_OF_REACH else Verdict.SURVIVED)
-    assert ("test_there starts" in (outcome.message or "")) is (name in OUT_OF_REACH)
+    assert ("test_there might have failed" in (outcome.message or "")) is (name in OUT_OF_REACH)
 
 
 @pytest.mark.needs("source")
@@ -108,6 +112,7 @@ def test_a_mutant_of_the_text_is_judged_there_as_well(tmp_path: Path, asserted: 
         (("cell/arm.py",), {"cell/arm.py"}),
         (("other.py",), {"other.py"}),
         (("loads.py",), {"cell/__init__.py", "cell/arm.py", "other.py"}),
+        (("tools/start.py",), {"cell/__init__.py", "cell/arm.py"}),
         ((), set()),
         (None, {"cell/__init__.py", "cell/arm.py", "other.py"}),
     ],
@@ -117,10 +122,13 @@ def test_a_process_may_run_the_files_that_those_it_names_import(
 ) -> None:
     texts = {
         "run.py": "import cell.arm",
+        "tools/__init__.py": "",
         "loads.py": "from importlib import import_module",
         "cell/__init__.py": "from .arm import go",
         "cell/arm.py": "import math",
         "other.py": "",
+        "tools/start.py": "from tools.steps import run",  # neither this nor the next is of the program
+        "tools/steps.py": "import run",
     }
     for name, text in texts.items():
         (tmp_path / name).parent.mkdir(exist_ok=True)
@@ -132,3 +140,20 @@ def test_a_process_may_run_the_files_that_those_it_names_import(
     ran = files_out_of_reach(tmp_path, ["cell", "other.py"], ends)
     assert {*ran["test_a"]} == found
     assert "test_b" not in ran
+
+
+@pytest.mark.parametrize(("of_tests", "missing"), [(True, {"test_a"}), (False, {"test_a", "test_b"})])
+def test_a_fault_of_the_world_does_not_act_in_such_a_process(of_tests: bool, missing: set[str]) -> None:
+    """One of which nothing is left after a test misses the processes of the tests that reach it alone."""
+    site = Site.of_parameter("test_a", "gravity")
+    mutant = Mutant(1, "world", "disturb", site, "", None, None, "+", "")
+    suite = ("test_a", "test_b", "test_c")
+    found = {"mission.py": "env -i python (env clears its environment)"}
+    baseline = Baseline(
+        tests=[list(suite)],
+        ends={(0, test): TestEnd(test, "passed") for test in suite},
+        reaching={(0, Place.of(mutant)): ("test_a", "test_c")},
+        out_of_reach={(0, "test_a"): found, (0, "test_b"): found},
+    )
+    baseline.faults.add(PlannedMutant(mutant, active=Activation("cell:Fault", is_of_tests=of_tests)))
+    assert baseline.missing_judges(0, mutant).keys() == missing

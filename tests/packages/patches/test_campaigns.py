@@ -229,3 +229,14 @@ def test_without_a_patch_the_setting_is_named(tmp_path: Path) -> None:
     done = mutabot(None, folder, "list")
     assert done.returncode == USAGE
     assert "[tool.mutabot.patches] files: 'patches' fits no patch of the project" in done.stderr
+
+
+def test_a_patch_acts_in_a_process_that_cannot_join(project: Path, tmp_path: Path) -> None:
+    copy = shutil.copytree(project, tmp_path / "project")
+    suite = copy / "tests/test_move.py"
+    suite.write_text(suite.read_text().replace('[sys.executable, "-c"', '[sys.executable, "-E", "-c"'))
+    words = [word for name in ("below", "quiet") for word in ("--only", f"*/{name}.patch*")]
+    words += ["-o", "repeats=false", "-o", 'pytest_args=["-k", "slow or process_below"]']
+    found = by_name(mutabot(None, copy, "run", "--json", *words).stdout)
+    states = {name: mutant["rounds"][0]["verdict"] for name, mutant in found.items()}
+    assert states == {"below": "killed", "quiet": "survived"}

@@ -344,10 +344,12 @@ class Baseline(Original):
         """Return the tests of a round that were not skipped."""
         return [test for test in self.tests[round] if self.ends[round, test].outcome != "skipped"]
 
-    def missing_judges(self, round: int, mutant: Mutant) -> list[str]:
-        """Return the tests that would judge a mutant if they were not excluded in this round.
+    def missing_judges(self, round: int, mutant: Mutant) -> dict[str, str]:
+        """Return the tests that might notice a mutant but do not judge it in this round: why not.
 
-        A test that fails may stop short of a place that it reaches in other rounds.
+        These are tests excluded as flaky that reach it, also in other rounds: one that fails may stop short
+        of a place. And tests that run its file in processes that cannot join the campaign: there acts only
+        what changes the file itself.
         """
         place, rounds = Place.of(mutant), range(len(self.tests) if self.unstable else 0)
         reaching = {
@@ -356,22 +358,22 @@ class Baseline(Original):
             for other in rounds
             for test in known.get((other, place), ())
         }
-        return [test for where, test in self.unstable if where == round and test in reaching]
+        aside = [test for where, test in self.unstable if where == round and test in reaching]
+        return dict.fromkeys(aside, "it is excluded in this round") | self._unjudged(round, mutant)
 
-    def judges_out_of_reach(self, round: int, mutant: Mutant) -> dict[str, str]:
-        """Return the tests that run a mutant's file where no mutant of a call acts: the command, and why.
-
-        Mutants of the text act there too: the file itself is changed.
-        """
-        is_control = mutant.family == CONTROL
-        if not self.out_of_reach or is_control or self.faults.active(mutant).reference != CALL_FAULT:
+    def _unjudged(self, round: int, mutant: Mutant) -> dict[str, str]:
+        if not self.out_of_reach or mutant.family == CONTROL:
             return {}
-        files = {span.file for span in mutant.site.spans}
+        in_file = mutant.site.is_in_file
+        if in_file and self.faults.active(mutant).reference != CALL_FAULT:
+            return {}
+        ends_with_test = self.tests_reaching(round, mutant) if self.is_of_tests(mutant) else None
+        files = {span.file for span in mutant.site.spans} if in_file else None
         return {
-            test: found[file]
+            test: f"the mutant does not act in a process that it starts: {found[file]}"
             for (where, test), found in self.out_of_reach.items()
-            for file in sorted(files & found.keys())[:1]
-            if where == round
+            for file in sorted(found if files is None else files & found.keys())[:1]
+            if where == round and (ends_with_test is None or test in ends_with_test)
         }
 
 

@@ -10,6 +10,7 @@ from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mutabot.campaign.project_files import python_files
 from mutabot.languages.imported_names import ANY, imported_names
 from mutabot.languages.registry import program_files
 from mutabot.model.source_units import AS_TEXT, WHOLE, Executed, together
@@ -24,11 +25,12 @@ def files_out_of_reach(
     """Return, by test, the files of the program that run so, each with the command and why."""
     ends = [end for end in ends if end.out_of_reach]
     files = program_files(root, program) if ends else []
+    project = python_files(root) if ends else []
     return {
         end.test: {
             file: f"{process.command} ({process.why})"
             for process in end.out_of_reach
-            for file in _files_of(process, root, files)
+            for file in _files_of(process, root, files, project)
         }
         for end in ends
     }
@@ -39,12 +41,18 @@ def with_texts(executed: Executed | None, files: Iterable[str]) -> Executed | No
     return together([executed, dict.fromkeys(files, (AS_TEXT, WHOLE))])
 
 
-def _files_of(process: OutOfReach, root: Path, program: Collection[str]) -> Collection[str]:
-    """Return the files of the program that a process names, and those that they import, or may import."""
+def _files_of(
+    process: OutOfReach, root: Path, program: Collection[str], project: Collection[str]
+) -> Collection[str]:
+    """Return the files of the program that a process names, and those that they import, or may import.
+
+    Imports are followed through all files of the project.
+    """
     if process.files is None:
         return program
-    named = {file for file in program if str((root / file).resolve()) in process.files}
-    waiting = [*named, *(file for file in program if _is_named(file, process.imports))]
+    files = dict.fromkeys([*program, *project])
+    named = {file for file in files if str((root / file).resolve()) in process.files}
+    waiting = [*named, *(file for file in files if _is_named(file, process.imports))]
     found, names = set[str](), {*process.imports}
     while waiting and ANY not in names:
         file = waiting.pop()
@@ -52,8 +60,8 @@ def _files_of(process: OutOfReach, root: Path, program: Collection[str]) -> Coll
             found.add(file)
             new = imported_names((root / file).read_bytes())
             names |= new
-            waiting += [other for other in program if _is_named(other, new)]
-    return program if ANY in names else sorted(found)
+            waiting += [other for other in files if _is_named(other, new)]
+    return program if ANY in names else sorted(found.intersection(program))
 
 
 def _is_named(file: str, names: Iterable[str]) -> bool:

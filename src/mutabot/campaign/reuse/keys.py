@@ -186,8 +186,7 @@ class Dependencies:
 
     def place(self, mutant: Mutant, round: int, whole: bool, until: str) -> Parts:
         """Return the dependencies that all outcomes at the place of a mutant share."""
-        aside = self._baseline.missing_judges(round, mutant) if self._baseline.unstable else []
-        aside += self._baseline.judges_out_of_reach(round, mutant)
+        aside = self._baseline.missing_judges(round, mutant)
         names = (mutant.operation,) if mutant.operation else tuple(self._operations)
         entries = {k: v for name in names for k, v in self._operations.get(name, {}).items()}
         tests = self.tests(mutant, round, whole=whole, until=until)
