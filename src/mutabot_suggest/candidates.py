@@ -356,8 +356,8 @@ def _why_not(check: CheckAtEnd, own: float) -> str | None:
     return None
 
 
-#: what is said of a survivor of which nothing differs but a time
-ONLY_TIME = "only times differ: add a deadline if the task has one"
+#: what is said of a survivor if times alone differ among what its tests read: it may have gone another way
+ONLY_TIME = "of what was read at the ends of its tests, only times differ: add a deadline if the task has one"
 
 
 def _are_related(first_reading: ReadExpression, second_reading: ReadExpression, read: ValuesRead) -> bool:

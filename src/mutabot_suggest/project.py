@@ -194,6 +194,11 @@ def text_of(node: ast.AST) -> str:
     return text if '"' in text or "\\" in text else text.replace("'", '"')
 
 
+def awaits(node: ast.AST) -> bool:
+    """Return whether an expression awaits something, so that no plain function can evaluate it."""
+    return any(isinstance(inner, ast.Await) for inner in ast.walk(node))
+
+
 def place_of(project: SuiteFiles, test: str) -> PlaceInTest | None:
     """Return the place of a test by its node id; None if nothing can be added to it."""
     node = test.partition("[")[0]

@@ -120,7 +120,9 @@ def _by_tests(place: PlaceInTest, module: ast.Module) -> Iterator[str]:
             parts = [*ast.walk(inner)]
             names = {part.id for part in parts if isinstance(part, ast.Name)} - {"len"}
             calls = {ast.unparse(part.func) for part in parts if isinstance(part, ast.Call)}
-            is_plain = inner not in called and calls <= {"len"} and ast.Slice not in map(type, parts)
+            is_plain = (
+                inner not in called and calls <= {"len"} and not {ast.Slice, ast.Await} & {*map(type, parts)}
+            )
             if isinstance(inner, ast.Attribute | ast.Subscript | ast.Call) and names <= at_hand and is_plain:
                 yield text_of(inner)
 

@@ -23,6 +23,8 @@ NOTHING_READ = "nothing that was read at the ends of its tests differs: a check 
 NO_PROBE = (
     "nothing that was read at the ends of its tests differs; a [[probe]] in the vocabulary may show more"
 )
+#: the reason where a recording of the world shows the same movements
+LATER = "only times differ: add a deadline if the task has one"
 NOT_REACHED = "no test reaches it: add a test that does"
 #: a difference in what a function of the program returned
 _RETURNED = re.compile(r"(\w+) returned (?!to )")
@@ -49,7 +51,7 @@ def why_unsolved(
     """Return the reason for a survivor: how its checks failed, or how little of it differs."""
     mutant = survivor.mutant.id
     recorded = _of_recordings(survivor, measured, suite)
-    if recorded.startswith(_SO_LITTLE) or recorded == ONLY_TIME:
+    if recorded.startswith(_SO_LITTLE) or recorded == LATER:
         return Unsolved(mutant, recorded)
     gaps = [gap for outcome in survivor.survived for gap in outcome.gaps]
     if gaps and not recorded:  # what its readings differ by may be the original's own
@@ -99,7 +101,7 @@ def _of_recordings(survivor: MutantResult, measured: Measured, suite: SuiteCheck
     found = max(stories, key=lambda divergence: divergence.rank)
     own = [deviation for deviation in found.apart if not deviation.is_delay and deviation.deviation > 1.0]
     if found.story.startswith("the same movements") or not (own or found.story):
-        return ONLY_TIME
+        return LATER
     turned = max(
         (deviation.aside or 0.0 for deviation in own if deviation.unit == "deg" and not deviation.is_value),
         default=0.0,

@@ -11,6 +11,7 @@ import os
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
+from pathlib import Path
 from types import ModuleType
 from typing import Any
 
@@ -54,6 +55,8 @@ def note(
     for key, holds in checks:
         found.update(_held(key, holds))
     found.update(tick_recorder.recordings())
+    for text, value in _held_by_own(names):  # last: a probe carries a limited number of parts
+        found.update((key, part) for key, part in _state_of(text, value) if key not in found)
     _noted.clear()
     _noted[_test()] = found
 
@@ -144,6 +147,21 @@ def _attributes(value: Any) -> Iterator[tuple[str, Any]]:
     except TypeError:
         return
     yield from ((name, attribute) for name, attribute in held.items() if not name.startswith("_"))
+
+
+def _held_by_own(names: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Yield public attributes of what is at hand and has a class of the project, such as a fake robot."""
+    for text, value in _at_hand(names):
+        file = getattr(sys.modules.get(type(value).__module__), "__file__", None)
+        if file is not None and Path(file).is_relative_to(Path.cwd()):
+            yield from ((f"{text}.{name}", attribute) for name, attribute in _attributes(value))
+
+
+def _state_of(text: str, value: Any) -> Iterator[tuple[str, Any]]:
+    """Yield the parts of an attribute; of a list also how long it is."""
+    if isinstance(value, list):
+        yield f"len({text})", len(value)
+    yield from _parts_of(text, lambda: value).items()
 
 
 def _of_object(text: str, value: Any, targets: Sequence[str]) -> Iterator[tuple[str, Callable[[], Any]]]:

@@ -16,6 +16,7 @@ from .project import (
     PlaceInTest,
     SuiteFiles,
     TestFunctionNode,
+    awaits,
     function_of,
     name_in,
     text_of,
@@ -190,6 +191,8 @@ class SuiteChecks:
                     continue
                 if other is not None and _reads_clock(other, node):
                     continue  # another test's deadline
+                if awaits(node):
+                    continue
                 near = next(
                     (check for check in self.checks if check.file == file and _is_at(check, node)), None
                 )

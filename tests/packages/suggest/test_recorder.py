@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from dataclasses import dataclass
+from pathlib import Path
 from types import ModuleType
 from typing import Any, NamedTuple
 
@@ -62,6 +63,33 @@ def test_what_is_noted_can_be_evaluated_where_it_was_noted(robot: Any) -> None:
     assert found["arm.position().angles[1]"] == 20.0
     assert {text: eval(text, dict(names)) for text in found} == found
     assert not any(text.startswith(("_own", "sys")) for text in found)
+
+
+class FakeBase:
+    """A fake as suites write them: what it was told stands in its attributes."""
+
+    def __init__(self) -> None:
+        self.colour, self.horns, self.lift, self._secret = "blue", [True, False], Pose(0.25, ()), 1
+
+
+@pytest.mark.parametrize("held", ["base", "self.base"])
+def test_what_a_fake_of_the_project_keeps_is_read_and_what_a_library_keeps_is_not(
+    held: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    case = type("Case", (), {})()
+    case.base = FakeBase()
+    monkeypatch.chdir(Path(__file__).parent)
+    recorder.note({"base": case.base} if held == "base" else {"self": case})
+    assert recorder.values() == {
+        f"{held}.colour": "blue",
+        f"len({held}.horns)": 2,
+        f"{held}.horns[0]": True,
+        f"{held}.horns[1]": False,
+        f"{held}.lift.x": 0.25,
+    }
+    monkeypatch.chdir("/proc")  # nothing of this is of the project then
+    recorder.note({"base": case.base})
+    assert recorder.values() == {}
 
 
 @pytest.mark.filterwarnings("error")

@@ -17,7 +17,7 @@ from mutabot_suggest.candidates import candidates
 from mutabot_suggest.checks import CheckAtEnd, CheckOfSuite
 from mutabot_suggest.forms import near_of
 from mutabot_suggest.project import PlaceInTest, SuiteFiles, place_of
-from mutabot_suggest.readings import PROBE, Measured, ReadExpression
+from mutabot_suggest.readings import PROBE, Measured, ReadExpression, readings_at
 from mutabot_suggest.suite import SuiteChecks
 
 from .projects import make
@@ -182,6 +182,31 @@ def test_a_deadline_of_another_test_is_not_asked_elsewhere(tmp_path: Path, check
     request = Request(configuration, vocabulary, rounds=1, seed=1, jobs=1)
     suite = SuiteChecks.of(SuiteFiles(request, tests=("tests/test_it.py",)))
     assert [found.statement for found in suite.reusable_checks(place(suite))] == ["assert arm.z < TIME"]
+
+
+@pytest.mark.parametrize("check", ["assert await arm.state() == 0", "assert (await arm.state()).x < 1.0"])
+def test_what_must_be_awaited_is_read_and_asked_in_its_own_test_only(tmp_path: Path, check: str) -> None:
+    text = f"""
+        async def test_goes(arm):
+            {check}
+            assert arm.z < 1.0
+
+
+        async def test_waits(arm):
+            {check.replace("1.0", "0.5")}
+            assert arm.z < 0.5
+    """
+    folder = make(tmp_path, {"test_it.py": text})
+    configuration = load_configuration(folder)
+    vocabulary = load_vocabulary(configuration.vocabulary, folder)
+    request = Request(configuration, vocabulary, rounds=1, seed=1, jobs=1)
+    suite = SuiteChecks.of(SuiteFiles(request, tests=("tests/test_it.py",)))
+    asked = [found.statement for found in suite.reusable_checks(place(suite))]
+    assert asked == ["assert arm.z < 0.5"]
+    assert "arm.z" in {reading.text for reading in readings_at(suite.project, place(suite))}
+    assert not [
+        reading.text for reading in readings_at(suite.project, place(suite)) if "await" in reading.text
+    ]
 
 
 def test_a_check_of_another_test_that_a_survivor_breaks_is_suggested_as_it_stands(suite: SuiteChecks) -> None:
