@@ -212,12 +212,12 @@ def shortened(text: str, most: int = _SHOWN) -> str:
     return text if len(text) <= most else f"{text[:most]}…"
 
 
-def nearest_name(name: str, known: Iterable[str]) -> str | None:
-    """Return the known name most like ``name``, or None if none is near."""
+def nearest_name(name: str, known: Iterable[str], alike: float = 0.5) -> str | None:
+    """Return the known name most like ``name``, or None if none is near: of ``alike`` letters, 0 to 1."""
     by_folded = {candidate.casefold(): candidate for candidate in known}
     from difflib import get_close_matches  # noqa: PLC0415  # slow, and most processes make no mistake
 
-    matches = get_close_matches(name.casefold(), list(by_folded), n=1, cutoff=0.5)
+    matches = get_close_matches(name.casefold(), list(by_folded), n=1, cutoff=alike)
     return by_folded[matches[0]] if matches else None
 
 

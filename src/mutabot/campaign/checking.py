@@ -7,6 +7,7 @@ from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mutabot.campaign.baseline.remarks import lines_of
 from mutabot.campaign.baseline.vocabulary_fit import never_ticks_text
 from mutabot.campaign.duration import Duration, duration_of
 from mutabot.campaign.engines.engine import try_controls
@@ -169,7 +170,7 @@ def _report(
     ]
     if clock is not None and never_ticks:
         lines.append(f"unused    {never_ticks_text(clock)}")
-    lines += [f"note      {remark}" for remark in (*baseline.remarks, request.ran_over) if remark]
+    lines += [f"note      {note}" for note in (*lines_of(baseline.remarks), request.ran_over) if note]
     lines += [f"replay    {test}: {why}" for test, why in unhandled.reasons.items()]
     data = {
         "replay": dict(unhandled.reasons),

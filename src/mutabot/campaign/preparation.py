@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from mutabot.campaign import simulation
+from mutabot.campaign.baseline.remarks import lines_of
 from mutabot.campaign.baseline.suite_runs import take_baseline
 from mutabot.campaign.baseline.vocabulary_fit import note_fit, refuse_unfit, refuse_unhooked
 from mutabot.campaign.baseline.wrappers import shared_sites
@@ -170,6 +171,7 @@ def _why_no_mutants(request: Request, plan: Plan, baseline: Baseline) -> str:
         families = ", ".join(request.families)
         return f"no mutants: no operator of the families asked for ({families}) acts on what is called"
     lines = [f"no mutants: no test reaches a call of the vocabulary's operations in {files}"]
-    lines += [str(remark) for remark in baseline.remarks[:_REMARKS]]
-    more = len(baseline.remarks) - _REMARKS
+    remarks = lines_of(baseline.remarks)
+    lines += remarks[:_REMARKS]
+    more = len(remarks) - _REMARKS
     return "\n".join([*lines, *([f"… and {more} more"] if more > 0 else [])])

@@ -15,6 +15,9 @@ if TYPE_CHECKING:
     from mutabot.model.left_out import LeftOut
     from mutabot.model.mutant import Mutant
 
+#: share of letters from which on a name is near: what is typed here may as well be no misspelt name
+_ALIKE = 0.6
+
 
 def select(
     mutants: Sequence[Mutant],
@@ -105,7 +108,8 @@ def nothing_fits(source: str, unknown: Sequence[str], known: Sequence[str]) -> S
     """Return the error for words that match no mutant, with the nearest known word."""
     lines = []
     for pattern in unknown:
-        nearest = nearest_name(pattern, known) or nearest_name(pattern.partition(":")[0], known)
+        parts = (pattern, pattern.partition(":")[0])
+        nearest = next((near for part in parts if (near := nearest_name(part, known, _ALIKE))), None)
         if nearest:
             hint = f"the nearest is {nearest!r}"
         elif "," in pattern and source.startswith("--"):

@@ -56,6 +56,19 @@ def test_a_probe_that_no_test_can_read_is_refused(tmp_path: Path, probe: str, wo
     assert str(caught.value).startswith(f"robot.toml:14 · {probe} · call")
 
 
+def test_each_reason_why_tests_cannot_read_a_probe_is_said(tmp_path: Path) -> None:
+    robot = ROBOT.replace("class Arm:", "class Arm:\n        async def later(self):\n            pass\n")
+    tests = (
+        TESTS + "\n    from unittest.mock import Mock\n\n    def test_mock():\n        mission.run(Mock())\n"
+    )
+    folder = project(tmp_path, "robot:Arm.later", robot=robot, tests=tests)
+    with pytest.raises(ConfigurationError) as caught:
+        check(request_for(folder), Quiet())
+    why = str(caught.value)
+    assert "it is a coroutine function; a probe must be a plain function (1 test)" in why
+    assert "no object of Arm is known: the test makes none, and calls none (1 test)" in why
+
+
 def test_a_method_is_read_from_the_object_that_the_program_uses(tmp_path: Path) -> None:
     """The mutant ends elsewhere, which nobody checks: it must not look as if nothing had happened."""
     found = by_forks(project(tmp_path, "robot:Arm.position"))

@@ -82,6 +82,15 @@ def test_no_test_is_run_before_it_is_reported(
     assert not (project / "tests" / "was_run").exists()
 
 
+@pytest.mark.parametrize(("word", "nearest"), [("foo", ""), ("rev", "reverse"), ("misson.py", "mission.py")])
+def test_only_a_name_that_is_like_it_is_called_the_nearest(
+    project: Path, word: str, nearest: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["-C", str(project), "list", "--only", word]) == 2
+    hint = f"the nearest is {nearest!r}" if nearest else "`mutabot list` shows what there is"
+    assert f"no mutant matches {word!r}; {hint}" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("command", ["run", "list"])
 def test_long_numbers_are_of_no_mutant(
     project: Path, command: str, capsys: pytest.CaptureFixture[str]

@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Protocol
 
+from mutabot.campaign.baseline.remarks import lines_of
 from mutabot.campaign.baseline.writes import written_through
 from mutabot.campaign.probe_readings import probe_intervals_of
 from mutabot.campaign.request import Progress, Request
@@ -128,10 +129,18 @@ class _Suite:
 
     def run(self, tasks: Iterable[Task]) -> None:
         """Run tasks until the result of one cannot be a baseline. Raises what ``take_baseline`` raises."""
+        before = len(self.remarks)
+        try:
+            self._run(tasks)
+        finally:
+            for line in lines_of(self.remarks[before:]):
+                self.progress.note(line)
+
+    def _run(self, tasks: Iterable[Task]) -> None:
         for result in self.executor.events(tasks):
             if not isinstance(result, Result):
                 if isinstance(result[1], Remark):
-                    self._note(result[1])
+                    self.remarks.append(result[1])
                 continue
             round, repetition = result.task.key
             self.results[round, repetition] = result
@@ -143,17 +152,13 @@ class _Suite:
             which = f"round {round + 1}{f', run {repetition + 1}' if repetition else ''}"
             self.progress.advance(f"{which}: {counted or 'nothing ran'}")
 
-    def _note(self, remark: Remark) -> None:
-        self.remarks.append(remark)
-        self.progress.note(str(remark))
-
     def _note_unread(self, result: Result) -> None:
         """Turn problems of results that were not read into remarks, if only single tests are run."""
         unread = [remark for remark in result.problems if remark.key.startswith("result.")]
         result.problems = [remark for remark in result.problems if remark not in unread]
         for problem in unread:
             why = "no result had it: only single tests are run, and others may read it"
-            self._note(Remark(problem.source, problem.key, why))
+            self.remarks.append(Remark(problem.source, problem.key, why))
 
     def task(self, round: int, repetition: int, **details: Any) -> Task:
         """Return the task that runs the original in a round; forks share imports and collection."""

@@ -6,11 +6,14 @@ Without readings of probes comparisons would say nothing.
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
+from mutabot.campaign.baseline.remarks import lines_of
 from mutabot.campaign.probe_readings import is_pattern, parts_of, readings_of
 from mutabot.config.mistakes import problem_error
+from mutabot.errors import plural
 from mutabot.extensions import brought
 from mutabot.model.events import Problem, Remark, TestEnd
 from mutabot.model.quantity import holds_number, is_number, value_text
@@ -21,6 +24,8 @@ if TYPE_CHECKING:
     from mutabot.campaign.request import Progress
     from mutabot.model import Clock, Operation, Pattern, Probe, Quantity, Vocabulary
 
+#: reasons why tests cannot read a probe that are said
+_REASONS = 3
 _NO_MIDDLEWARE = (
     "it is a name on a middleware, but no installed package brings one, so that nothing would be seen of it; "
     "that of ROS is mutabot_ros, which comes with mutabot: install it whole"
@@ -86,8 +91,8 @@ def note_fit(
         *shared,
     )
     baseline.add_remarks(remarks)
-    for remark in remarks:
-        progress.note(str(remark))
+    for line in lines_of(remarks):
+        progress.note(line)
 
 
 def never_ticks_text(clock: Clock) -> str:
@@ -110,7 +115,10 @@ def _unreadable(baseline: Baseline, vocabulary: Vocabulary) -> Iterator[Problem]
     for probe in vocabulary.probes:
         reasons = [_why_not(probe, end) for end in _with_calls(baseline)]
         if reasons and all(reasons):
-            text = f"{probe.target} cannot be read at the end of any test: {reasons[0]}"
+            counts = Counter(filter(None, reasons)).most_common(_REASONS)
+            where = [f" ({plural(count, 'test')})" if len(counts) > 1 else "" for _, count in counts]
+            why = "; ".join(f"{reason}{there}" for (reason, _), there in zip(counts, where, strict=True))
+            text = f"{probe.target} cannot be read at the end of any test: {why}"
             yield Problem(probe.source, "call", text)
 
 
