@@ -193,6 +193,11 @@ def survivor_text(result: MutantResult) -> str:
     return ". ".join(filter(None, [found, next_step(result)]))
 
 
+def is_minor(result: MutantResult) -> bool:
+    """Return whether a survivor shows no weak check: accepted, indistinguishable, or reached by no test."""
+    return result.is_accepted or result.indistinguishable or result.status is Verdict.NOT_COVERED
+
+
 def next_step(result: MutantResult, suggestion: Suggestion | None = None) -> str:
     """Return what to do about a survivor; empty for other mutants, and for magnitudes of a ladder.
 

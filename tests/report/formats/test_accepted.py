@@ -64,6 +64,8 @@ def test_code_scanning_suppresses_them(campaign: mutabot.StoredCampaign) -> None
     assert (suppression["kind"], suppression["status"]) == ("external", "accepted")
     assert suppression["justification"].startswith(WHY)
     assert set(found.values()) == {None}
+    assert of_skip([{**result["properties"], "id": result["properties"]["mutant"], **result}
+                    for result in run["results"]])["level"] == "note"  # fmt: skip
 
 
 def test_junit_skips_them(campaign: mutabot.StoredCampaign) -> None:

@@ -37,7 +37,7 @@ def in_both_rounds(*outcomes: Outcome) -> tuple[Outcome, ...]:
 
 def test_survivors_are_annotations_at_their_calls_the_worst_first(tmp_path: Path) -> None:
     found = commands(stored(tmp_path))
-    assert [level for level, _, _ in found] == ["warning", "warning", "notice"]
+    assert [level for level, _, _ in found] == ["warning", "notice", "notice"]
     assert found[0] == (
         "warning",
         {

@@ -30,7 +30,7 @@ def test_there_is_a_result_for_every_survivor_the_worst_first(campaign: mutabot.
     assert [finding["properties"]["mutant"] for finding in found] == [
         samples.SKIP.id, samples.NOISE.id, samples.NEGATE.id,
     ]  # fmt: skip
-    assert [finding["level"] for finding in found] == ["error", "warning", "note"]
+    assert [finding["level"] for finding in found] == ["error", "note", "note"]
 
 
 def test_the_level_says_how_much_a_survivor_changed(tmp_path: Path) -> None:
@@ -45,7 +45,7 @@ def test_the_level_says_how_much_a_survivor_changed(tmp_path: Path) -> None:
     assert levels == {
         samples.SKIP.id: "error",
         samples.REVERSE.id: "warning",
-        samples.BY_TO.id: "warning",
+        samples.BY_TO.id: "note",
         samples.NEGATE.id: "note",
     }
 

@@ -16,12 +16,15 @@ from mutabot.errors import SelectionError
 from mutabot.journal.journal import Journal
 from mutabot.journal.records import Untested
 from mutabot.model import By, LeftOut, Outcome, Span, Verdict
+from mutabot.model.suppression import Acceptance
 from mutabot.report.terminal.campaign import print_plan, print_results, print_summary
 from mutabot.report.terminal.console import (
+    counts_of,
     legend,
+    letters,
     make_console,
     mark_of,
-    marks_in,
+    marks_of,
     short_place,
     terminal_text,
 )
@@ -82,10 +85,10 @@ def test_no_line_is_wider_than_the_terminal_and_none_is_coloured_on_a_pipe(
 @WIDTHS
 def test_every_mutant_has_one_letter_per_round(results: Results, width: int) -> None:
     text = report(results, width)
-    for words, letters in {
+    for words, ends in {
         ("reverse",): "C X", ("skip",): "S S", ("by-to",): "R T", ("negate",): "S C", ("noise",): "E N",
     }.items():  # fmt: skip
-        assert first_line_of(text, *words).endswith(letters)
+        assert first_line_of(text, *words).endswith(ends)
 
 
 def test_the_legend_explains_exactly_the_letters_that_occur(results: Results) -> None:
@@ -97,11 +100,22 @@ def test_the_legend_explains_exactly_the_letters_that_occur(results: Results) ->
 
 @pytest.mark.parametrize("width", [30, 60, 80])
 def test_the_legend_breaks_between_its_entries_only(width: int) -> None:
-    outcomes = [Outcome("m", 0, verdict, By.CHECK) for verdict in Verdict]
+    marks = [mark_of(Outcome("m", 0, verdict, By.CHECK)) for verdict in Verdict]
     on = console(width)
-    on.print(legend(outcomes))
+    on.print(legend(marks))
     entries = [entry for line in written(on).splitlines() for entry in line.split("   ")]
-    assert entries == [f"{mark.letter} {mark.text}" for mark, _ in marks_in(outcomes)]
+    assert entries == [f"{mark.letter} {mark.text}" for mark, _ in counts_of(marks)]
+
+
+def test_only_rounds_that_let_an_accepted_mutant_through_are_marked_so(results: Results) -> None:
+    by_id = {result.mutant.id: result for result in results.mutants}
+    decision = Acceptance("why", "mutabot-accepted.toml:1")
+    for mutant, before, after in ((samples.SKIP, "S S", "A A"), (samples.NEGATE, "S C", "A C")):
+        result = by_id[mutant.id]
+        assert letters(marks_of(result)).plain == before
+        assert letters(marks_of(replace(result, acceptance=decision))).plain == after
+    killed = replace(by_id[samples.REVERSE.id], acceptance=decision)
+    assert letters(marks_of(killed)).plain == "C X"
 
 
 def test_every_verdict_has_a_letter_of_its_own() -> None:

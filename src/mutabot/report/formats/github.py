@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from mutabot.errors import plural
-from mutabot.report.texts import survivor_text
+from mutabot.report.texts import is_minor, survivor_text
 
 if TYPE_CHECKING:
     from mutabot.report.format import Material
@@ -28,7 +28,7 @@ def make(material: Material) -> str:
 def _lines(material: Material) -> Iterator[str]:
     left, hidden = dict(_LIMITS), 0
     for result in material.campaign.survivors:
-        level = "notice" if result.indistinguishable else "warning"
+        level = "notice" if is_minor(result) else "warning"
         if left[level]:
             left[level] -= 1
             yield _annotation(level, result, material)

@@ -9,7 +9,7 @@ from urllib.parse import quote
 from mutabot.errors import in_short
 from mutabot.report.document import dumps
 from mutabot.report.format import Material, utf16
-from mutabot.report.texts import survivor_text
+from mutabot.report.texts import is_minor, survivor_text
 
 if TYPE_CHECKING:
     from mutabot.model import Mutant, Site, Span
@@ -117,7 +117,7 @@ def _suppressions(acceptance: Acceptance | None) -> dict[str, Any]:
 
 def _level(result: MutantResult) -> str:
     """Return a survivor's level, which is higher if the robot acted differently."""
-    if result.indistinguishable:
+    if is_minor(result):
         return "note"
     differs = any(outcome.divergence and not outcome.indistinguishable for outcome in result.survived)
     return "error" if differs else "warning"

@@ -25,7 +25,7 @@ from mutabot.languages.registry import highlighting_of
 from mutabot.model import By
 from mutabot.model.quantity import value_text
 from mutabot.report.document import data_of, finite
-from mutabot.report.terminal.console import mark_of
+from mutabot.report.terminal.console import marks_of
 from mutabot.report.texts import (
     acceptance_text,
     effect_text,
@@ -118,7 +118,7 @@ def _row(result: MutantResult, tests: Mapping[str, int]) -> dict[str, Any]:
         **data_of.facts(result, _ROW),
         "status": state_of(result),
         "why": "; ".join(filter(None, [acceptance_text(result), effect_text(result)])),
-        "ends": "".join(mark_of(outcome).letter for outcome in result.rounds),
+        "ends": "".join(mark.letter for mark in marks_of(result)),
         "kills": [*kills.values()],
     }
 

@@ -25,6 +25,7 @@ from .console import (
     legend,
     letters,
     make_table,
+    marks_of,
     print_section,
     short_place,
     terminal_text,
@@ -110,10 +111,10 @@ def _mutants(results: Results, *, are_joined: bool) -> Iterator[RenderableType]:
             mutant.site.role.value,
             *(["\n".join(cells)] if are_joined else cells),
             Breakable(terminal_text(mutant.description)),
-            letters(result.rounds, many=many),
+            letters(marks_of(result), many=many),
         )
     yield table
-    yield legend(outcome for result in results.mutants for outcome in result.rounds)
+    yield legend(mark for result in results.mutants for mark in marks_of(result))
 
 
 def print_plan(

@@ -22,6 +22,7 @@ from mutabot.report.texts import ESCAPES
 
 if TYPE_CHECKING:
     from mutabot.report.sections import Section
+    from mutabot.results.results import MutantResult
 
 #: between the entries of a legend
 _GAP = "   "
@@ -214,8 +215,10 @@ _OTHERS = {
     Verdict.UNSTABLE: VerdictMark("U", "magenta", "unstable"),
     Verdict.ERROR: VerdictMark("E", "bold magenta", "error"),
 }
+_ACCEPTED = VerdictMark("A", "dim", "survived, and is accepted")
 _NOT_RUN = VerdictMark("·", "dim", "not run")
-_ORDER = [_BY_CHECK, _BY_EXCEPTION, *_OTHERS.values(), _NOT_RUN]
+_ORDER = [_BY_CHECK, _BY_EXCEPTION, *_OTHERS.values(), _ACCEPTED, _NOT_RUN]
+_LET_THROUGH = (_OTHERS[Verdict.SURVIVED], _OTHERS[Verdict.NOT_COVERED])
 
 
 def mark_of(outcome: Outcome | None) -> VerdictMark:
@@ -227,18 +230,24 @@ def mark_of(outcome: Outcome | None) -> VerdictMark:
     return _OTHERS[outcome.verdict]
 
 
-def marks_in(outcomes: Iterable[Outcome | None]) -> list[tuple[VerdictMark, int]]:
+def marks_of(result: MutantResult) -> list[VerdictMark]:
+    """Return a mark per round; rounds that let an accepted mutant through have one of their own."""
+    marks = [mark_of(outcome) for outcome in result.rounds]
+    return [_ACCEPTED if result.is_accepted and mark in _LET_THROUGH else mark for mark in marks]
+
+
+def counts_of(marks: Iterable[VerdictMark]) -> list[tuple[VerdictMark, int]]:
     """Return the marks that occur with their counts, in the order of the legend."""
-    marks = [mark_of(outcome) for outcome in outcomes]
+    marks = [*marks]
     return [(mark, marks.count(mark)) for mark in _ORDER if mark in marks]
 
 
-def letters(rounds: Sequence[Outcome | None], *, many: bool = False) -> Text:
+def letters(rounds: Sequence[VerdictMark], *, many: bool = False) -> Text:
     """Return one letter per round, or the counts of letters if there are many."""
     if many:
-        parts = [Text(f"{mark.letter}{count}", style=mark.style) for mark, count in marks_in(rounds)]
+        parts = [Text(f"{mark.letter}{count}", style=mark.style) for mark, count in counts_of(rounds)]
     else:
-        parts = [Text(mark_of(outcome).letter, style=mark_of(outcome).style) for outcome in rounds]
+        parts = [Text(mark.letter, style=mark.style) for mark in rounds]
     return Text(" ").join(parts)
 
 
@@ -256,9 +265,9 @@ class _Legend(Text):
         return Lines(lines)
 
 
-def legend(outcomes: Iterable[Outcome | None]) -> Text:
+def legend(marks: Iterable[VerdictMark]) -> Text:
     """Return the explanation of the letters that occur."""
     parts = [
-        part for mark, _ in marks_in(outcomes) for part in ((mark.letter, mark.style), f" {mark.text}", _GAP)
+        part for mark, _ in counts_of(marks) for part in ((mark.letter, mark.style), f" {mark.text}", _GAP)
     ]
     return _Legend.assemble(*parts[:-1])

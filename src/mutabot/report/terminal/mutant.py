@@ -22,7 +22,17 @@ from mutabot.report.texts import (
     places_text,
 )
 
-from .console import Breakable, below, heading, letters, make_table, mark_of, print_section, terminal_text
+from .console import (
+    Breakable,
+    below,
+    heading,
+    letters,
+    make_table,
+    mark_of,
+    marks_of,
+    print_section,
+    terminal_text,
+)
 
 if TYPE_CHECKING:
     from mutabot.journal.records import Replayed
@@ -125,7 +135,7 @@ def _rounds(result: MutantResult, *, everything: bool) -> Section:
     for number, outcome in enumerate(result.rounds):
         groups.setdefault(outcome and (describe_end(outcome), outcome.place), []).append(number)
     most = most_informative(result)
-    lines = [letters(result.rounds).plain] if len(result.rounds) > 1 else []
+    lines = [letters(marks_of(result)).plain] if len(result.rounds) > 1 else []
     for numbers in groups.values():
         outcome = result.rounds[most[0] if most is not None and most[0] in numbers else numbers[0]]
         if everything or most is None or most[0] in numbers:
