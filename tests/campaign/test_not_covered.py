@@ -196,6 +196,28 @@ def test_of_a_call_in_a_branch_and_of_one_that_is_no_operation(tmp_path: Path) -
     assert results.untested.text == "1 of 2 robot calls is reached by no test"
 
 
+def test_a_statement_that_ends_with_a_call_is_not_this_call(tmp_path: Path) -> None:
+    program = """
+        from contextlib import ExitStack
+
+        def go(arm, far=False):
+            with ExitStack() as stack:
+                stack.callback(arm.move_by, 0.25)
+                arm.position() if not far else arm.move_by(0.5)
+    """
+    tests = """
+        import mission
+        import robot
+
+        def test_go():
+            arm = robot.Arm()
+            mission.go(arm)
+            assert arm.x == 0.25
+    """
+    results = ran(write_project(tmp_path, program, tests))
+    assert [call.place for call in results.untested.unreached_calls] == ["mission.py:7:40"]
+
+
 def test_a_file_that_no_test_imports_is_reported_whatever_it_is_written_in(tmp_path: Path) -> None:
     folder = project(tmp_path)
     text = f'# coding: latin-1\n"""Größe."""\n{dedent(OTHER)}'

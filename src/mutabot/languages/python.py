@@ -35,6 +35,7 @@ class Python:
         """Return names of all expressions: a call by the text of its callee, all others by their own.
 
         What a ``for`` or ``with`` does by itself has the place of the whole statement up to Python 3.12.
+        What is looked up on a later line begins there.
         """
         names: dict[Extent, tuple[str, int]] = {}
         tree = ast.parse(source)
@@ -50,6 +51,8 @@ class Python:
             elif isinstance(node, ast.With | ast.AsyncWith):
                 text, occurrence = names[extent_of(node.items[0].context_expr)]
                 names.setdefault(extent_of(node), (f"with {text}", occurrence))
+            elif isinstance(node, ast.Call | ast.Attribute):
+                names.setdefault(_looked_up(node), names[extent_of(node)])
         return names
 
     def file_of(self, frame: FrameType) -> str | None:
@@ -112,6 +115,15 @@ def _definition(node: ast.FunctionDef | ast.AsyncFunctionDef) -> Extent:
     return (first, 0, first, 0)
 
 
+def _looked_up(node: ast.Call | ast.Attribute) -> Extent:
+    """Return where the interpreter looks a name up: a name on a later line than what has it stands alone."""
+    named = node.func if isinstance(node, ast.Call) else node
+    line, column, end_line, end_column = extent_of(named)
+    if isinstance(named, ast.Attribute) and line != end_line:
+        line, column = end_line, end_column - len(named.attr)  # it counts characters here, not bytes
+    return (line, column, *extent_of(node)[2:])
+
+
 def _number(tree: ast.Module, lines: list[bytes], names: dict[Extent, tuple[str, int]]) -> None:
     for scope in _scopes(tree):
         # a call and its callee look alike but are different things to hit
@@ -127,19 +139,21 @@ def _scopes(tree: ast.Module) -> list[ast.AST]:
     return [node for node in ast.walk(tree) if isinstance(node, kinds)]
 
 
-def _expressions(scope: ast.AST) -> list[ast.expr]:
+def _expressions(scope: ast.AST) -> list[ast.expr | ast.AugAssign]:
     """Return the expressions of a function, class or module, except those of functions and classes inside.
+
+    An assignment such as ``+=`` counts as one, since it can be a call.
 
     Decorators and default arguments run in the scope around the function they belong to.
     """
-    found: list[ast.expr] = []
+    found: list[ast.expr | ast.AugAssign] = []
     waiting: list[ast.AST] = list(_own(scope))
     while waiting:
         node = waiting.pop()
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
             waiting.extend(outer_of(node))
             continue
-        if isinstance(node, ast.expr):
+        if isinstance(node, ast.expr | ast.AugAssign):
             found.append(node)
         waiting.extend(ast.iter_child_nodes(node))
     return found
@@ -162,13 +176,13 @@ def outer_of(node: ast.AST) -> list[ast.AST]:
     return []
 
 
-def _text(node: ast.expr, lines: list[bytes]) -> str:
+def _text(node: ast.expr | ast.stmt, lines: list[bytes]) -> str:
     callee = node.func if isinstance(node, ast.Call) else node
-    text = " ".join(_segment(callee, lines).split())
+    text = " ".join(_segment(callee, lines).replace("\\\n", " ").split())
     return text if len(text) <= _TEXT_LIMIT else text[: _TEXT_LIMIT - 1] + "…"
 
 
-def _segment(node: ast.expr, lines: list[bytes]) -> str:
+def _segment(node: ast.expr | ast.stmt, lines: list[bytes]) -> str:
     first, start, last, end = extent_of(node)
     if first == last:
         return lines[first - 1][start:end].decode()

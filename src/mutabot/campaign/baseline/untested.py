@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from mutabot.execution.task import Result
     from mutabot.model import Vocabulary
 
-#: a call in a file, by where it ends: a chain over several lines begins elsewhere for the interpreter
-_End = tuple[str, int, int]
+#: where something in a file ends, and where the last of all that end there begins
+_Ends = Mapping[tuple[str, int, int], tuple[int, int]]
 #: what identifies a process that cannot be seen
 UNSEEN = "processes"
 _DOUBT = "a process that cannot be seen may reach it"
@@ -48,8 +48,8 @@ class _OriginalCode:
         executed: units that were executed; None if that is not known.
     """
 
-    sites: frozenset[_End]
-    alone: frozenset[_End]
+    sites: _Ends
+    alone: _Ends
     asked: frozenset[str]
     imported: frozenset[str]
     executed: Executed | None
@@ -64,8 +64,8 @@ class _OriginalCode:
         imported = {file for result in results if result.seen for file in result.seen.imported}
         files = {file for event in asked for file in event.files}
         return cls(
-            frozenset(map(_end, sites)),
-            frozenset(_end(span) for event in asked for span in event.alone),
+            _ends(sites),
+            _ends(span for event in asked for span in event.alone),
             frozenset(files),
             frozenset({*imported, *files, *(executed or ()), *(span.file for span in sites)}),
             executed,
@@ -81,8 +81,20 @@ class _OriginalCode:
         return line in lines or WHOLE in lines
 
 
-def _end(span: Span) -> _End:
-    return span.file, span.end_line, span.end_column
+def _ends(spans: Iterable[Span]) -> _Ends:
+    ends: dict[tuple[str, int, int], tuple[int, int]] = {}
+    for span in spans:
+        end, start = (span.file, span.end_line, span.end_column), (span.line, span.column)
+        ends[end] = max(start, ends.get(end, start))
+    return ends
+
+
+def _is_among(span: Span, ends: _Ends) -> bool:
+    """Return whether a call was seen: a chain over several lines begins later for the interpreter.
+
+    What begins earlier is something around the call, such as a ``with`` statement.
+    """
+    return (span.line, span.column) <= ends.get((span.file, span.end_line, span.end_column), (0, 0))
 
 
 def add_untested(
@@ -182,7 +194,7 @@ def _calls(
         unreached = [
             call
             for call in calls_in(text, file, known)
-            if _end(call.site.span) not in seen.sites | seen.alone
+            if not _is_among(call.site.span, seen.sites) and not _is_among(call.site.span, seen.alone)
         ]
         if unreached and not _are_of(text, [span for span in spans if span.file == file]):
             unreached = [replace(call, doubt=call.doubt or _OTHER_TEXT) for call in unreached]
@@ -212,5 +224,5 @@ def _known(
     alone: set[str] = set()
     for file in {file for file, _, _ in seen.alone} & texts.keys():
         everything = calls_in(texts[file], file, KnownCalls(by_name, own, {}, ()))
-        alone |= {call.site.text for call in everything if _end(call.site.span) in seen.alone}
+        alone |= {call.site.text for call in everything if _is_among(call.site.span, seen.alone)}
     return KnownCalls(by_name, own, reached, alone)
