@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import copy
 import dataclasses
+import enum
 import inspect
 import os
 import random
@@ -81,11 +82,12 @@ def _array(change: Change, value: Any) -> Any:
 
 
 def other(pairs: dict[Any, Any], value: Any) -> Any:
-    """The other of two states, or the next of some labels."""
+    """The other of two states, or the next of some labels; a member of an enumeration gives one of it."""
     try:
-        return pairs.get(value, value)
+        found = pairs.get(value, value)
     except TypeError:
         return value
+    return type(value)(found) if isinstance(value, enum.Enum) else found
 
 
 def changed(path: str, change: Change, value: Any) -> Any:

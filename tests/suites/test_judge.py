@@ -8,6 +8,7 @@ import sys
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
+from re import RegexFlag
 from textwrap import dedent
 from typing import Any
 
@@ -20,7 +21,7 @@ from .catalogue_editor import CatalogueEditor
 from .editor import CannotWriteError, Facts, edits_for
 from .judge import Judge
 from .message_editor import edits_of
-from .planted import noisy
+from .planted import noisy, other
 
 VOCABULARY = """
     refusals = ["robot:Refused"]
@@ -252,6 +253,11 @@ def test_noise_of_a_number_of_another_kind_is_of_its_kind() -> None:
         drawn = noisy(0.5, number)
         assert type(drawn) is type(number)
         assert drawn != number
+
+
+def test_a_label_of_an_enumeration_becomes_another_of_it() -> None:
+    assert other({3: 1}, RegexFlag(3)) is RegexFlag(1)
+    assert other({"red": "blue"}, "red") == "blue"
 
 
 @pytest.mark.parametrize("description", ["a + c → a - c", "a + b + a very long… → a - b"])
