@@ -49,7 +49,7 @@ SHORT: dict[str, list[str]] = {
     "suggested_checks": ["--seeds", "1", "scales"],
     "suite_length": ["--lengths", "50"],
     "tasks": ["--check"],
-    "ten_thousand": ["--mutants", "4000"],
+    "ten_thousand": ["--mutants", "400"],
     "witness": ["witness", "fluent_api"],
     "world_cost": ["--magnitudes", "2", "--when", "made"],
     "world_judged": ["paper", "--engines", "fork", "--only", "payload"],
