@@ -366,3 +366,50 @@ def test_a_process_that_goes_on_after_its_test_reports_no_change_where_no_value_
     found = run(project, families=("conventional",), only=("*:ABS=abs",), engine=engine)
     assert len(found) == 3  # of what is ordered, of what is read, of the attribute: all are positive
     assert {outcome.verdict for outcome in found.values()} == {Verdict.NO_EFFECT}
+
+
+@pytest.mark.parametrize("engine", ["auto", REPLAY])
+def test_a_copy_of_the_process_that_becomes_another_program_is_seen_until_then(
+    tmp_path: Path, engine: str
+) -> None:
+    mission = """
+        import os
+        import subprocess
+
+        from robot import Arm
+
+        ARM, EDGE = Arm(), Arm(x=-0.9)
+
+        def prepare():
+            ARM.move_by(0.25)
+            EDGE.move_by(0.4)
+            if ARM.x < 0:
+                raise ValueError("behind")
+
+        def start():
+            return subprocess.run(["true"], preexec_fn=prepare).returncode
+
+        def copy():
+            child = os.fork()
+            if not child:
+                os.execv("/bin/sh", ["sh", "-c", "exit 0"])
+            return os.waitpid(child, 0)[1]
+    """
+    tests = """
+        import mission
+
+        def test_start():
+            assert mission.start() == 0
+
+        def test_copy():
+            assert mission.copy() == 0
+    """
+    project = write_project(tmp_path, mission, tests)
+    wanted = ("*:reverse", "*:os.fork()#1:ABS=abs")
+    found = run(project, families=("robot", "conventional"), only=wanted, engine=engine)
+    ends = {mutant.split(":")[2]: outcome.verdict for mutant, outcome in found.items()}
+    assert ends == {
+        "ARM.move_by#1": Verdict.KILLED,
+        "EDGE.move_by#1": Verdict.REFUSED,
+        "os.fork()#1": Verdict.NO_EFFECT,
+    }

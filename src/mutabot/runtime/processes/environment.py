@@ -16,8 +16,9 @@ import os
 import struct
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import wraps
+from functools import partial, wraps
 from json import dumps, loads
+from types import BuiltinFunctionType
 from typing import Any
 
 from mutabot.model.event_file import ANY_PROCESS, NOW, TESTS, VARIABLE, WAKE
@@ -53,6 +54,11 @@ _ENVIRONMENT = 5
 #: functions of ``os`` that start a program with an environment of its own, the third argument, ``env``;
 #: the others that take one call ``execve``
 _WITH_ENVIRONMENT = ("posix_spawn", "posix_spawnp", "execve")
+#: which argument of ``fork_exec`` runs in the copy of the process before this becomes the program
+_PREPARE = -2
+#: what a copy of the process says before it prepares to become another program, and afterwards, with the
+#: exception that ended it
+PREPARES, PREPARED = "mutabot.prepares", "mutabot.prepared"
 #: those of the copy of a process
 FORKINGS = ("os.fork", "os.forkpty")
 _folder = ""
@@ -89,6 +95,9 @@ def _hook_starts() -> None:
         environment = arguments[_ENVIRONMENT]
         if environment is not None:
             arguments = (*arguments[:_ENVIRONMENT], completed(environment), *arguments[_ENVIRONMENT + 1 :])
+        prepare = arguments[_PREPARE]
+        if prepare is not None and not isinstance(prepare, BuiltinFunctionType):
+            arguments = (*arguments[:_PREPARE], partial(_prepare, prepare), *arguments[_PREPARE + 1 :])
         return start(*arguments)
 
     _posixsubprocess.fork_exec = fork_exec
@@ -97,6 +106,17 @@ def _hook_starts() -> None:
     if "subprocess" in sys.modules:
         _replace(fork_exec)
     listen(STARTS, lambda event, arguments: _about_to_start(event, fork_exec))
+
+
+def _prepare(prepare: Callable[[], Any]) -> None:
+    """Run what ``preexec_fn`` gives: code that may be the program's, in a copy of this process."""
+    sys.audit(PREPARES)
+    try:
+        prepare()
+    except BaseException as error:
+        sys.audit(PREPARED, error)
+        raise
+    sys.audit(PREPARED, None)
 
 
 def _completing(start: Callable[..., Any]) -> Callable[..., Any]:

@@ -31,7 +31,14 @@ from mutabot.runtime.exceptions import failure_in, is_due_to, leaves
 from mutabot.runtime.meter import Meter, TimeExceeded
 from mutabot.runtime.paths import watch_copies
 from mutabot.runtime.processes.commands import STARTS, starts_a_killer
-from mutabot.runtime.processes.environment import Now, export_folder, listen, out_of_reach
+from mutabot.runtime.processes.environment import (
+    PREPARED,
+    PREPARES,
+    Now,
+    export_folder,
+    listen,
+    out_of_reach,
+)  # fmt: skip
 from mutabot.runtime.program_text.instrument import SessionText
 from mutabot.runtime.program_text.loading import hook_script
 from mutabot.runtime.program_text.text_mutant import TextMutant
@@ -157,6 +164,7 @@ class Member:
         self.session = session or _session(job, self)
         self._targets: set[str] = set()
         self._reported = Activity()
+        self._acted = 0
         self._places: set[int] = set()
         self._texts: set[str] = set()
         self._exceeded = False
@@ -230,7 +238,7 @@ class Member:
             self.poll()
             self._use()
             self._test = self._now.number
-            self._reported, self._exceeded = Activity(), False
+            self._reported, self._acted, self._exceeded = Activity(), 0, False
             self._places.clear()
             self.session.start_test(self._now.name_of(self._test))
 
@@ -278,11 +286,14 @@ class Member:
 
     def _did(self, before: Activity, now: Activity) -> events.Did:
         away = {why: count - before.away.get(why, 0) for why, count in now.away.items()}
+        # an evaluation that began before the process was copied is no change of the copy: it takes none back
+        acted = max(now.acted - before.acted, -self._acted)
+        self._acted += acted
         is_refused = now.refusals != before.refusals or now.refusing_answer != before.refusing_answer
         return events.Did(
             self.session.test,
             hits=now.hits - before.hits,
-            acted=now.acted - before.acted,
+            acted=acted,
             away={why: count for why, count in away.items() if count},
             example=now.example if before.example is None else None,
             failure=now.failure if before.failure is None else None,
@@ -363,12 +374,14 @@ class Member:
 
         sys.excepthook, threading.excepthook = in_main, in_thread
         os._exit = leave_at_once  # type: ignore[assignment]
-        listen(("os.kill", "os.killpg", *STARTS), self._on_audit_event)
+        listen(("os.kill", "os.killpg", PREPARED, *STARTS), self._on_audit_event)
 
     def _on_audit_event(self, event: str, arguments: tuple[Any, ...]) -> None:
         if event in ("os.kill", "os.killpg") and _member is self:
             self.event_file.send(events.Signalled(-arguments[0] if event == "os.killpg" else arguments[0]))
-        elif event == "os.exec" and _member is self:
+        elif event == PREPARED and _member is self and arguments[0] is not None:
+            self._raised(arguments[0], in_thread=False)
+        if event in ("os.exec", PREPARED) and _member is self:
             self.end()
         if _member is self and starts_a_killer(event, arguments):
             self.event_file.send(events.Signalled(ANY_PROCESS))
@@ -415,13 +428,19 @@ def watch_forks(folder: str, session: Session | TextOnly) -> None:
     global _watched  # noqa: PLW0603  # hooks cannot be taken back: the last one watched counts
     if _watched is None:
         os.register_at_fork(after_in_child=_after_fork)
+        listen((PREPARES,), lambda event, arguments: _begin_copy())
     _watched = folder, session
 
 
 def _after_fork() -> None:
+    if not _getframe(1).f_code.co_filename.startswith(OURS):
+        _begin_copy()
+
+
+def _begin_copy() -> None:
     """Begin a member in a process that the program has forked."""
     global _member  # noqa: PLW0603  # see above
-    if _watched is not None and not _getframe(1).f_code.co_filename.startswith(OURS):
+    if _watched is not None:
         folder, session = _watched
         _member = Member(folder, session.job, session)
         _member.go_on()
