@@ -183,6 +183,8 @@ class CallEditor:
         self._called = mutant["operation"].rpartition(":")[2].rpartition(".")[2]
         span = mutant["span"]
         self.call = source.call_ending(span["end_line"], span["end_column"] - 1, self._called)
+        if _last_name(self.call.func) in ("exec", "eval"):
+            raise CannotWriteError("the call stands in a text that is run")
         self.operation = facts.operation(mutant["operation"])
         handed = self._handed()
         self.callee = handed or self.call.func

@@ -255,6 +255,14 @@ def test_noise_of_a_number_of_another_kind_is_of_its_kind() -> None:
         assert drawn != number
 
 
+def test_a_call_in_a_text_that_is_run_cannot_be_written(tmp_path: Path) -> None:
+    source = 'exec("x = arm.where()")\n'
+    facts = Facts.of(project(tmp_path, source))
+    found = mutant('exec("x = arm.where()")', source, operator="negate", operation="robot:Arm.where")
+    with pytest.raises(CannotWriteError, match="text that is run"):
+        edits_for(facts, found)
+
+
 def test_a_label_of_an_enumeration_becomes_another_of_it() -> None:
     assert other({3: 1}, RegexFlag(3)) is RegexFlag(1)
     assert other({"red": "blue"}, "red") == "blue"
