@@ -110,6 +110,7 @@ class Watch(Observer):
         self._function_of = lru_cache(_MOST_FUNCTIONS)(function_of)
         self._classes_named = cache(_classes_named)
         self._is_fake_class = cache(self._is_of_test_side)
+        self._is_property = cache(_is_property)
         self._uses: dict[tuple[Form, str, bool, bool], Use] = {}
         self._lock = threading.RLock()
         self._beside = {name: proposer.watch() for name, proposer in brought_proposers().items()}
@@ -138,8 +139,7 @@ class Watch(Observer):
     def read(self, name: str, found: Any, receiver: Any, caller: CallOrigin) -> None:
         """Record that an attribute was read from ``receiver``."""
         with suppress(Exception):  # as above
-            raw = inspect.getattr_static(type(receiver), name, None)
-            if isinstance(raw, property | cached_property):
+            if self._is_property(type(receiver), name):  # a loop that computes reads millions of others
                 seen = self._of(method_of(receiver, name), caller)
                 if seen is not None and self._counts(seen, caller):
                     self._answer(seen, found)
@@ -354,6 +354,10 @@ def _making(seen: _Seen) -> Iterator[None]:
     finally:
         with suppress(ValueError):  # a coroutine that is closed from elsewhere
             _under_way.reset(token)
+
+
+def _is_property(kind: type, name: str) -> bool:
+    return isinstance(inspect.getattr_static(kind, name, None), property | cached_property)
 
 
 def _classes_named(name: str, method: str) -> list[type]:
