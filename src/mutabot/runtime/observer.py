@@ -13,6 +13,7 @@ import os
 import signal
 import sys
 from abc import ABC, abstractmethod
+from collections import Counter
 from collections.abc import Callable, Sequence
 from functools import cache
 from importlib import import_module
@@ -36,6 +37,8 @@ from mutabot.runtime.targets.target import NOWHERE, CallPlace, Handler, Where
 
 #: forms of what passes under a name; all others only set something up
 _PASSING = MAIN | {Form.FEEDBACK, Form.RESULT}
+#: calls at a site, and reads of an attribute, that are observed
+_MOST_AT_A_SITE = 3000
 
 
 @frozen
@@ -158,18 +161,29 @@ class ProcessObservation:
 
 
 def questions(observer: Observer, locator: Locator) -> CallSites:
-    """Return call sites that report each call and each attribute read to an observer."""
+    """Return call sites that report each call and each attribute read to an observer, up to a limit."""
+    times: Counter[int] = Counter()
+
+    def is_enough(site: CallSite) -> bool:
+        times[site.number] += 1
+        if times[site.number] <= _MOST_AT_A_SITE:
+            return False
+        CallSites.leave(site)  # a loop that computes must not take minutes
+        return True
 
     @cache
     def caller_of(site: CallSite) -> CallOrigin:
         return CallOrigin(locator.relative(site.path), site.extent[0], site.role is Role.ORACLE)
 
     def called(site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
+        if is_enough(site):
+            return found
         given = None if receiver is NOTHING else receiver
         return observer.called(site.name, found, given, caller_of(site))
 
     def read(site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
-        observer.read(site.name, found, receiver, caller_of(site))
+        if not is_enough(site):
+            observer.read(site.name, found, receiver, caller_of(site))
         return found
 
     def stored(site: CallSite, holder: Any, values: list[Any]) -> None:

@@ -10,7 +10,7 @@ import os
 import re
 import sys
 import threading
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
@@ -39,8 +39,6 @@ from mutabot_init.words import words_of
 
 #: calls of one callable whose values are looked at; more are only counted
 MOST_CALLS = 300
-#: calls at one place that are looked at; more are taken for calls of what the last of these called
-_MOST_AT_A_PLACE = 3000
 #: functions of which it is remembered what they are
 _MOST_FUNCTIONS = 1000
 #: packages that talk to no robot
@@ -67,14 +65,6 @@ _ADDRESS = re.compile(r"%?[A-Z]{1,3}\d[\w.:,]*")
 _MOST_COMMANDS, _LONGEST = 24, 60
 #: a larger key is the address of something, and no index
 _MOST_ELEMENTS = 255
-
-
-@dataclass(slots=True)
-class _CountedPlace:
-    """A place of calls: how often it was reached, and what the last call looked at called there."""
-
-    times: int = 0
-    seen: _Seen | None = None
 
 
 @dataclass(slots=True)
@@ -105,7 +95,6 @@ class Watch(Observer):
     def __init__(self, libraries: Sequence[str], is_test: Callable[[str], bool | None]) -> None:
         super().__init__(libraries, is_test)
         self._seen: dict[tuple[str, bool, bool], _Seen] = {}
-        self._places: defaultdict[tuple[str, str, int], _CountedPlace] = defaultdict(_CountedPlace)
         self._method_of = cache(method_of)
         self._function_of = lru_cache(_MOST_FUNCTIONS)(function_of)
         self._classes_named = cache(_classes_named)
@@ -119,17 +108,11 @@ class Watch(Observer):
         """Return what is called in the place of ``found``, which was read from ``receiver``."""
         if isinstance(found, type):
             return found
-        place = self._places[name, caller.file, caller.line]
-        place.times += 1
-        if place.times > _MOST_AT_A_PLACE:  # a loop that computes must not take minutes
-            if place.seen is not None:
-                self._counts(place.seen, caller)
-            return found
         with suppress(Exception):  # looking at objects must not disturb the program
             callee = self._function(found) if receiver is None else self._method(receiver, name)
             if receiver is not None and not caller.is_test:
                 callee = self._replaced_callee(receiver, name, callee, found)
-            seen = place.seen = self._of(callee, caller)
+            seen = self._of(callee, caller)
             if not caller.is_test and (_is_mock(found) or _is_mock(receiver) or self._is_fake(receiver)):
                 for one in (*_under_way.get(), *filter(None, [seen])):
                     one.call.reaches = True
@@ -139,7 +122,8 @@ class Watch(Observer):
     def read(self, name: str, found: Any, receiver: Any, caller: CallOrigin) -> None:
         """Record that an attribute was read from ``receiver``."""
         with suppress(Exception):  # as above
-            if self._is_property(type(receiver), name):  # a loop that computes reads millions of others
+            kind: Any = type(receiver)
+            if self._is_property(kind, name):
                 seen = self._of(method_of(receiver, name), caller)
                 if seen is not None and self._counts(seen, caller):
                     self._answer(seen, found)

@@ -20,6 +20,7 @@ import copy
 from collections.abc import Callable, Collection, Container, Iterator
 from dataclasses import dataclass, field, replace
 from functools import partial
+from operator import attrgetter
 from sys import _getframe
 from types import FrameType, FunctionType, MethodType
 from typing import Any
@@ -102,6 +103,8 @@ class CallSite:
         left_alone: what is called as it is there, by the classes of its object and of itself, as long as some
             names mean what they did.
         place: the same as a span, once it was looked up.
+        number: its number among the questions of this process.
+        is_attribute: whether what stands there is read from an object.
     """
 
     path: str
@@ -113,6 +116,8 @@ class CallSite:
     is_given: bool = False
     left_alone: dict[tuple[type, Any], Guards] = field(default_factory=dict)
     place: CallPlace | None = None
+    number: int = -1
+    is_attribute: bool = False
 
 
 #: decides what is called at a site: gets the site, what stands there, the object that it was read from
@@ -205,8 +210,14 @@ class CallSites(SourceStep):
         if number is None:
             number = self._numbers[key] = len(_entries)
             site = CallSite(path, role, name, extent, is_handed, is_awaited, given_to is not None)
+            site.number, site.is_attribute = number, form in ("attribute", "handed_attribute")
             _entries.append(getattr(self, f"_{form}")(site))
         return number
+
+    @staticmethod
+    def leave(site: CallSite) -> None:
+        """Ask nothing more about what is called, handed on or read at a site."""
+        _entries[site.number] = attrgetter(site.name) if site.is_attribute else _itself
 
     def _decide(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
         decide = self.hands if site.is_handed else self.stands
@@ -308,6 +319,10 @@ class CallSites(SourceStep):
         if name not in self.names:
             return found
         return self._decide(sites.setdefault(name, replace(site, name=name)), found, receiver, frame)
+
+
+def _itself(found: Any, receiver: Any = NOTHING) -> Any:
+    return found
 
 
 #: annotations may be read as text, and the names of a pattern are no values

@@ -166,28 +166,21 @@ def test_only_objects_that_hold_plain_values_are_taken_apart() -> None:
     assert {part.path: part.type for part in world.parts.values()} == {"": "World"}
 
 
-def test_a_loop_is_looked_at_for_a_while_and_counted_to_its_end(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_loop_is_observed_for_a_while(monkeypatch: pytest.MonkeyPatch) -> None:
     source = """
 class Line:
+    speed = property(lambda self: 1.0)
     def send(self, value): return value
 def other(value): return value
 def run(times):
     line = Line()
     for value in range(times):
         line.send(value)
-    return other(1)
+        speed = line.speed
+    return speed + other(1)
 """
-    monkeypatch.setattr("mutabot_init.watching.watch._MOST_AT_A_PLACE", 3)
-    looked_at: list[str] = []
+    monkeypatch.setattr("mutabot.runtime.observer._MOST_AT_A_SITE", 3)
     module, watch = run(source, "loop.py", monkeypatch)
-    counts = {"loop:Line.send": 20, "loop:other": 1}
-    wrapped = watch._wrapped
-
-    def note(function: Any, seen: Any, caller: Any) -> Any:
-        looked_at.append(seen.call.target)
-        return wrapped(function, seen, caller)
-
-    monkeypatch.setattr(watch, "_wrapped", note)
-    module.run(20)
+    assert module.run(20) == 2.0
+    counts = {"loop:Line.send": 3, "loop:Line.speed": 3, "loop:other": 1}
     assert {call.target: call.count for call in watch.data().calls} == counts
-    assert looked_at == [*["loop:Line.send"] * 3, "loop:other"]
