@@ -135,6 +135,7 @@ def test_a_test_that_fails_in_all_rounds_is_an_error(tmp_path: Path, script: Scr
     ) as caught:
         campaign(tmp_path, engine=engine, rounds=2)
     assert f"repeat by MUTABOT_ROUND=1 pytest -o pythonpath=. {CHECKS}" in str(caught.value)
+    assert f"pytest_args = ['--deselect', '{CHECKS}']" in str(caught.value)
 
 
 def test_a_test_that_fails_by_chance_in_the_only_round_is_flaky(tmp_path: Path, script: Script) -> None:

@@ -82,7 +82,10 @@ def refuse_failing(request: Request, failing: Failing) -> None:
     shown = "\n".join(f"  {end.test}: {first_line(end.message)}" for end in found[:10])
     more = f"\n  … and {len(found) - 10} more" if len(found) > 10 else ""
     noun = "test fails" if len(found) == 1 else "tests fail"
-    again = f"\nrepeat by {repeat_command(request, 0, found[0].test)}"
+    again = (
+        f"\nrepeat by {repeat_command(request, 0, found[0].test)}"
+        f"\nand repair it, or leave it out: pytest_args = {['--deselect', found[0].test]!r}"
+    )
     raise BaselineError(f"{len(found)} {noun} on the unmutated program {where}:\n{shown}{more}{again}")
 
 
