@@ -96,7 +96,7 @@ def _hook_starts() -> None:
         if environment is not None:
             arguments = (*arguments[:_ENVIRONMENT], completed(environment), *arguments[_ENVIRONMENT + 1 :])
         prepare = arguments[_PREPARE]
-        if prepare is not None and not isinstance(prepare, BuiltinFunctionType):
+        if callable(prepare) and not isinstance(prepare, BuiltinFunctionType):
             arguments = (*arguments[:_PREPARE], partial(_prepare, prepare), *arguments[_PREPARE + 1 :])
         return start(*arguments)
 
