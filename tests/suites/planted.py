@@ -147,6 +147,8 @@ def with_argument(
         if names is not None:
             return function(*given, **{**named, name: changed(path, change, named[name])})
         bound = inspect.signature(function).bind(*given, **named)
+        if name not in bound.arguments:
+            bound.apply_defaults()
         bound.arguments[name] = changed(path, change, bound.arguments[name])
         return function(*bound.args, **bound.kwargs)
 

@@ -21,7 +21,7 @@ from .catalogue_editor import CatalogueEditor
 from .editor import CannotWriteError, Facts, edits_for
 from .judge import Judge
 from .message_editor import edits_of
-from .planted import noisy, other
+from .planted import noisy, other, with_argument
 
 VOCABULARY = """
     refusals = ["robot:Refused"]
@@ -261,6 +261,14 @@ def test_a_call_in_a_text_that_is_run_cannot_be_written(tmp_path: Path) -> None:
     found = mutant('exec("x = arm.where()")', source, operator="negate", operation="robot:Arm.where")
     with pytest.raises(CannotWriteError, match="text that is run"):
         edits_for(facts, found)
+
+
+def test_an_argument_that_is_not_given_is_its_default() -> None:
+    def move(x: float, y: float = 2.0) -> tuple[float, float]:
+        return x, y
+
+    changed = with_argument(move, "y", "", lambda value: -value)
+    assert (changed(1.0), changed(1.0, 3.0), changed(1.0, y=4.0)) == ((1.0, -2.0), (1.0, -3.0), (1.0, -4.0))
 
 
 def test_a_label_of_an_enumeration_becomes_another_of_it() -> None:
