@@ -243,7 +243,7 @@ class Judge:
             *(word for plugin in plugins for word in ("-p", plugin)),
             *(["-x"] if facts.hints.get("independent") else []),
             *settings.get("pytest_args", []),
-            *settings.get("tests", ["tests"]),
+            *settings.get("tests", []),
         ]
         with domain() if facts.hints.get("ros2") else nullcontext() as number:
             if number is not None:

@@ -255,6 +255,13 @@ def test_noise_of_a_number_of_another_kind_is_of_its_kind() -> None:
         assert drawn != number
 
 
+def test_all_tests_are_run_that_pytest_would_run(tmp_path: Path) -> None:
+    folder = project(tmp_path, "def go():\n    'Goes.\\n\\n>>> go()\\n3\\n'\n    return 2\n")
+    (folder / "pytest.ini").write_text("[pytest]\naddopts = --doctest-modules\ntestpaths = mission.py\n")
+    judged = Judge(folder).original()
+    assert (judged.state, judged.tests) == ("fails", ("mission.py::mission.go",))
+
+
 def test_a_call_in_a_text_that_is_run_cannot_be_written(tmp_path: Path) -> None:
     source = 'exec("x = arm.where()")\n'
     facts = Facts.of(project(tmp_path, source))
