@@ -257,6 +257,7 @@ def test_noise_of_a_number_of_another_kind_is_of_its_kind() -> None:
 
 def test_all_tests_are_run_that_pytest_would_run(tmp_path: Path) -> None:
     folder = project(tmp_path, "def go():\n    'Goes.\\n\\n>>> go()\\n3\\n'\n    return 2\n")
+    (folder / "mutabot.toml").write_text('program = ["mission.py"]')
     (folder / "pytest.ini").write_text("[pytest]\naddopts = --doctest-modules\ntestpaths = mission.py\n")
     judged = Judge(folder).original()
     assert (judged.state, judged.tests) == ("fails", ("mission.py::mission.go",))
