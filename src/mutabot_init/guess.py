@@ -76,7 +76,9 @@ _COUNT = re.compile(
     r"\b(?:number of(?! (?:milli|micro)?sec)|steps|samples|iterations|points)\b", re.IGNORECASE
 )
 #: a callable's words for a change, where what follows is no frame: ``move_to_relative_point``
-_RELATIVE = re.compile(r"\brel(?:ative)?\b(?! to\b)")
+_RELATIVE = re.compile(
+    r"\brel(?:ative)?\b(?! to\b)|\b(?:run|on|move|drive|go|turn|rotate|spin|travel|forward|backward) for\b"
+)
 #: words of docstrings for numbers in the units of a drive
 _RAW = re.compile(r"\b(?:encoder|(?:micro)?steps|counts|ticks|pulses|increments)\b", re.IGNORECASE)
 #: how the line of another argument begins

@@ -14,6 +14,7 @@ from .guess import Guess, NameContext, guess_argument, guess_elements, guess_rea
 from .layout import with_compared
 from .observations import Command, Holder, Values, WatchedCallable, WatchedPart
 from .words import (
+    ACTUATORS,
     BOOKS,
     BUILDERS,
     CALLBACKS,
@@ -23,6 +24,7 @@ from .words import (
     COMMANDS,
     COMPUTERS,
     CONNECTION,
+    DRIVEN,
     GRIPPER,
     HELPERS,
     HOUSEKEEPING,
@@ -53,6 +55,8 @@ _REFUSAL = re.compile(r"refus|reach|limit|reject|range|unable|collision|violatio
 _COMPARING = frozenset({"is", "has", "can"})
 #: how the name of a state ends that is no command: ``lights_on``
 _SWITCHED = frozenset({"on", "off", "open", "enable", "up", "down"})
+#: how what is switched on goes on, and no event: ``on_for_seconds``, ``on_to_position``
+_SWITCHED_FOR = frozenset({"for", "to"})
 #: types of results that are made rather than read: the last are what ``with`` runs a block in
 _MADE = frozenset(
     {"property", "function", "type", "_GeneratorContextManager", "_AsyncGeneratorContextManager"}
@@ -247,7 +251,8 @@ def _fills_buffer(call: WatchedCallable) -> bool:
 def _is_setup(call: WatchedCallable) -> bool:
     words = set(words_of(call.name))
     first = words_of(call.name)[:1]
-    if first in (("handle",), ("notify",), ("emit",)) or (first == ("on",) and len(words) > 1):
+    is_told = first == ("on",) and len(words) > 1 and words.isdisjoint(_SWITCHED_FOR)
+    if first in (("handle",), ("notify",), ("emit",)) or is_told:
         return True  # something is told to the program
     is_of_timeout = words_of(call.name)[-1:] in (("timeout",), ("settimeout",))
     hands_over = bool(call.arguments) and call.arguments.keys() <= CALLBACKS
@@ -266,7 +271,9 @@ def _is_command(call: WatchedCallable) -> bool:
         return False
     if "raise" in words and words & {"for", "if", "error", "exception"}:
         return False  # it raises an exception, and no part
-    is_verb = bool(words & COMMANDS) or bool(IMPERATIVES.intersection(words_of(call.name)[:1]))
+    is_verb = bool(words & COMMANDS) or bool(IMPERATIVES.intersection(first))
+    owner = {*words_of(call.owner)}
+    is_verb = is_verb or bool(DRIVEN.intersection(first) and owner & ACTUATORS and not owner & HELPERS)
     return is_verb and not (words & TALK or _reads(call))
 
 

@@ -68,6 +68,11 @@ IMPERATIVES = _words(
     "brake clamp unclamp extend retract engage disengage infuse withdraw prime tare eject inject hold "
     "hover play"
 )
+#: what moves by itself, and what it is told: other classes run programs, tasks and loops
+ACTUATORS = _words(
+    "motor motors servo servos stepper actuator thruster winch pump conveyor axis wheel wheels"
+)
+DRIVEN = _words("run coast")
 READERS = _words(
     "read get getl getj query ask measure is has recv receive where locate detect scan actual current"
 )
@@ -77,7 +82,8 @@ ASKING = _words("read get getl getj query ask recv receive")
 PACKERS = _words("set put pack encode insert")
 #: how what only computes is called, whatever its text does on the way
 COMPUTERS = _words(
-    "calculate calc compute estimate parse format encode decode serialize deserialize check validate verify"
+    "calculate calc compute estimate parse format encode decode serialize deserialize check validate verify "
+    "ik inverse solve random"
 )
 #: those that make no more than another form of what they are given
 CODECS = _words("parse format encode decode serialize deserialize render")

@@ -61,6 +61,8 @@ _DISTINGUISHING = frozenset(
 _TALKS = frozenset({"read", "write", "get", "set", "send", "publish", "call", "post", "put", "patch"})
 #: how addresses in a controller look: ``Y10``, ``%MW4``, ``DB1.DBX0.2``
 _ADDRESS = re.compile(r"%?[A-Z]{1,3}\d[\w.:,]*")
+#: a measure in the text of an object, which is its state: ``<Motor elbow pos=12.5>``, unlike ``DB1.DBX0.2``
+_DECIMAL = re.compile(r"(?<![\w.])\d+\.\d+(?![\w.])")
 #: more commands than these, and longer texts, are no list of commands
 _MOST_COMMANDS, _LONGEST = 24, 60
 #: a larger key is the address of something, and no index
@@ -438,7 +440,7 @@ def _has_distinct_name(value: Any) -> bool:
     if value is None or not prints or not hasattr(value, "__dict__") or is_dataclass(value):
         return False
     text = str(value)
-    return "\n" not in text and " object at " not in text
+    return "\n" not in text and " object at " not in text and _DECIMAL.search(text) is None
 
 
 def _is_mock(value: Any) -> bool:

@@ -319,7 +319,14 @@ def test_a_size_is_no_way_and_counts_and_shares_are_no_units_of_length(
 
 
 @pytest.mark.parametrize(
-    ("call", "mode"), [("move_to_relative_point", "by"), ("move_relative_to", None), ("move_to_point", "to")]
+    ("call", "mode"),
+    [
+        ("move_to_relative_point", "by"),
+        ("move_relative_to", None),
+        ("move_to_point", "to"),
+        ("run_for_distance", "by"),
+        ("wait_for_point", None),
+    ],
 )
 def test_a_relative_move_is_a_change_unless_it_is_relative_to_something(call: str, mode: str | None) -> None:
     guess = guess_argument("x", NameContext(words_of(call), values=[0.25]))
@@ -338,3 +345,79 @@ def test_an_unknown_call_of_an_installed_library_is_asked_about(tmp_path: Path) 
     assert (
         '# call = "yaml_like:frobnicate"\n# command = true  # question: does it make the robot act?' in text
     )
+
+
+MOTORS = {
+    "motors.py": """
+        import random
+        BUS = []
+        class Motor:
+            def __init__(self, name): self.name, self.angle, self._limp = name, 12.5, True
+            def __repr__(self): return f"<Motor {self.name} pos={self.angle}>"
+            @property
+            def limp(self): return self._limp
+            @limp.setter
+            def limp(self, value): BUS.append(value); self._limp = value
+            def on_for_seconds(self, seconds, block=True): BUS.append(seconds)
+            def on_stalled(self, action): BUS.append(action)
+            def run_forever(self): BUS.append("run")
+            def coast(self): BUS.append("coast")
+            def run_for_degrees(self, degrees): BUS.append(degrees)
+        class MotorThread:
+            def run(self): BUS.append("loop")
+        class Task:
+            def run_all(self): BUS.append("all")
+        class Arm:
+            def __init__(self): self.last = []
+            def random_joints(self, count=3): self.last = [random.random()] * count; return self.last
+            def ik(self, pose, q): self.last = q; return q
+        """,
+    "program.py": """
+        def run(left, right, arm, *others):
+            for motor in (left, right):
+                motor.limp = False
+            left.on_for_seconds(0.5)
+            left.on_stalled("beep")
+            left.run_forever()
+            left.coast()
+            left.run_for_degrees(90)
+            for other in others:
+                getattr(other, "run", None) and other.run()
+            others[1].run_all()
+            return arm.ik([0.1, 0.2, 0.3], q=arm.random_joints())
+        """,
+    "test_program.py": """
+        import motors, program
+        def test_it():
+            both = motors.Motor("elbow"), motors.Motor("wrist")
+            assert program.run(*both, motors.Arm(), motors.MotorThread(), motors.Task())
+        """,
+}
+
+
+@pytest.fixture(scope="module")
+def motors(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, dict[str, Operation]]:
+    folder = tmp_path_factory.mktemp("motors")
+    return draft(folder, MOTORS), operations(folder)
+
+
+def test_a_motor_is_switched_on_for_a_while_and_runs_and_coasts_and_no_event_thread_or_task_does(
+    motors: tuple[str, dict[str, Operation]],
+) -> None:
+    _, found = motors
+    assert found.keys() == {
+        f"motors:Motor.{name}" for name in ("on_for_seconds", "run_forever", "coast", "run_for_degrees")
+    }
+    assert [part.mode for part in found["motors:Motor.run_for_degrees"].arguments] == ["by"]
+
+
+def test_no_command_is_known_by_the_text_of_an_object_that_says_where_it_is(
+    motors: tuple[str, dict[str, Operation]],
+) -> None:
+    assert "pos=12.5" not in motors[0]
+
+
+def test_what_an_inverse_or_a_random_pose_is_computed_from_is_no_command(
+    motors: tuple[str, dict[str, Operation]],
+) -> None:
+    assert "motors:Arm" not in motors[0]
