@@ -41,7 +41,7 @@ test: check $(ROS1)/.ready $(ROS2)/.ready
 
 ## the tests that take long: the reference engine on every fact, the corpus, clusters, browsers, many nodes, many runs
 whole: $(READY) $(REPORTS) $(ROS1)/.ready $(ROS2)/.ready
-	$(RUN) -m pytest -n 3 --dist worksteal -m whole
+	$(RUN) -m pytest -n 3 --dist worksteal -m whole --durations 60
 	$(ROS1)/bin/python -m pytest -n 2 --dist worksteal -m whole $(call of_ros,1) tests/model/values/test_messages.py || test $$? -eq 5  # all skipped
 	$(ROS2)/bin/python -m pytest -n 2 --dist worksteal -m whole $(call of_ros,2) || test $$? -eq 5
 	$(MAKE) alone
