@@ -181,9 +181,19 @@ def guess_argument(name: str, setting: NameContext) -> Guess:
     if noun in ("generic", "place", "") and subject in KINDS and is_only:
         noun = subject
     if noun in KINDS:
-        kind, _, dimension = KINDS[noun]
-        return measured({"kind": kind, **({"axis": along} if along else {})}, dimension, unit, name, setting)
+        return _set(noun, along, unit, name, setting)
     return Guess()
+
+
+def _set(noun: str, axis: str | None, unit: str | None, name: str, setting: NameContext) -> Guess:
+    """Return the guess of a value that is set, where no verb says that something moves."""
+    kind, _, dimension = KINDS[noun]
+    if kind not in ("translation", "rotation"):
+        return measured({"kind": kind, **({"axis": axis} if axis else {})}, dimension, unit, name, setting)
+    guess = _moved(kind, axis, None, unit, name, setting)
+    if noun == "length":  # the size of a scan or a part
+        guess.questions.insert(0, "does something move that far?")
+    return guess
 
 
 def _subject(setting: NameContext) -> str:

@@ -347,6 +347,14 @@ def test_an_unknown_call_of_an_installed_library_is_asked_about(tmp_path: Path) 
     )
 
 
+@pytest.mark.parametrize("name", ["scan_length", "slit_width", "length_mm"])
+@pytest.mark.parametrize("call", ["set_profile", "profile"])
+def test_a_size_without_a_verb_of_motion_has_a_mode_and_is_asked_about(call: str, name: str) -> None:
+    guess = guess_argument(name, NameContext(words_of(call), values=[5000]))
+    assert guess.questions
+    assert "mode" in guess.table
+
+
 MOTORS = {
     "motors.py": """
         import random
