@@ -21,6 +21,7 @@ from .checks import (
     rank_of,
 )
 from .forms import is_clock, is_number, last_name
+from .mocks import CALL
 from .project import PlaceInTest, SuiteFiles, function_of
 from .readings import ORACLE, Measured, ReadExpression, ValuesRead, is_reading, reading_of
 from .suite import ReusableCheck, SuiteChecks
@@ -147,8 +148,8 @@ class _EndReadings:
     suite: SuiteChecks | None = None
 
     def limit(self, text: str) -> StatedTolerance:
-        """Return the tolerance stated for a reading; lengths of lists are counts, which have none."""
-        if text.startswith("len("):
+        """Return the tolerance stated for a reading; lengths of lists and numbers of calls have none."""
+        if text.startswith("len(") or text.endswith(f"{CALL}count"):
             return StatedTolerance()
         limit = self.limits.of(text)
         if limit.tolerance == 0.0 and rank_of(text) == PLACE:
@@ -363,6 +364,8 @@ ONLY_TIME = "of what was read at the ends of its tests, only times differ: add a
 def _are_related(first_reading: ReadExpression, second_reading: ReadExpression, read: ValuesRead) -> bool:
     """Return whether two readings are the same part of two things: by name, or of lists with equal values."""
     if _LAST.findall(first_reading.text) != _LAST.findall(second_reading.text):
+        return False
+    if CALL in first_reading.text + second_reading.text:  # two commands of one value are equal by chance
         return False
     first, second = _NAME.findall(first_reading.text), _NAME.findall(second_reading.text)
     if first[-1] == second[-1]:

@@ -8,6 +8,7 @@ from typing import Any
 
 from mutabot.api.reports import CommandContext, Results
 
+from .project import in_one_line
 from .results import Dropped, ProvenCheck, Suggestions, Unsolved
 
 #: lines of a section that are shown; --json has all
@@ -30,10 +31,7 @@ def print_suggestions(context: CommandContext, found: Suggestions) -> None:
         context.print_section(f"Each of the {len(found.checks)} checks", proofs.pop())
     left = [survivor for survivor in found.unsolved if not survivor.never]
     never = [survivor for survivor in found.unsolved if survivor.never]
-    dropped = [
-        f"{' '.join(dropped_check.statement.split())}: {dropped_check.reason}"
-        for dropped_check in found.dropped
-    ]
+    dropped = [f"{in_one_line(each.statement)}: {each.reason}" for each in found.dropped]
     sections = {
         f"No check found for {plural(len(left), 'survivor')}": _left(left, found),
         f"No check was searched for {plural(len(never), 'survivor')}": _left(never, found),

@@ -194,6 +194,11 @@ def text_of(node: ast.AST) -> str:
     return text if '"' in text or "\\" in text else text.replace("'", '"')
 
 
+def in_one_line(statements: str) -> str:
+    """Return statements as a line that is still Python."""
+    return "; ".join(text_of(node) for node in ast.parse(statements).body)
+
+
 def awaits(node: ast.AST) -> bool:
     """Return whether an expression awaits something, so that no plain function can evaluate it."""
     return any(isinstance(inner, ast.Await) for inner in ast.walk(node))

@@ -11,6 +11,7 @@ from mutabot.api.reports import MutantResult
 from .candidates import ONLY_TIME
 from .checks import CheckProposal, Monitor
 from .forms import is_clock, is_number, last_name
+from .project import in_one_line
 from .readings import Measured, is_reading, reading_of
 from .results import Unsolved
 from .suite import SuiteChecks
@@ -84,7 +85,7 @@ def _allowed(survivor: MutantResult) -> str:
 
 
 def _why_failed(check: CheckProposal, why: str) -> str:
-    statement = " ".join(check.statement.split())
+    statement = in_one_line(check.statement)
     if why.startswith("its test"):
         return "with a check of it, the test fails on the original with another seed"
     if why.startswith("fails in"):

@@ -10,12 +10,14 @@ import inspect
 import os
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 from . import tick_recorder
+from .mocks import calls_of
 
 #: parts that are noted of one reading, how deep, and how long a sequence may be
 _PARTS, _DEPTH, _LENGTH = 24, 3, 8
@@ -57,6 +59,9 @@ def note(
     found.update(tick_recorder.recordings())
     for text, value in _held_by_own(names):  # last: a probe carries a limited number of parts
         found.update((key, part) for key, part in _state_of(text, value) if key not in found)
+    for text, value in _at_hand(names):
+        for more, told in _read(calls_of(text, value)):
+            found.update(_parts_of(more, lambda told=told: told))  # type: ignore[misc]
     _noted.clear()
     _noted[_test()] = found
 
@@ -158,10 +163,21 @@ def _held_by_own(names: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
 
 
 def _state_of(text: str, value: Any) -> Iterator[tuple[str, Any]]:
-    """Yield the parts of an attribute; of a list also how long it is."""
+    """Yield the parts of an attribute, but none of a part of it: logs say more than a check should hold fast.
+
+    Of a list also how long it is.
+    """
     if isinstance(value, list):
         yield f"len({text})", len(value)
-    yield from _parts_of(text, lambda: value).items()
+    yield from _parts_of(text, lambda: value, 1).items()
+
+
+def _read(found: Iterator[tuple[str, Any]]) -> list[tuple[str, Any]]:
+    """Return what can be read before something fails: mocks may be set up to raise."""
+    read: list[tuple[str, Any]] = []
+    with suppress(Exception):
+        read.extend(found)
+    return read
 
 
 def _of_object(text: str, value: Any, targets: Sequence[str]) -> Iterator[tuple[str, Callable[[], Any]]]:
@@ -185,13 +201,13 @@ def _reader(held: Any, name: str, *, call: bool) -> Callable[[], Any]:
     return lambda: getattr(held, name)() if call else getattr(held, name)
 
 
-def _parts_of(text: str, read: Callable[[], Any]) -> dict[str, Any]:
+def _parts_of(text: str, read: Callable[[], Any], depth: int = _DEPTH) -> dict[str, Any]:
     found: dict[str, Any] = {}
     try:
         whole = read()
         if inspect.iscoroutine(whole):  # it is not awaited here
             whole.close()
-        for key, value in _parts(text, whole, _DEPTH):
+        for key, value in _parts(text, whole, depth):
             found[key] = value
             if len(found) >= _PARTS:
                 break

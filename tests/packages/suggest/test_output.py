@@ -6,9 +6,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
+import pytest
+
 from mutabot_suggest.output import check_lines, print_suggestions
 from mutabot_suggest.reasons import NOTHING_DIFFERS
-from mutabot_suggest.results import ProvenCheck, Suggestions, Unsolved
+from mutabot_suggest.results import Dropped, ProvenCheck, Suggestions, Unsolved
 
 CHECK = ProvenCheck(
     test="tests/test_it.py::test_it",
@@ -63,6 +65,19 @@ def test_checks_with_the_same_proof_state_it_once() -> None:
     assert lines.index("Each of the 2 checks") > lines.index("assert box.y == 1")
     lines = printed(replace(FOUND, checks=(CHECK, replace(other, fresh=20))))
     assert sum(line.startswith("false alarms") for line in lines) == 2
+
+
+@pytest.mark.parametrize(
+    ("statement", "shown"),
+    [
+        ("assert near(HOME.x, x)\nassert near(HOME.y, y)", "assert near(HOME.x, x); assert near(HOME.y, y)"),
+        ('cell.always(\n    lambda: (\n        z() < 1.0\n        or open()\n    ),\n    "low",\n)',
+         'cell.always(lambda: z() < 1.0 or open(), "low")'),
+    ],
+)  # fmt: skip
+def test_a_dropped_check_is_a_line_of_python(statement: str, shown: str) -> None:
+    lines = printed(Suggestions(dropped=(Dropped("tests/test_it.py::test_it", statement, "fails"),)))
+    assert f"{shown}: fails" in lines
 
 
 def test_a_survivor_in_which_nothing_differs_is_not_said_to_be_impossible_to_kill() -> None:

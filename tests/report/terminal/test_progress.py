@@ -186,6 +186,19 @@ def test_a_survivor_that_a_second_look_takes_back_is_named_and_counted_anew() ->
     assert last.endswith("(unstable 1)")
 
 
+def test_a_stage_in_which_no_mutant_ends_shows_no_counts_of_the_one_before() -> None:
+    out = io.StringIO()
+    with Lines(make_console(out)) as progress:
+        progress.stage("mutants", 1)
+        progress.mutant_ended(end(samples.SKIP, Verdict.KILLED))
+        progress.advance()
+        progress.stage("proof", 1)
+        progress.advance("round 3")
+    assert without_times(out.getvalue())[1::2] == [
+        "mutants 1/1: took 0:00 (killed 1)", "proof 1/1: took 0:00 (round 3)",
+    ]  # fmt: skip
+
+
 def test_a_bar_shows_the_counts_and_prints_survivors_above() -> None:
     out = io.StringIO()
     with Bar(Console(file=out, force_terminal=True, width=120)) as progress:

@@ -102,9 +102,15 @@ class Tally:
         self._states: dict[tuple[str, int], str] = {}
         self._counts: Counter[str] = Counter()
         self._shown: set[str] = set()
+        self._is_shown = False
+
+    def stage(self) -> None:
+        """Show no counts until an outcome is added: those of an earlier stage say nothing of the next."""
+        self._is_shown = False
 
     def add(self, end: MutantEnd) -> str | None:
         """Count an outcome. Return a message if a survivor is new, or no longer one."""
+        self._is_shown = True
         key, state = (end.mutant.id, end.outcome.round), end.state
         before = self._states.get(key)
         if before == state:
@@ -130,7 +136,9 @@ class Tally:
 
     @property
     def text(self) -> str:
-        """The counts as text: ``killed 35, survived 4``; empty if there are none."""
+        """The counts as text: ``killed 35, survived 4``; empty if no mutant ended in this stage."""
+        if not self._is_shown:
+            return ""
         return ", ".join(f"{state} {self._counts[state]}" for state in _ORDER if self._counts[state])
 
 
@@ -189,6 +197,7 @@ class Bar:
     def stage(self, text: str, total: int | None = None) -> None:
         """Begin another bar."""
         self._close_stage()
+        self._tally.stage()
         self._pace = Pace(total)
         self._task = self._progress.add_task(text, total=total, line="", pace=self._pace)
 
@@ -245,6 +254,7 @@ class Lines:
 
     def stage(self, text: str, total: int | None = None) -> None:
         """Print the stage's name, and how many steps it has, as later lines do: ``mutants 0/100``."""
+        self._tally.stage()
         self._text, self._pace = text, Pace(total)
         self._print(f"{text} 0/{total}" if total is not None else text)
 

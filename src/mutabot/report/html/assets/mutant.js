@@ -158,7 +158,7 @@
     if (!one.valid && !["refused", "guarded"].includes(one.status)) return empty("Nothing to show.", `This mutant was not counted: ${marks.MEANING[one.status]}.`);
     const where = page.rounds.some((outcome) => outcome && outcome.divergence.length) ? "What differs otherwise is listed below, by round. " : "";
     if (!mutabot.campaign.recorded) return empty("Nothing was recorded in this campaign.", where, "Recording is off (", h("code", null, "evidence = 0"), " in the configuration), or the file of recordings was deleted.");
-    return empty("Apart from the fault, no recorded command, reading or movement differs.", where, feed());
+    return empty(where ? "No recorded movement differs." : "Apart from the fault, no recorded command, reading or movement differs.", where, feed());
   }
 
   /** What makes movements visible. */
