@@ -165,9 +165,9 @@ def _held_by_own(names: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
 def _state_of(text: str, value: Any) -> Iterator[tuple[str, Any]]:
     """Yield the parts of an attribute, but none of a part of it: logs say more than a check should hold fast.
 
-    Of a list also how long it is.
+    Of a list of plain values also how long it is.
     """
-    if isinstance(value, list):
+    if isinstance(value, list) and value and all(type(item) in _PLAIN for item in value):
         yield f"len({text})", len(value)
     yield from _parts_of(text, lambda: value, 1).items()
 

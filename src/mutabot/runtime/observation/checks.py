@@ -12,6 +12,7 @@ import ast
 import builtins
 import math
 import os
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from importlib.util import decode_source
@@ -26,6 +27,8 @@ MOST = 40
 #: elements of containers beyond which they are not looked at
 _MOST_ITEMS = 1000
 _LONGEST, _LONGEST_VALUE = 160, 100
+#: a blank where a line ended at a bracket
+_AT_BRACKET = re.compile(r"(?<=[(\[{]) | (?=[)\]}])")
 _PLAIN = (str, bytes, int, float, bool, complex, range, type(None))
 #: the built-in name by which test files note their checks
 CHECKED = "__mutabot_checked__"
@@ -252,6 +255,7 @@ class Checks:
         for node in ast.walk(tree):
             for part in _deciding(_decides(node)):
                 text = " ".join(_segment(lines, part).decode("utf-8", "replace").split())
+                text = _AT_BRACKET.sub("", text)
                 self._found[_position(part)] = len(self._descriptions)
                 self._descriptions.append((f"{name}:{part.lineno}", text))
 
