@@ -29,12 +29,16 @@ _ATTEMPTS, _FAILURES = 8, 3
 def _separated(chosen: Sequence[MutantResult]) -> tuple[Survivors, list[Unsolved]]:
     """Separate the survivors that may differ from the original, with the rounds in which they do.
 
-    No check is searched for the others: nothing that was compared differs, or no test reaches them.
+    No check is searched for the others: nothing that was compared differs, or no test reaches them. Where the
+    world is not recorded, a test may read what no probe does, such as a counter of its fake.
     """
     to_kill: Survivors = {}
     never: list[Unsolved] = []
+    outcomes = [out for result in chosen for out in result.survived]
+    is_recorded = any(divergence.apart for out in outcomes for divergence in out.diverged)
     for result in chosen:
-        different = [out for out in result.survived if out.indistinguishable is not True]
+        survived = result.survived
+        different = [out for out in survived if out.indistinguishable is not True or not is_recorded]
         if different and any(looked.acted for out in different for looked in out.looked):
             to_kill[result.mutant.id] = result, [out.round for out in different]
         else:

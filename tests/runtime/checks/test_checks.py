@@ -129,6 +129,23 @@ def test_parts_of_an_assertion_and_rounds_of_a_loop_are_reported_once(tmp_path: 
     assert [(check.seen, check.times) for check in found["test_loop"]] == [("0.25 < 0.3", 3)]
 
 
+def test_a_check_over_several_lines_reads_as_if_it_stood_on_one(tmp_path: Path) -> None:
+    found = looked_at(
+        tmp_path,
+        """
+        def test_lines():
+            assert sensor().x == pytest.approx(
+                0.25, abs=max(
+                    [0.1]
+                )
+            )
+        """,
+    )
+    assert [check.text for check in found["test_lines"]] == [
+        "sensor().x == pytest.approx(0.25, abs=max([0.1]))"
+    ]
+
+
 def test_a_check_before_the_fault_is_reached_is_no_check_of_it(tmp_path: Path) -> None:
     found = looked_at(
         tmp_path,
