@@ -33,8 +33,9 @@ A file that tests read as text (`inspect.getsource`, `exec` or `ast.parse` of wh
 that they import, a command such as `grep` that names it; in their process or below it) is really changed as
 well, for the process of one mutant and all below it. A mutant is [forked](engines.md) before the first
 reader at the latest, or, if the file may be read before any test, runs in processes of its own. All tests
-from the first reader on judge. Your files stay as they are; where [files cannot be
-private](shared-state.md), such mutants are errors.
+from the first reader on judge: with a reader early in the suite a mutant takes two to three times as long. If
+no mutant matters to such a test, leave it out (`pytest_args = ["--deselect", "tests/test_i18n.py"]`). Your
+files stay as they are; where [files cannot be private](shared-state.md), such mutants are errors.
 
 An alternative with the original's value has not acted. mutabot knows this of plain values and numbers of
 numpy where the original is a part of the alternative, or can be [evaluated
