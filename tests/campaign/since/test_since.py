@@ -247,7 +247,9 @@ def test_since_gives_the_outcomes_of_a_whole_campaign_after_an_edit_of_each_kind
     projects = [
         "paper" if kind == "test" else "scales" if kind == "vocabulary" else "errands" for kind in EDITS
     ]
-    found = edits("--edits", str(len(EDITS)), "--seed", "14", "--projects", ",".join(projects))
+    found = edits(
+        "--edits", str(len(EDITS)), "--seed", "14", "--projects", ",".join(projects), "--rounds", "1"
+    )
     assert found["edits"] == dict.fromkeys(EDITS, 1)
     assert found["wrong"] == []
 

@@ -116,7 +116,7 @@ EVERY = ("robot", "graded", "catalogue", "conventional")
     [
         ("auto", ("robot",), "6", 30, 500),
         pytest.param("auto", EVERY, "25", 150, 25_000, marks=pytest.mark.whole),
-        pytest.param("replay", EVERY, "20", 100, 5_000, marks=pytest.mark.whole),
+        pytest.param("replay", EVERY, "12", 60, 1_500, marks=pytest.mark.whole),
     ],
 )
 def test_no_mutated_command_outside_reaches_the_robot(
