@@ -69,8 +69,10 @@ def why_unsolved(
     if mutant in refused:
         return Unsolved(mutant, refused[mutant])
     is_probed = any(outcome.distance is not None for outcome in survivor.survived)
-    unread = NOTHING_READ if is_probed else NO_PROBE
-    unread = NOTHING_DIFFERS if survivor.indistinguishable else _allowed(survivor) or unread
+    if survivor.indistinguishable:
+        unread = NOTHING_DIFFERS
+    else:
+        unread = _allowed(survivor) or (NOTHING_READ if is_probed else NO_PROBE)
     return Unsolved(mutant, max(_differences(mutant, measured), default=(0.0, unread))[1])
 
 

@@ -60,8 +60,8 @@ def note(
     for text, value in _held_by_own(names):  # last: a probe carries a limited number of parts
         found.update((key, part) for key, part in _state_of(text, value) if key not in found)
     for text, value in _at_hand(names):
-        for more, told in _read(calls_of(text, value)):
-            found.update(_parts_of(more, lambda told=told: told))  # type: ignore[misc]
+        for call, given in _read(calls_of(text, value)):
+            found.update(_parts_of_value(call, given))
     _noted.clear()
     _noted[_test()] = found
 
@@ -169,7 +169,7 @@ def _state_of(text: str, value: Any) -> Iterator[tuple[str, Any]]:
     """
     if isinstance(value, list) and value and all(type(item) in _PLAIN for item in value):
         yield f"len({text})", len(value)
-    yield from _parts_of(text, lambda: value, 1).items()
+    yield from _parts_of_value(text, value, 1).items()
 
 
 def _read(found: Iterator[tuple[str, Any]]) -> list[tuple[str, Any]]:
@@ -199,6 +199,10 @@ def _of_object(text: str, value: Any, targets: Sequence[str]) -> Iterator[tuple[
 
 def _reader(held: Any, name: str, *, call: bool) -> Callable[[], Any]:
     return lambda: getattr(held, name)() if call else getattr(held, name)
+
+
+def _parts_of_value(text: str, value: Any, depth: int = _DEPTH) -> dict[str, Any]:
+    return _parts_of(text, lambda: value, depth)
 
 
 def _parts_of(text: str, read: Callable[[], Any], depth: int = _DEPTH) -> dict[str, Any]:
