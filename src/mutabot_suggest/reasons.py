@@ -8,6 +8,7 @@ from typing import Any
 
 from mutabot.api.reports import MutantResult
 
+from .bands import band_of
 from .candidates import ONLY_TIME
 from .checks import CheckProposal, Monitor
 from .forms import is_clock, is_number, last_name
@@ -20,7 +21,8 @@ NOTHING_DIFFERS = (
     "nothing that was compared differs from the original (indistinguishable): "
     "another [[probe]] may show a difference; if not, accept them"
 )
-NOTHING_READ = "nothing that was read at the ends of its tests differs: a check on the way may notice it"
+_CHECK_THERE = "a check on the way may notice it"
+NOTHING_READ = f"nothing that was read at the ends of its tests differs: {_CHECK_THERE}"
 NO_PROBE = (
     "nothing that was read at the ends of its tests differs; a [[probe]] in the vocabulary may show more"
 )
@@ -31,6 +33,8 @@ NOT_REACHED = "no test reaches it: add a test that does"
 _RETURNED = re.compile(r"(\w+) returned (?!to )")
 #: m, and degrees, below which a way is too near to the original for a monitor
 _NEAR, _TURNED = 0.03, 15.0
+#: how the line of a difference begins that a probe shows only after a command, not at the end of the test
+_WAY = "on the way, "
 #: how the reason begins for a survivor that the suite allows
 _SO_LITTLE = "at most"
 #: the reason where only the way differs
@@ -66,14 +70,24 @@ def why_unsolved(
         return Unsolved(mutant, measured.lost[mutant])
     if recorded:
         return Unsolved(mutant, recorded)
-    if mutant in refused:
-        return Unsolved(mutant, refused[mutant])
+    refusal, passed = refused.get(mutant, ""), _on_the_way(survivor)
+    if refusal and not (passed and refusal == ONLY_TIME):
+        return Unsolved(mutant, refusal)
     is_probed = any(outcome.distance is not None for outcome in survivor.survived)
     if survivor.indistinguishable:
         unread = NOTHING_DIFFERS
     else:
         unread = _allowed(survivor) or (NOTHING_READ if is_probed else NO_PROBE)
-    return Unsolved(mutant, max(_differences(mutant, measured), default=(0.0, unread))[1])
+    most, reason = max(_differences(mutant, measured), default=(0.0, unread))
+    if passed and most <= 1.0 and not _allowed(survivor):  # at the ends there are only noise and times
+        reason = f"{passed}; of what was read at the ends of its tests, nothing shows it: {_CHECK_THERE}"
+    return Unsolved(mutant, reason)
+
+
+def _on_the_way(survivor: MutantResult) -> str:
+    """Return by what the readings of the probes on the way differed; empty if they do not."""
+    lines = (line for outcome in survivor.survived for line in outcome.divergence)
+    return next((line for line in lines if line.startswith(_WAY)), "")
 
 
 def _allowed(survivor: MutantResult) -> str:
@@ -161,17 +175,16 @@ def _differences(mutant: str, measured: Measured) -> Iterator[tuple[float, str]]
                 if not numbers or value == before:
                     continue
                 values = [original[text] for original in originals.values() if is_number(original.get(text))]
-                spread, tolerance = max(values) - min(values), reading_of(measured, place, text).tolerance
-                apart = abs(value - before)
-                own = f"the original itself spreads {_short(spread)}"
-                if apart > max(spread, tolerance):
-                    own = "for which a check would need more digits than the suite has"
-                elif tolerance >= spread:
+                tolerance = reading_of(measured, place, text).tolerance
+                band, apart = band_of(values, tolerance), abs(value - before)
+                # what differs by little more than runs of the original do is no difference for a check either
+                own = f"the original itself spreads {_short(band.spread)}"
+                if abs(value - band.middle) > band.tolerance:
+                    own = "but no check of it holds in every run of the original and notices it"
+                elif tolerance == band.tolerance:
                     own = f"its tolerance is {_short(tolerance)}"
                 text_and_reason = f"{text} differs by {_short(apart)}, {own}"
-                yield (
-                    (0.0, ONLY_TIME) if is_clock(text) else (apart / max(spread, tolerance), text_and_reason)
-                )
+                yield ((0.0, ONLY_TIME) if is_clock(text) else (apart / band.tolerance, text_and_reason))
 
 
 def _short(value: float) -> str:

@@ -72,6 +72,20 @@ def test_a_box_that_is_held_to_the_end_is_reported() -> None:
     assert "box was never let go (original: at 4.1 s)" in text
 
 
+def with_fingers(recording: Recording, *openings: float) -> Recording:
+    """The recording with fingers that are as far open at its moments, the last to its end."""
+    values = [*openings, *openings[-1:] * (len(recording.times) - len(openings))]
+    recording.tracks["fingers"] = Track("fingers", TrackKind.VALUE, array("f", values), unit="m")
+    return recording
+
+
+@pytest.mark.parametrize(("far", "differs"), [(5e-9, False), (2e-6, False), (0.004, True)])
+def test_the_trembling_of_what_stands_still_is_no_difference(far: float, differs: bool) -> None:
+    way = [SHELF] * 9
+    still, other = (with_fingers(recorded(way), 0.085, 0.085 + 1e-8, 0.085 + end) for end in (0.0, far))
+    assert (apart(still, other) is not None) is differs
+
+
 def test_what_is_merely_late_is_no_distance() -> None:
     late = [CARRIED[0]] * 5 + CARRIED
     found = apart(recorded(CARRIED), recorded(late))

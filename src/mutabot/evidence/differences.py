@@ -15,8 +15,10 @@ from mutabot.model.world_difference import Apart
 
 #: two bodies that touch each other, sorted
 BodyPair = tuple[str, ...]
-#: the share of a value's own range that counts as the same
+#: the share that counts as the same: of a value's own range, and at least of what counts as none in its unit
 SHARE = 0.01
+#: the same of a value without a known unit
+_LEAST = 1e-6
 #: what the name of an orientation ends with
 TURNED = " turned"
 
@@ -42,7 +44,8 @@ def measures_of(path: TrackPath) -> Iterator[Measure]:
     track = path.track
     if track.kind is TrackKind.VALUE:
         values = [row[0] for row in path.rows]
-        tolerance = SHARE * (max(values) - min(values)) or 1e-6
+        least = SHARE * TOLERANCES[track.unit] if track.unit in TOLERANCES else _LEAST
+        tolerance = max(SHARE * (max(values) - min(values)), least)  # what does not move trembles in a solver
         yield Measure(
             track.name,
             track.unit,

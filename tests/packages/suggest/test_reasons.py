@@ -13,6 +13,7 @@ from mutabot.model import Mutant, Outcome, Role, Site, Span, Verdict
 from mutabot.model.outcome import Check, Looked
 from mutabot.model.world_difference import Apart, Diverged, Measurement
 from mutabot.results.results import MutantResult
+from mutabot_suggest.candidates import ONLY_TIME
 from mutabot_suggest.checks import CheckAtEnd, Monitor
 from mutabot_suggest.output import print_suggestions
 from mutabot_suggest.places import chosen_places, other_places
@@ -101,6 +102,20 @@ def test_without_a_probe_the_reason_asks_for_one_and_with_one_for_a_check_on_the
         "; a [[probe]] in the vocabulary may show more",
         ": a check on the way may notice it",
     ]
+
+
+@pytest.mark.parametrize("refused", [{}, {mutant().id: ONLY_TIME}])
+@pytest.mark.parametrize("read", [{}, {"volume": 2.1}])
+def test_what_a_probe_shows_on_the_way_is_the_reason_before_noise_and_times(
+    suite: SuiteChecks, refused: dict[str, str], read: dict[str, float]
+) -> None:
+    line = "on the way, after call 4, mission.py:2 arm.take: arm.held: 0 instead of 100 (off by 100)"
+    (outcome,) = survivor().survived
+    seen = replace(survivor(), rounds=(replace(outcome, divergence=("the clock is late", line)),))
+    drawn = {(round, PLACE.node): {"volume": 2.0 + 0.08 * round} for round in range(2)}
+    readings = {PLACE: [ReadExpression("volume", PROBE, 0.01)]}
+    measured = Measured({PLACE: drawn}, {PLACE: {mutant().id: {(0, PLACE.node): read}}}, readings)
+    assert why_unsolved(seen, measured, suite, [], {}, refused).reason.startswith(f"{line}; ")
 
 
 @pytest.mark.parametrize(

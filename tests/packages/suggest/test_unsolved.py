@@ -36,6 +36,8 @@ def measured(originals: list[float], mutant: float, tolerance: float) -> Measure
         (0.1, 0.001, "nothing that was read at the ends of its tests differs"),
         (0.103, 0.001, "box.x differs by 0.003, the original itself spreads 0.005"),
         (0.103, 0.01, "box.x differs by 0.003, its tolerance is 0.01"),
+        (0.106, 0.001, "box.x differs by 0.006, the original itself spreads 0.005"),  # in the room of a check
+        (0.106, 0.006, "box.x differs by 0.006, the original itself spreads 0.005"),
     ],
 )
 def test_a_difference_within_the_spread_kills_nothing_and_is_reported(
