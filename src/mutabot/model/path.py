@@ -117,13 +117,23 @@ class Path:
     def fixed_part(self, value: Any) -> str:
         """Return the step whose part cannot be replaced, as ``.imag of complex``; empty if there is none.
 
-        The objects on the way are described by their classes: what one with code of its own does shows when
-        it is changed. Raises PathError if a step does not fit.
+        What a class does not show is tried: the value that is there is put in its place in a copy. An object
+        with a finalizer is not tried, since the end of its copy would be noticed. Raises PathError if a step
+        does not fit.
         """
+        way = [value]
         for step in self.steps:
-            if _is_fixed(value, step):
-                return f"{step} of {type(value).__name__}"
-            value = self._advance(value, step)
+            if _is_fixed(way[-1], step):
+                return _part(way[-1], step)
+            way.append(self._advance(way[-1], step))
+        inner = way.pop()
+        for owner, step in zip(reversed(way), reversed(self.steps), strict=True):
+            if hasattr(type(owner), "__del__"):
+                return ""
+            try:
+                inner = _with_step(owner, step, inner)
+            except Exception:  # as above: it may refuse in any way
+                return _part(owner, step)
         return ""
 
     def _put(self, value: Any, new: Any, depth: int) -> Any:
@@ -270,6 +280,10 @@ def _can_be_set(copied: Any, name: str) -> bool:
     except Exception:  # each library has its own for what is frozen
         return False
     return True
+
+
+def _part(value: Any, step: Step) -> str:
+    return f"{step} of {type(value).__name__}"
 
 
 def _is_fixed(value: Any, step: Step) -> bool:

@@ -162,7 +162,9 @@ class Subject:
     @property
     def why_missing(self) -> str:
         """Why a call that lacks a value is left unchanged."""
-        return f"the call {'passes' if self.is_written else 'returns'} no such plain value here"
+        return (
+            f"the call {'passes' if self.is_written else 'returns'} no plain value here that can be replaced"
+        )
 
     def of_size(self, magnitude: float, unit: str | None, direction: str = "") -> Subject:
         """Return a copy with a fault of this magnitude, which also names the variant."""

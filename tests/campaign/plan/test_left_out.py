@@ -86,7 +86,7 @@ def test_a_quantity_that_names_an_object_is_reported_with_its_place_and_what_to_
     (note,) = (line for line in report.lines if line.startswith("note "))
     assert "arguments.speed: speed is of mission:Speed, which is not plain data" in note
     assert "describe the part of it that is a number, such as speed.magnitude" in note
-    reason = "the call passes no such plain value here"
+    reason = "the call passes no plain value here that can be replaced"
     assert report.data["left_out_because"] == {reason: 1}
     assert f"left out  1: {reason}" in report.lines
 
@@ -105,7 +105,7 @@ def test_a_number_beyond_floating_point_numbers_is_reported_and_left_out(tmp_pat
     report = check(request_for(folder, engine="fork", rounds=1), Quiet())
     (note,) = (line for line in report.lines if line.startswith("note "))
     assert "no floating-point number can stand for speed, so its value is left as it is" in note
-    assert report.data["left_out_because"] == {"the call passes no such plain value here": 1}
+    assert report.data["left_out_because"] == {"the call passes no plain value here that can be replaced": 1}
 
 
 @pytest.mark.parametrize(

@@ -256,6 +256,36 @@ class Kept:
         return self._x
 
 
+class Handle:
+    """Is not copied, like most of what compiled packages return."""
+
+    def __init__(self, x: float = 1.0) -> None:
+        self.x = x
+
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        raise TypeError(f"cannot pickle {type(self).__name__!r} object")
+
+
+class Bounds(tuple[float, float]):
+    """A tuple that is made of two numbers with names."""
+
+    def __new__(cls, lower: float, upper: float) -> Bounds:
+        return super().__new__(cls, (lower, upper))
+
+    lower = property(lambda self: self[0])
+    upper = property(lambda self: self[1])
+
+
+class Delegate:
+    """Asks another object for what it has not, and knows none while it is copied."""
+
+    def __init__(self, there: Any) -> None:
+        self._there = there
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._there, name)
+
+
 class Level(Enum):
     HIGH = 2.0
 
@@ -277,6 +307,10 @@ FIXED: list[tuple[Any, str, str]] = [
     (Level.HIGH, ".value", ".value of Level"),
     (datetime(2026, 1, 2), ".day", ".day of datetime"),
     (Fraction(1, 2), ".numerator", ".numerator of Fraction"),
+    (Handle(), ".x", ".x of Handle"),
+    ({"pose": (Handle(),)}, "['pose'][0].x", ".x of Handle"),
+    (Delegate(Kept()), ".x", ".x of Delegate"),
+    (Bounds(lower=0.0, upper=1.0), ".upper", ".upper of Bounds"),
 ]
 
 
@@ -300,6 +334,22 @@ def test_what_a_copy_can_have_otherwise_is_not_fixed(value: Any, text: str) -> N
     path = Path.parse(text, rooted=False)
     assert path.fixed_part(value) == ""
     assert path.get(path.put(value, 5.0)) == 5.0
+
+
+def test_an_object_with_a_finalizer_is_not_copied_to_find_out() -> None:
+    ended: list[object] = []
+
+    class Link(Handle):
+        def __del__(self) -> None:
+            ended.append(1)
+
+    class Copied(Link):
+        def __reduce_ex__(self, protocol: Any) -> Any:
+            return Copied, (self.x,)
+
+    for made in (Link(), Copied()):
+        assert Path.parse(".x", rooted=False).fixed_part(made) == ""
+        assert ended == []
 
 
 def test_a_value_that_the_class_refuses_is_not_forced_upon_it() -> None:
