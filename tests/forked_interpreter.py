@@ -1,4 +1,4 @@
-"""An interpreter that has imported what ``python -m pytest`` imports before it reads anything of a project.
+"""An interpreter that has imported what pytest and our plug-in import before they read anything of a project.
 
 It forks processes of campaigns, which are children of the process that began this one: ``forked_processes``.
 """
@@ -11,6 +11,7 @@ import os
 import runpy
 import socket
 import sys
+import time
 from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
@@ -19,8 +20,10 @@ from pathlib import Path
 from _pytest.assertion.rewrite import AssertionRewritingHook
 from _pytest.config import default_plugins
 
+from mutabot.frozen import compile_all
 from mutabot.model.job import JOB_VARIABLE
 from mutabot.operators.registry import preload
+from mutabot.runtime.interception import call_faults
 
 #: bytes of a request at most
 MESSAGE_BYTES = 1 << 17
@@ -54,12 +57,15 @@ def serve(descriptor: int, controller: int) -> None:
 
 
 def _import_ahead() -> None:
-    """Import what has no state that a process may not share with others: of ours all but ``runtime``."""
+    """Import what every process of a campaign does, but for the plug-in, which acts when it is imported."""
     for name in default_plugins:
         import_module(f"_pytest.{name}")
-    for name in ("model.job", "model.events", "evidence.recorder", "languages.python"):
+    for name in ("plugins", "session_hooks", "isolation.collector", "isolation.fork_server"):
+        import_module(f"mutabot.runtime.{name}")
+    for name in ("evidence.recorder", "languages.python"):
         import_module(f"mutabot.{name}")
     preload()
+    compile_all()
     warn = AssertionRewritingHook._warn_already_imported
 
     def warn_of_others(self: AssertionRewritingHook, name: str) -> None:
@@ -67,6 +73,15 @@ def _import_ahead() -> None:
             warn(self, name)
 
     AssertionRewritingHook._warn_already_imported = warn_of_others  # type: ignore[method-assign]
+
+
+def _know_the_process() -> None:
+    """Let what is imported know of this process what it would know if it were imported here."""
+    now = time.time_ns()
+    for name, module in list(sys.modules.items()):
+        if name.startswith("mutabot.runtime.") and hasattr(module, "BEGAN"):
+            module.BEGAN = now  # type: ignore[attr-defined]
+    call_faults._FOLDER = str(Path.cwd())
 
 
 def _find_packages(before: str, now: str) -> None:
@@ -111,4 +126,5 @@ def _run(command: Sequence[str], controller: int) -> None:
     sys.argv[:] = ["-m", *command[at + 2 :]]
     sys.path[0] = str(Path.cwd())
     vars(sys.modules["__main__"]).pop("runpy", None)
+    _know_the_process()
     runpy._run_module_as_main(command[at + 1])  # type: ignore[attr-defined]  # as `python -m` does

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import subprocess
+import time
 from pathlib import Path
 from typing import Any
 
@@ -34,6 +35,12 @@ if not Path("began.json").exists():
         "signals": [str(signal.getsignal(number)) for number in sorted(numbers)],
         "masked": sorted(signal.pthread_sigmask(signal.SIG_BLOCK, ())),
         "main": [sys.modules["__main__"].__spec__.name, sorted(vars(sys.modules["__main__"]))],
+        "known": {
+            f"{name}.{key}": len(value) if isinstance(value, (dict, list, set)) else value
+            for name, module in sorted(sys.modules.items()) if name.startswith("mutabot.runtime.")
+            for key, value in vars(module).items()
+            if not key.startswith("__") and isinstance(value, (str, int, float, type(None), dict, list, set))
+        },
         "modules": [name for name in sys.modules if name.partition(".")[0] == "mutabot"],
         "limits": [resource.getrlimit(number) for number in range(10)],
     }))
@@ -57,11 +64,15 @@ def began(folder: Path) -> dict[str, Any]:
     """What the first process of a campaign was begun with, without the name of its own folder."""
     (folder / "began.json").unlink(missing_ok=True)
     (folder / "conftest.py").write_text(CONFTEST, encoding="utf-8")
+    before = time.time_ns()
     run(folder, engine="auto")
     text = (folder / "began.json").read_text(encoding="utf-8")
     own = next(word for word in json.loads(text)["words"][0] if word.startswith("cache_dir="))
     home = Path(own.partition("=")[2]).parent
     found: dict[str, Any] = json.loads(text.replace(str(home), "HOME"))
+    times = [found["known"].pop(name) for name in list(found["known"]) if name.endswith(".BEGAN")]
+    assert times
+    assert min(times) > before
     return found
 
 
@@ -84,7 +95,6 @@ def test_a_fork_is_begun_as_by_the_command_line(
     anew = began(tmp_path)
     ahead = set(forked.pop("modules")) - set(anew.pop("modules"))
     assert forked == anew
-    # what knows of a process, such as when it began, is its own
     assert {module for module in ahead if module.startswith("mutabot.runtime")} == set()
 
 
