@@ -174,11 +174,16 @@ def take_away(session: Session) -> None:
     sites.stands, sites.hands = (lambda site, found, receiver, frame: found), None
     for step in (sites, session.text, session.returns):
         forget(step)
+    found = [other for other in sys.modules.copy().values() if isinstance(other, ModuleType)]
+    folder = session.job.root
+    of_stage = [other for other in found if _is_below(folder, other)]
     for target, original in session.callables.found.items():
         module, _, qualname = target.partition(":")
         with suppress(NotFoundError, AttributeError, TypeError, KeyError):
             owner, name, _ = resolve(sys.modules[module], qualname)
-            _put_back(owner, name, original, _that_may_name(sys.modules[module], Path(session.job.root)))
+            # the stage's modules are imported by none but its own; a walk through all others is slow
+            may_name = of_stage if _is_below(folder, sys.modules[module]) else found
+            _put_back(owner, name, original, may_name)
     if session.messages is not None:
         session.messages.remove()
     mocks_as_ever()
@@ -190,15 +195,8 @@ def mocks_as_ever() -> None:
     classes.CallableMixin.__call__ = _MOCK_CALL
 
 
-def _that_may_name(module: ModuleType, folder: Path) -> list[ModuleType]:
-    """Return the modules that may have names of their own for what this one defines.
-
-    The stage's modules are imported by none but its own; a walk through all others is slow.
-    """
-    found = [other for other in sys.modules.copy().values() if isinstance(other, ModuleType)]
-    if not (module.__file__ or "").startswith(str(folder)):
-        return found
-    return [other for other in found if (vars(other).get("__file__") or "").startswith(str(folder))]
+def _is_below(folder: str, module: ModuleType) -> bool:
+    return (vars(module).get("__file__") or "").startswith(folder)
 
 
 def _put_back(owner: Any, name: str, original: Any, modules: list[ModuleType]) -> None:

@@ -161,7 +161,6 @@ def no_collection() -> Iterator[None]:
         yield
     finally:
         gc.enable()
-        gc.unfreeze()
 
 
 def survivors_of(stage: Stage, session: Session | None, *, refuses: bool = False) -> list[str]:

@@ -12,6 +12,8 @@ import inspect
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from importlib import import_module
+from itertools import repeat
+from operator import is_
 from types import FunctionType, ModuleType
 from typing import TYPE_CHECKING, Any
 
@@ -212,6 +214,8 @@ def _rebind(original: Any, wrapper: Any) -> None:
     for module in list(sys.modules.values()):
         if not isinstance(module, ModuleType) or module.__name__.startswith("mutabot"):
             continue
-        for name, value in list(vars(module).items()):
-            if value is original:
+        names = vars(module)
+        # a process may have hundreds of thousands of names
+        if any(map(is_, list(names.values()), repeat(original))):
+            for name in [name for name, value in list(names.items()) if value is original]:
                 setattr(module, name, wrapper)
