@@ -148,6 +148,20 @@ def test_where_tests_cannot_be_run_pytests_own_message_is_shown(
     check_what_is_said(tmp_path, tests, files, said)
 
 
+@pytest.mark.whole
+@pytest.mark.parametrize("engine", ["fork", REPLAY])
+def test_a_hook_of_the_suite_may_call_the_program_before_any_test(tmp_path: Path, engine: str) -> None:
+    hook = """
+        import mission
+        from robot import Arm
+
+        def pytest_collection_modifyitems():
+            mission.go(Arm())
+        """
+    outcomes = run(write_project(tmp_path, MISSION, TESTS, more={"conftest.py": hook}), engine=engine)
+    assert outcomes[SKIP].verdict is Verdict.KILLED
+
+
 @WITH_PLUGINS
 def test_a_plugin_that_is_required_and_not_installed_is_named(tmp_path: Path) -> None:
     files = {"pytest.ini": "[pytest]\nrequired_plugins = pytest-nowhere pytest-xdist\n"}

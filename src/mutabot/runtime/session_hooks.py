@@ -16,6 +16,7 @@ import mutabot
 from mutabot import extensions
 from mutabot.frozen import compile_all
 from mutabot.model import Mutant, Role
+from mutabot.model.activation import FatalFault
 from mutabot.model.events import SessionEnd
 from mutabot.model.job import Job, read_job
 from mutabot.operators.registry import preload
@@ -289,8 +290,11 @@ class SessionHooks:
 def _is_own_failure(excinfo: pytest.ExceptionInfo[BaseException]) -> bool:
     """Return whether our code fails: it has raised, or the hook that did, with what it calls, is ours.
 
-    Hooks of ours around that hook are on the way of the exception as well, but farther out.
+    Hooks of ours around that hook are on the way of the exception as well, but farther out. What a control
+    raises is meant.
     """
+    if isinstance(excinfo.value, FatalFault):
+        return False
     frames = [entry.frame.raw for entry in excinfo.traceback]
     calls = [number for number, frame in enumerate(frames) if frame.f_code.co_name == _CALLS_HOOKS]
     return any(map(is_ours, [frames[-1], *frames[calls[-1] + 1 :][:1]] if calls else frames[-1:]))

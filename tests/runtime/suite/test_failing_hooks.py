@@ -8,6 +8,7 @@ from types import ModuleType
 import pluggy
 import pytest
 
+from mutabot.model.activation import FatalFault
 from mutabot.runtime.session_hooks import _is_own_failure
 
 SPEC = pluggy.HookspecMarker("trial")
@@ -53,3 +54,12 @@ def test_a_hook_fails_with_what_it_calls(failing: str, around: str, is_own: bool
     with pytest.raises(json.JSONDecodeError) as failure:
         manager.hook.run()
     assert _is_own_failure(failure) is is_own
+
+
+def test_what_a_control_raises_is_no_failure_of_ours() -> None:
+    ours = ModuleType("mutabot.runtime.trial")
+    exec("def act(error):\n    raise error", vars(ours))
+    for error, is_own in ((FatalFault("control"), False), (ValueError("defect"), True)):
+        with pytest.raises(type(error)) as failure:
+            ours.act(error)
+        assert _is_own_failure(failure) is is_own
