@@ -190,6 +190,8 @@ class CallEditor:
         self.callee = handed or self.call.func
         self.is_handed = handed is not None or not hasattr(self.call, "lineno")
         parent = source.parents.get(self.call)
+        if isinstance(parent, ast.withitem) and handed is None and _last_name(self.call.func) != self._called:
+            raise CannotWriteError("the block may call the operation as it ends")
         self.awaited = parent if isinstance(parent, ast.Await) else None
         self.definition = facts.definition(mutant["operation"])
         self.is_async = isinstance(self.definition, ast.AsyncFunctionDef)

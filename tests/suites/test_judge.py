@@ -271,6 +271,14 @@ def test_a_call_in_a_text_that_is_run_cannot_be_written(tmp_path: Path) -> None:
         edits_for(facts, found)
 
 
+def test_a_call_that_a_block_makes_as_it_ends_cannot_be_written(tmp_path: Path) -> None:
+    source = "with ExitStack() as s: s.callback(arm.open)\n"
+    facts = Facts.of(project(tmp_path, source))
+    found = mutant("ExitStack()", source, operator="repeat", operation="robot:Arm.open")
+    with pytest.raises(CannotWriteError, match="as it ends"):
+        edits_for(facts, found)
+
+
 def test_an_argument_that_is_not_given_is_its_default() -> None:
     def move(x: float, y: float = 2.0) -> tuple[float, float]:
         return x, y
