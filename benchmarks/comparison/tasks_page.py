@@ -64,6 +64,11 @@ recipes (plc, toolbox, ur and the like): programs that drive robot libraries and
 `python benchmarks/tasks.py run NAME` runs the mutants of a program against every test that reaches them;
 `python benchmarks/tasks.py` writes this page. Intervals have a level of 95 %.
 """
+OF_NUMBERS = """\
+Numbers are those of the day of the run, without the readings of the tests' own checks, which `mutabot list`
+counts as well. Operators have changed since: of palletising, `mutabot list --family robot --only program` now
+has 165 mutants, without those of parts of readings that nothing reads.\
+"""
 OF_CLAIMS = """\
 Shares of outcomes (*redundant*: of killed mutants), and their difference in percentage points. It speaks
 *for* the claim if its interval lies wholly above zero, *against* it if wholly below. The last row is the
@@ -176,6 +181,7 @@ def _campaigns(tasks: Mapping[str, Task]) -> Iterator[str]:
         counts = [_drawn(task["campaigns"].get(family)) for family in (ROBOT, TEXT)]
         cpu = sum(campaign["families"]["cost"]["cpu"] for campaign in task["campaigns"].values())
         yield f"| {name} | {meta['rounds']}, {meta['seed']} | {' | '.join(counts)} | {cpu:.0f} s |"
+    yield f"\n{OF_NUMBERS}"
     missing = [name for name in ORDER if name not in tasks]
     yield f"\nNot run: {', '.join(missing)}.\n" if missing else ""
 

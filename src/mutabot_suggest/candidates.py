@@ -24,6 +24,7 @@ from .forms import is_clock, is_number, last_name
 from .mocks import CALL
 from .project import PlaceInTest, SuiteFiles, function_of
 from .readings import ORACLE, Measured, ReadExpression, ValuesRead, is_reading, reading_of
+from .stated_bounds import stated_ranges
 from .suite import ReusableCheck, SuiteChecks
 from .tolerances import StatedTolerance, StatedTolerances, stated_in
 
@@ -48,6 +49,7 @@ def candidates(
     """
     found: list[CheckProposal] = []
     refused: dict[str, str] = {}
+    ranges = stated_ranges(project)
     everywhere = [read for reads in measured.originals.values() for read in reads.values()]
     for place, originals in measured.originals.items():
         mutants, runs = measured.mutants.get(place, {}), list(originals.values())
@@ -59,6 +61,7 @@ def candidates(
         given = [candidate for candidate in readings if _is_input(candidate.text, originals, mutants)]
         module = project.module(place.file)
         compared, stated = stated_in(module)
+        stated |= {name: max(size, stated.get(name, 0.0)) for name, size in ranges.items()}
         beside, own = stated_in(function_of(module, place))
         usual = max(own.values()) if len(set(own.values())) == 1 else 0.0
         readings = [

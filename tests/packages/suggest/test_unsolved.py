@@ -239,6 +239,23 @@ def test_what_the_tests_allow_holds_under_any_name() -> None:
     assert refused[MUTANT.id] == "arm.place() differs by 0.05, within your tolerance of 0.1"
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "assert 0.1 < arm.x <= 0.5",
+        "MOST = 0.5\nself.assertTrue(MOST > arm.x > 0.1)",
+        "assert -0.1 < arm.x < 0.5 and -0.05 < arm.x",
+    ],
+)
+@pytest.mark.parametrize(("far", "is_allowed"), [(0.15, True), (0.9, False)])
+def test_half_of_a_range_is_a_tolerance(text: str, far: float, is_allowed: bool) -> None:
+    found = of([{"arm.x": 0.4}] * 3, {"arm.x": 0.4 + far}, "arm.x")
+    checks, refused = checks_of(_Project(text), found)
+    assert ([check.tolerance or 0.0 for check in checks] == []) is is_allowed
+    assert all((check.tolerance or 0.0) >= 0.2 for check in checks)
+    assert ("within your tolerance of" in refused.get(MUTANT.id, "")) is is_allowed
+
+
 def test_the_tolerance_is_that_of_the_suite_where_it_notices_as_much() -> None:
     found = of([{"box.x": 0.3}] * 3, {"box.x": 0.9}, "box.x")
     stated = _Project("assert cup.x == pytest.approx(0.5, abs=0.03)")
@@ -248,6 +265,8 @@ def test_the_tolerance_is_that_of_the_suite_where_it_notices_as_much() -> None:
 
 class _Project:
     """A project of which only the text of the test counts."""
+
+    suite_files = (PLACE.file,)
 
     def __init__(self, text: str = "") -> None:
         self._text = text
