@@ -106,15 +106,20 @@ READERS = """
     def packs():
         zipfile.ZipFile(HERE / "packed.zip", "w").write(PROGRAM)
 """
+#: what one has read no other knows
 MAIN = """
-    import json, sys
+    import json, os, sys
     import readers
     from mutabot.runtime.text_reads import TextReads
 
-    told = set()
-    TextReads(sys.argv[1], lambda name, is_text: told.add(name) if is_text else None).install()
-    getattr(readers, sys.argv[2])()
-    print(json.dumps(sorted(told)))
+    for name in sys.argv[2:]:
+        if os.fork() == 0:
+            told = set()
+            TextReads(sys.argv[1], lambda name, is_text: told.add(name) if is_text else None).install()
+            getattr(readers, name)()
+            print(json.dumps([name, sorted(told)]), flush=True)
+            os._exit(0)
+        os.wait()
 """
 NONE = (
     "imports", "imports_by_its_place", "runs", "fails", "writes", "starts_python", "has_python_started",
@@ -136,13 +141,14 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[str]]:
     }
     folder = write(tmp_path_factory.mktemp("reads"), files)
     names = [line.split()[1].removesuffix("():") for line in READERS.splitlines() if " def " in line]
-    started = {
-        name: subprocess.Popen(
-            [sys.executable, "main.py", str(folder), name], cwd=folder, stdout=subprocess.PIPE, text=True
-        )
-        for name in names
-    }
-    return {name: json.loads(value.communicate()[0]) for name, value in started.items()}
+    done = subprocess.run(
+        [sys.executable, "main.py", str(folder), *names],
+        cwd=folder,
+        stdout=subprocess.PIPE,
+        text=True,
+        check=True,
+    )
+    return dict(map(json.loads, done.stdout.splitlines()))
 
 
 def test_imports_and_what_shows_lines_read_no_text(found: dict[str, list[str]]) -> None:
