@@ -21,8 +21,13 @@ def files() -> list[Path]:
     return sorted(SOURCE.rglob("*.py"))
 
 
-def imports(file: Path) -> Iterator[str]:
+@cache
+def imports(file: Path) -> list[str]:
     """Absolute names of the modules that a file of the package, or of one beside it, imports."""
+    return [*_imports(file)]
+
+
+def _imports(file: Path) -> Iterator[str]:
     package = [*file.relative_to(SOURCE.parent).parent.parts]
     for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):

@@ -7,6 +7,7 @@ import os
 import shutil
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 from textwrap import dedent
 
@@ -41,6 +42,7 @@ def run(python: str, *arguments: str, folder: Path, more: str = "") -> subproces
     return subprocess.run([python, *arguments], env=environment, capture_output=True, text=True, check=True)
 
 
+@cache
 def interpreters() -> list[str]:
     """Every Python of 3.8 or newer that this machine has."""
     found = []
