@@ -86,6 +86,16 @@ def interpreter(bare: None, request: pytest.FixtureRequest) -> Iterator[Interpre
         yield interpreter
 
 
+@pytest.fixture(scope="module")
+def forks(interpreter: Interpreter | None) -> Iterator[None]:
+    """Processes of campaigns are forks in the long run as well: how they begin is not what is shown."""
+    if interpreter is not None:
+        yield
+        return
+    with forked_processes():
+        yield
+
+
 @pytest.fixture
 def plugins(monkeypatch: pytest.MonkeyPatch) -> None:
     """Campaigns load all plug-ins that are installed, as they do for a user."""

@@ -17,6 +17,8 @@ from mutabot_languages.mutation.rules import BY_NAME, FAMILY
 from tests.command import mutabot
 from tests.packages.languages.programs import FILES, RAPID, written
 
+pytestmark = pytest.mark.usefixtures("forks")
+
 
 def planned(folder: Path, language: str) -> list[PlannedText]:
     written(folder, language)
