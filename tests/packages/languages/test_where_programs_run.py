@@ -13,6 +13,8 @@ import pytest
 
 from tests.command import mutabot
 
+pytestmark = pytest.mark.usefixtures("forks")
+
 PROGRAM = """MODULE Pick
   VAR num count := 0;
   PROC main()
