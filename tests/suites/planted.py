@@ -207,6 +207,8 @@ def only_for(function: Any, planted: Any, name: str, notation: str) -> Any:
 
 def matched(notation: str, text: Any) -> re.Match[str] | None:
     """Whether a message reads like this notation, with its fields as groups."""
+    if isinstance(text, bytes):
+        text = text.decode("utf-8", "surrogateescape")
     if not isinstance(text, str):
         return None
     pieces, end = [], 0
@@ -232,7 +234,7 @@ def retold(notation: str, field: str, change: Change, text: Any) -> Any:
     else:
         written = f"{after:g}"
     start, end = found.span(field)
-    return text[:start] + written + text[end:]
+    return _like(text, found.string[:start] + written + found.string[end:])
 
 
 def told_as(notation: str, other_notation: str, text: Any) -> Any:
@@ -240,7 +242,12 @@ def told_as(notation: str, other_notation: str, text: Any) -> Any:
     found = matched(notation, text)
     if found is None:
         return text
-    return _FIELD.sub(lambda field: found[field[1]], other_notation)
+    return _like(text, _FIELD.sub(lambda field: found[field[1]], other_notation))
+
+
+def _like(message: Any, text: str) -> Any:
+    """A text in the type of a message."""
+    return text.encode("utf-8", "surrogateescape") if isinstance(message, bytes) else text
 
 
 class PlantedError(Exception):

@@ -179,10 +179,12 @@ def test_an_awaited_call_is_edited_with_its_await(tmp_path: Path) -> None:
     ("operator", "quantity", "told"),
     [("reverse", "h", "lift/-5.00"), ("opposite", None, "drop/5.00"), ("skip", None, None)],
 )
+@pytest.mark.parametrize("encoded", [False, True])
 def test_a_text_command_is_edited_where_it_reads_like_the_pattern(
-    tmp_path: Path, operator: str, quantity: str | None, told: str | None
+    tmp_path: Path, operator: str, quantity: str | None, told: str | None, encoded: bool
 ) -> None:
-    source = 'sent = [arm.send(text) for text in ("lift/5.00", "pick")]\n'
+    texts = (b"lift/5.00", b"pick") if encoded else ("lift/5.00", "pick")
+    source = f"sent = [arm.send(text) for text in {texts}]\n"
     facts = Facts.of(project(tmp_path, source))
     found = mutant(
         "arm.send(text)", source, operator=operator, operation="robot:Arm.send", quantity=quantity,
@@ -193,8 +195,9 @@ def test_a_text_command_is_edited_where_it_reads_like_the_pattern(
     heard: list[str] = []
 
     class Arm:
-        def send(self, text: str) -> None:
-            heard.append(text)
+        def send(self, text: Any) -> None:
+            assert isinstance(text, bytes) is encoded
+            heard.append(text.decode() if encoded else text)
 
     sys.path.insert(0, str(tmp_path))
     try:
