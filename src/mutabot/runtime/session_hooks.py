@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import atexit
 import os
 import sys
 from collections.abc import Generator
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import _pytest.pathlib
 import pytest
@@ -73,6 +74,8 @@ class SessionHooks:
         self._collected: tuple[str, ...] = ()
         self._errors: list[str] = []
         self._gone: tuple[str, ...] = ()
+        self._pid = os.getpid()
+        self._exit_status: int | None = None  # that of pytest, until the end is reported
 
     @property
     def job(self) -> Job:
@@ -107,6 +110,7 @@ class SessionHooks:
             if job.pictures is not None:  # before its folder is hidden from this process
                 hooks.session.recording.film(job.pictures)
             hooks._make_private(job, home)
+        atexit.register(hooks._finish)  # before others, so that it is the last
         hooks.session.returns = Returns(hooks.locator)
         hooks.session.install()
         Checks(job.root, hooks._is_of_tests, hooks.tests.looks).install()
@@ -125,6 +129,7 @@ class SessionHooks:
         die_with_parent()  # a process that changes its rights loses that wish
 
     def _begin(self, home: str) -> None:
+        self._pid = os.getpid()
         job = self.job
         has_nodes = prepare(job.root, home, job.vocabulary.operations)
         members = self.tests.members = Members(home, self.session)
@@ -144,6 +149,7 @@ class SessionHooks:
     def _become(self, mutant: Mutant, folder: str) -> None:
         """Continue as this mutant, in a process that was just forked."""
         assert self.session.fork_parent is not None
+        self._pid = os.getpid()
         self.tests.start_clocks(is_new=True)
         self.tests.left_out = self.job.left_out(mutant.id)
         if self.config is not None:
@@ -270,11 +276,27 @@ class SessionHooks:
         item.session._setupstate.teardown_exact(nextitem)
         return True
 
-    @pytest.hookimpl(trylast=True)
+    @pytest.hookimpl(tryfirst=True)
     def pytest_sessionfinish(self, exitstatus: int) -> None:
-        """Report, after all tests, what was observed."""
-        if self._server is not None:
+        """Note that all tests have run; hooks and exit handlers may still make calls, or leave at once."""
+        leave = os._exit
+
+        def leave_at_once(status: int) -> NoReturn:
+            try:
+                self._finish()
+            finally:
+                leave(status)
+
+        self._exit_status = int(exitstatus)
+        os._exit = leave_at_once
+        self.tests.note_end_of_phases()
+
+    def _finish(self) -> None:
+        """Report, as the process ends, what was observed."""
+        if self._exit_status is None or self._server is not None or self._pid != os.getpid():
             return
+        exit_status, self._exit_status = self._exit_status, None
+        self.tests.end_test()
         if self.tests.fork is not None:
             self.tests.fork.finish(self._errors, self._gone)
             return
@@ -284,7 +306,7 @@ class SessionHooks:
             self._errors.append(members.children.doubt)
         not_private = self._files.why_not if self.job.private_files else None
         facts = (self._collected, tuple(self._errors), not_private, self._gone)
-        self.session.writer.send(SessionEnd(int(exitstatus), *facts, self.session.activity.acted > 0))
+        self.session.writer.send(SessionEnd(exit_status, *facts, self.session.activity.acted > 0))
 
 
 def _is_own_failure(excinfo: pytest.ExceptionInfo[BaseException]) -> bool:

@@ -23,6 +23,7 @@ from mutabot.model.event_file import UNWRITTEN
 from mutabot.model.events import ForkSessionEnd, ForkTestEnd, TestEnd, TestStart
 from mutabot.model.job import write_job
 from mutabot.model.process_time import TimeUsed, ran_below
+from mutabot.operators.command import Fatal
 from mutabot.runtime import seeds
 from mutabot.runtime.exceptions import everything
 from mutabot.runtime.executed import ExecutedUnits
@@ -76,9 +77,12 @@ class ForkedRun:
             if is_decided or self._parent.is_test_control(self.mutant):
                 os._exit(DECIDED)  # whatever happens, nothing must run on in this process
 
+    def end_tests(self) -> None:
+        """Note that all tests have run, so that the time of the last one is not that of the session's end."""
+        self._parent.note_test(self.mutant.id)
+
     def finish(self, errors: list[str], gone: tuple[str, ...]) -> None:
         """Report the end of the session; the parent reports the exit code."""
-        self._parent.note_test(self.mutant.id)
         self._parent.note_finished(self.mutant.id)
         self._session.writer.send(
             ForkSessionEnd((self.mutant.id,), 0, tuple(errors), gone, self._session.activity.acted > 0)
@@ -145,6 +149,8 @@ class TestHooks:
         self.left_out: frozenset[str] = frozenset()
         self.looks = Looks(lambda: session.activity.hits > 0)
         self.units = ExecutedUnits(session.job.root)
+        self._running: str | None = None
+        self._acted: int | None = None  # how often the fault had, when the last test's phases were over
         self._address: str | None = None
         self._failure: TestEnd | None = None
         self._failed_in = ""
@@ -169,9 +175,12 @@ class TestHooks:
         return process_time() + (ran_below() if is_baseline else 0.0)
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
-    def pytest_runtest_protocol(self, item: pytest.Item) -> Generator[None, Any, Any]:
-        """Run one test with its fixtures."""
-        session, test = self.session, node_id(item)
+    def pytest_runtest_protocol(
+        self, item: pytest.Item, nextitem: pytest.Item | None
+    ) -> Generator[None, Any, Any]:
+        """Run one test with its fixtures; what follows the last test belongs to it."""
+        test = node_id(item)
+        self.end_test()  # a plug-in may take every test for the last one
         keep_real_files()
         self.units.start_test()
         if self.fork is not None:
@@ -180,7 +189,32 @@ class TestHooks:
             return (yield)
         self._start(item, test)
         result = yield
+        stops_at_kill = self.session.job.stop_at_kill
+        if nextitem is not None or (self._outcome == FAILED and (stops_at_kill or self.fork is not None)):
+            end = self.end_test()
+            if end is not None and stops_at_kill and end.is_decided:
+                # as after a failure with ``-x``: of an interruption pytest would lay out a traceback, which
+                # takes longer than a short suite
+                item.session.shouldfail = "the mutant's verdict is known"
+        return result
+
+    def note_end_of_phases(self) -> None:
+        """Note that the phases of the last test are over: nothing reports what is raised from here on."""
+        self._acted = self.session.activity.acted
+        if self.fork is not None:
+            self.fork.end_tests()
+
+    def end_test(self) -> TestEnd | None:
+        """End the running test, if there is one, and report how; a fork leaves if that decides."""
+        session, test = self.session, self._running
+        if test is None:
+            return None
+        self._running = None
         session.fault.end_test()
+        if self._acted is not None and session.activity.acted > self._acted and self._is_fatal():
+            # what it raises in an exit handler ends nothing, but shows that it acts
+            self._outcome, self._logged = FAILED, True
+            self._failure = TestEnd(test, FAILED, By.EXCEPTION, message=Fatal.name)
         end = self._test_end(test)
         if self.members is not None:
             end = self.members.merged(end)
@@ -191,15 +225,16 @@ class TestHooks:
             if session.fork_parent is not None:
                 session.fork_parent.end_test()
             session.writer.send(end)
-        if session.job.stop_at_kill and end.is_decided:
-            # as after a failure with ``-x``: of an interruption pytest would lay out a traceback, which takes
-            # longer than a short suite
-            item.session.shouldfail = "the mutant's verdict is known"
-        return result
+        return end
+
+    def _is_fatal(self) -> bool:
+        """Return whether this process is the fatal control, by which tests must fail."""
+        mutant = self.fork.mutant if self.fork is not None else self.session.job.mutant
+        return mutant is not None and mutant.family == Fatal.family and mutant.operator == Fatal.name
 
     def _start(self, item: pytest.Item, test: str) -> None:
         self._failure, self._expected, self._outcome, self._reading = None, None, PASSED, Reading()
-        self._address = self._logged = None
+        self._running, self._address, self._logged = test, None, None
         self.looks.clear()
         session = self.session
         if self.fork is None:  # else the controller would take it for the parent's test

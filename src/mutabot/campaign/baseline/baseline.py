@@ -270,6 +270,13 @@ class Baseline(Original):
         """Note that a test reaches a place in a process below it of this origin."""
         self.below.setdefault((round, place, test), set()).add(origin)
 
+    def reach_in_vain(self, round: int, test: str, places: Iterable[Place]) -> None:
+        """Note that an excluded test reaches these places."""
+        for place in places:
+            tests = self.flaky_reaching.setdefault((round, place), [])
+            if test not in tests:
+                tests.append(test)
+
     def is_missed(self, round: int, mutant: Mutant, end: TestEnd) -> bool:
         """Return whether processes below this test, which passed, may have run as the original.
 
@@ -338,7 +345,7 @@ class Baseline(Original):
         for (where, place), tests in self.reaching.items():
             if where == round and test in tests:
                 self.reaching[where, place] = self._fastest_first(round, frozenset(tests))
-                self.flaky_reaching.setdefault((where, place), []).append(test)
+                self.reach_in_vain(where, test, [place])
 
     def ran(self, round: int) -> list[str]:
         """Return the tests of a round that were not skipped."""

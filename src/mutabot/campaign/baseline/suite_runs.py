@@ -419,6 +419,10 @@ def _add_round(
     is_set_aside = len(good) < len(runs[0]) and repetitions[0].exit_code == _FAILED
     baseline.exits[round] = 0 if is_set_aside else repetitions[0].exit_code
     _add_hits(baseline, sources, round, repetitions[0], places[0])
+    for result, there in zip(repetitions, places, strict=True):
+        for end in result.ends:
+            if (round, end.test) in baseline.unstable:  # where it would have judged mutants
+                baseline.reach_in_vain(round, end.test, {there[index] for index, *_ in end.trace})
     refused = refusals_by_test(repetitions[0], places[0])
     baseline.refused |= {(round, test): calls for test, calls in refused.items()}
     return failed
@@ -449,9 +453,6 @@ def _add_hits(
     reaching: dict[Place, set[str]] = {}
     for end in result.ends:
         if end.test not in good:
-            if (round, end.test) in baseline.unstable:  # where it would have judged mutants
-                for place in {places[index] for index, *_ in end.trace}:
-                    baseline.flaky_reaching.setdefault((round, place), []).append(end.test)
             continue
         for origin, indexes in end.below.items():
             for place in map(places.__getitem__, indexes):

@@ -108,17 +108,20 @@ def add_untested(
     calls, total = _calls(baseline, vocabulary, texts, seen)
     is_unseen = any(remark.source == UNSEEN for remark in baseline.remarks)
     doubts = [call.doubt or (_DOUBT if is_unseen else "") for call in calls]
-    baseline.unreached = tuple(
+    unreached = [
         Place(call.site, call.operation, call.pattern)
         for call, doubt in zip(calls, doubts, strict=True)
         if not doubt
-    )
+    ]
+    # mutants where only excluded tests reach a call are not judged, and must not vanish
+    aside = dict.fromkeys(place for _, place in baseline.flaky_reaching if _is_lost(baseline, place))
+    baseline.unreached = (*unreached, *aside)
     untested = [
         UntestedCall(call.site.place, call.site.text, call.operation, doubt)
         for call, doubt in zip(calls, doubts, strict=True)
     ]
     baseline.untested = Untested(
-        calls=total + len(baseline.unreached),
+        calls=total + len({place.site for place in baseline.unreached}),
         functions=functions,
         files=len(texts),
         unreached_calls=tuple(call for call in untested if not call.doubt),
@@ -126,6 +129,11 @@ def add_untested(
         unreached_files=tuple(files),
         doubtful_calls=tuple(call for call in untested if call.doubt),
     )
+
+
+def _is_lost(baseline: Baseline, place: Place) -> bool:
+    """Return whether no test that judges reaches a call of the program."""
+    return place.site.role is Role.PROGRAM and place not in baseline.hits
 
 
 def _texts(root: Path, files: Iterable[str]) -> Iterator[tuple[str, str]]:
