@@ -111,7 +111,8 @@ def _at_places(
         is_shared, active = operations_at[place.site] > 1, Activation.of_call(place)
         for subject, rule in _subjects(operators, operation, place):
             with _named(rule, operation):
-                seen, predicted = _predict(rule, subject, hits)
+                found, predicted = _predict(rule, subject, hits)
+                seen = None if predicted is not None and found == (None, None) else found
                 needs, only_reads = rule.needs_of(subject), rule.only_reads(subject)
                 text = _description(rule, subject, place, seen, is_shared=is_shared)
             mutant = replace(_distinct(_mutant(rule, subject, place, provider), taken), description=text)
@@ -397,7 +398,7 @@ def _description(
     """Return what the mutant does, in one line.
 
     Args:
-        seen: None for a call that no test reaches.
+        seen: None where no value was seen, such as for a call that no test reaches.
         is_shared: whether the site reaches several operations.
     """
     operation, text = subject.operation, place.site.text
