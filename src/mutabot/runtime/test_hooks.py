@@ -149,7 +149,7 @@ class TestHooks:
         self.left_out: frozenset[str] = frozenset()
         self.looks = Looks(lambda: session.activity.hits > 0)
         self.units = ExecutedUnits(session.job.root)
-        self._running: str | None = None
+        self._unended: str | None = None
         self._acted: int | None = None  # how often the fault had, when the last test's phases were over
         self._address: str | None = None
         self._failure: TestEnd | None = None
@@ -189,6 +189,7 @@ class TestHooks:
             return (yield)
         self._start(item, test)
         result = yield
+        self._unended = test  # not where something ends the session in the midst of it
         stops_at_kill = self.session.job.stop_at_kill
         if nextitem is not None or (self._outcome == FAILED and (stops_at_kill or self.fork is not None)):
             end = self.end_test()
@@ -205,11 +206,11 @@ class TestHooks:
             self.fork.end_tests()
 
     def end_test(self) -> TestEnd | None:
-        """End the running test, if there is one, and report how; a fork leaves if that decides."""
-        session, test = self.session, self._running
+        """End the test whose phases are over, if there is one; a fork leaves if that decides."""
+        session, test = self.session, self._unended
         if test is None:
             return None
-        self._running = None
+        self._unended = None
         session.fault.end_test()
         if self._acted is not None and session.activity.acted > self._acted and self._is_fatal():
             # what it raises in an exit handler ends nothing, but shows that it acts
@@ -234,7 +235,7 @@ class TestHooks:
 
     def _start(self, item: pytest.Item, test: str) -> None:
         self._failure, self._expected, self._outcome, self._reading = None, None, PASSED, Reading()
-        self._running, self._address, self._logged = test, None, None
+        self._address = self._logged = None
         self.looks.clear()
         session = self.session
         if self.fork is None:  # else the controller would take it for the parent's test
