@@ -133,8 +133,9 @@ def test_what_a_run_makes_goes_with_it(tmp_path: Path, common: Path) -> None:
     request = request_for(root, engine="fork")
     check(request, progress)
     found = diary(common)
-    # two rounds of the original, the fork parent of the controls, and the identity, which goes to the end
-    assert found == ["left"] * 4
+    # two rounds of the original, the fork parent of the controls, the identity, and the control of the last
+    # test, to which the end belongs
+    assert found == ["left"] * 5
 
 
 def test_no_run_finds_what_another_one_left_in_the_cache(tmp_path: Path, common: Path) -> None:

@@ -245,6 +245,8 @@ def test_what_the_tests_allow_holds_under_any_name() -> None:
         "assert 0.1 < arm.x <= 0.5",
         "MOST = 0.5\nself.assertTrue(MOST > arm.x > 0.1)",
         "assert -0.1 < arm.x < 0.5 and -0.05 < arm.x",
+        "assert arm.x > 0.1\nassert 0.5 >= arm.x",
+        "self.assertLess(arm.x, 0.5)\nself.assertGreaterEqual(arm.x, 0.1)",
     ],
 )
 @pytest.mark.parametrize(("far", "is_allowed"), [(0.15, True), (0.9, False)])

@@ -336,7 +336,7 @@ class ForkParent:
 
     def note_test(self, mutant: str, test: str | None = None) -> None:
         """In a child, note that it begins a test, which the parent need not have; None after the last one."""
-        slot = self._slots[mutant]
+        slot = self._slots.get(mutant, -1)
         number = len(self.tests) if test is None else self._numbers.get(test, max(self._tests[slot], 0))
         self._tests[slot] = number
 
